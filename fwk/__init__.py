@@ -1,0 +1,30 @@
+"""fwk: a step-exact component framework for robots, on LCM."""
+
+import os
+
+# Several processes share few cores: a linear-algebra thread pool in each would only get in the others' way, and the
+# order in which its threads finish would show in the last bits of results.
+for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_variable, "1")
+
+from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402 - after the limits
+from fwk.aspects.logging import Logger  # noqa: E402
+from fwk.aspects.vision import Image, VisionMaster  # noqa: E402
+from fwk.clock import Clock, TimeSource  # noqa: E402
+from fwk.component import Component  # noqa: E402
+from fwk.config import Config  # noqa: E402
+
+__all__ = [
+    "Clock",
+    "Component",
+    "Config",
+    "Image",
+    "Logger",
+    "Reads",
+    "ReadsEach",
+    "TimeSource",
+    "VisionMaster",
+    "Writes",
+    "WritesEach",
+    "channel",
+]

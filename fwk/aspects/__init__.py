@@ -1,0 +1,1 @@
+"""What a component can ask for: each module is one aspect."""

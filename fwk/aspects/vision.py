@@ -1,0 +1,126 @@
+"""The vision aspects: camera frames in a shared-memory ring, written by one vision master and read by many."""
+
+import mmap
+import os
+import struct
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fwk.aspects.blackboard import Reads, Writes
+from lcmtypes.robot import frame_t
+
+SLOTS = 4
+SLOT_BYTES = 8 << 20  # room for the largest frame; memory is used only where a frame was written
+_MARKS = struct.Struct("=qq")  # frame number before and after the pixels: different while a frame is being written
+_PAGE = mmap.PAGESIZE
+
+Frame = NDArray[np.uint8]
+
+
+class FrameError(Exception):
+    """A frame does not fit into its ring, or too many were written in one iteration."""
+
+
+class Ring:
+    """A few frames in anonymous shared memory; it vanishes with the last process that has it, whatever kills it."""
+
+    def __init__(self, descriptor: int) -> None:
+        self.descriptor = descriptor
+        self._memory = mmap.mmap(descriptor, SLOTS * (_PAGE + SLOT_BYTES))
+
+    @classmethod
+    def create(cls, name: str) -> "Ring":
+        """Makes a new ring; processes forked afterwards share it, others open `/proc/<pid>/fd/<descriptor>`."""
+        descriptor = os.memfd_create(name)
+        os.ftruncate(descriptor, SLOTS * (_PAGE + SLOT_BYTES))
+        return cls(descriptor)
+
+    def put(self, number: int, pixels: Frame) -> int:
+        """Writes frame `number` and returns its slot."""
+        slot = number % SLOTS
+        start = slot * (_PAGE + SLOT_BYTES)
+        _MARKS.pack_into(self._memory, start, number, -1)
+        target = np.frombuffer(self._memory, np.uint8, pixels.size, start + _PAGE)
+        np.copyto(target, pixels.reshape(-1))
+        _MARKS.pack_into(self._memory, start, number, number)
+        return slot
+
+    def get(self, number: int, size: int) -> Frame | None:
+        """A copy of frame `number`, or None if it has been overwritten: never a torn one."""
+        start = (number % SLOTS) * (_PAGE + SLOT_BYTES)
+        if not 0 < size <= SLOT_BYTES or _MARKS.unpack_from(self._memory, start) != (number, number):
+            return None
+        pixels = np.frombuffer(self._memory, np.uint8, size, start + _PAGE).copy()
+        return pixels if _MARKS.unpack_from(self._memory, start) == (number, number) else None
+
+
+class VisionMaster:
+    """The vision-master aspect: gives out the frames of one camera.
+
+    Frames are arrays of bytes, height x width x channels (3: bgr8) or height x width (gray8).
+    """
+
+    def __init__(self, announcement: Writes[frame_t], ring: Ring) -> None:
+        self.announcement = announcement
+        self._ring = ring
+        self._number = 0
+
+    def publish(self, pixels: Frame) -> None:
+        """Puts a frame into the ring and announces it at the end of the iteration.
+
+        Raises:
+            FrameError: it is larger than a slot, no uint8 array of two or three dimensions, or the ring would
+                overwrite a frame of the same iteration.
+        """
+        if pixels.dtype != np.uint8 or pixels.ndim not in (2, 3) or not 0 < pixels.size <= SLOT_BYTES:
+            raise FrameError(
+                f"{self.announcement.channel}: a frame is a uint8 array, height x width (x channels), of at most "
+                f"{SLOT_BYTES} bytes, not {pixels.dtype} {pixels.shape}"
+            )
+        if self.announcement.pending >= SLOTS - 1:
+            raise FrameError(f"{self.announcement.channel}: at most {SLOTS - 1} frames in one iteration")
+        frame = self.announcement.value
+        self._number += 1
+        frame.frame = self._number
+        frame.slot = self._ring.put(self._number, np.ascontiguousarray(pixels))
+        frame.height_px, frame.width_px = pixels.shape[:2]
+        frame.channels = pixels.shape[2] if pixels.ndim == 3 else 1
+        frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
+        self.announcement.write()
+
+
+class Image:
+    """The vision aspect: the newest frame of one camera as of the iteration's beginning."""
+
+    def __init__(self, announcement: Reads[frame_t], ring: Ring) -> None:
+        self.announcement = announcement
+        self.lost = 0  # frames that were overwritten before this component came to read them
+        self._ring = ring
+        self._number = -1
+        self._pixels: Frame | None = None
+
+    @property
+    def changed(self) -> bool:
+        """Whether a new frame came since the last iteration."""
+        return self.announcement.refreshed
+
+    @property
+    def header(self) -> Any:
+        """Tick, stage, sequence, writer and logical time of the frame."""
+        return self.announcement.header
+
+    @property
+    def pixels(self) -> Frame | None:
+        """The frame, height x width x channels, a copy; None before the first and if it was overwritten."""
+        frame = self.announcement.value
+        if frame.frame != self._number:
+            self._number = frame.frame
+            flat = (
+                self._ring.get(frame.frame, frame.height_px * frame.width_px * frame.channels) if frame.frame else None
+            )
+            shape = (frame.height_px, frame.width_px, frame.channels)
+            self._pixels = None if flat is None else flat.reshape(shape if frame.channels > 1 else shape[:2])
+            self.lost += flat is None and frame.frame > 0
+        return self._pixels

@@ -1,0 +1,57 @@
+"""The one module that asks for the time and waits: logical time for components, wall time for the framework."""
+
+import time
+
+US_PER_S = 1_000_000
+
+
+class Clock:
+    """Logical time of the iteration that runs; what every component uses instead of the wall clock.
+
+    `now_us` and `tick` stay the same during an iteration. In a recording's replay they are what they were.
+    """
+
+    def __init__(self, period_us: int = 50_000) -> None:
+        self.now_us = 0
+        self.tick = 0
+        self.stage = ""
+        self.period_us = period_us  # nominal time from tick to tick
+
+    @property
+    def now_s(self) -> float:
+        """Logical time in seconds."""
+        return self.now_us / US_PER_S
+
+    @property
+    def period_s(self) -> float:
+        """Nominal time from tick to tick in seconds."""
+        return self.period_us / US_PER_S
+
+    def since_s(self, time_us: int) -> float:
+        """Seconds of logical time since `time_us`."""
+        return (self.now_us - time_us) / US_PER_S
+
+
+class TimeSource:
+    """The time-source aspect: its owner says at which logical time the next tick happens. One a system.
+
+    A simulator sets `next_us` in every iteration; without that time goes on by the clock's period.
+    """
+
+    def __init__(self) -> None:
+        self.next_us = -1
+
+
+def monotonic_us() -> int:
+    """Wall time in µs that never goes back; for measuring and waiting, never for what a component outputs."""
+    return time.monotonic_ns() // 1000
+
+
+def wall_us() -> int:
+    """Wall time in µs since the epoch; for people who read logs."""
+    return time.time_ns() // 1000
+
+
+def sleep_s(duration_s: float) -> None:
+    """Waits; only tools and the framework's own processes may."""
+    time.sleep(max(0.0, duration_s))

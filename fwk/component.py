@@ -1,0 +1,165 @@
+"""The base class of components, and what a component's class says it wants."""
+
+import typing
+from dataclasses import dataclass, field
+from typing import Any, ClassVar, Literal, get_args, get_origin
+
+import numpy as np
+
+from fwk import messages
+from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, WritesEach
+from fwk.aspects.logging import Logger
+from fwk.aspects.vision import Image, VisionMaster
+from fwk.clock import Clock, TimeSource
+from fwk.config import Config
+from lcmtypes.robot import frame_t
+
+DEFAULT_STAGES = (
+    "pre_loop",
+    "sensor_acquire",
+    "sensor_prepare",
+    "sensor_process",
+    "worldstate",
+    "think",
+    "skill",
+    "act",
+    "act_exec",
+    "post_loop",
+)
+
+
+class Component:
+    """A unit of deployment. What it wants stands in annotated lines and is there before `init`.
+
+    | annotation | gives |
+    | --- | --- |
+    | `ball: Reads[ball_t]` | newest value and all since the last iteration of `<namespace>/ball` |
+    | `pose: Writes[pose_t]` | the one writer of `<namespace>/pose` |
+    | `ReadsEach[...]`, `WritesEach[...]` | many instances of an interface, by namespace |
+    | `image: Image`, `image: VisionMaster` | frames of a camera, to read or to give out |
+    | `config: MyConfig` | checked settings |
+    | `clock: Clock` | logical time |
+    | `log: Logger` | the system's log |
+    | `rng: np.random.Generator` | random numbers, seeded from the run's seed and the component's name |
+    | `time_source: TimeSource` | says when the next tick happens; one a system |
+    """
+
+    stage: ClassVar[str | tuple[str, ...]]
+    name: str
+    """Full name: `cyan1/omni_ball`."""
+
+    def init(self) -> None:
+        """Called once before the first iteration; an exception means that the component does not start."""
+
+    def loop(self) -> None:
+        """One iteration."""
+
+    def finalize(self) -> None:
+        """Called once after the last iteration."""
+
+
+class DeclarationError(Exception):
+    """A component's class wants something that does not exist; says class, attribute and what would be right."""
+
+
+PortKind = Literal["reads", "writes", "reads_each", "writes_each", "image", "vision_master"]
+_PORT_KINDS: dict[Any, PortKind] = {
+    Reads: "reads",
+    Writes: "writes",
+    ReadsEach: "reads_each",
+    WritesEach: "writes_each",
+}
+
+
+@dataclass(frozen=True)
+class Port:
+    """One channel wish: `attribute: Reads[message_type]`, and the channel the class names for it."""
+
+    attribute: str
+    kind: PortKind
+    message_type: type[messages.Message]
+    channel: str
+
+    @property
+    def writes(self) -> bool:
+        """Whether the component is the writer."""
+        return self.kind in ("writes", "writes_each", "vision_master")
+
+    @property
+    def each(self) -> bool:
+        """Whether it stands for many instances."""
+        return self.kind in ("reads_each", "writes_each")
+
+    @property
+    def images(self) -> bool:
+        """Whether frames lie in a shared-memory ring beside the channel."""
+        return self.kind in ("image", "vision_master")
+
+
+@dataclass(frozen=True)
+class Declaration:
+    """Everything a component's class says about itself."""
+
+    component: type[Component]
+    stages: tuple[str, ...]
+    ports: tuple[Port, ...]
+    config: type[Config] | None = None
+    aspects: dict[str, str] = field(default_factory=dict)
+    """Attribute to aspect name: clock, log, rng, time_source."""
+
+
+_ASPECTS: dict[Any, str] = {Clock: "clock", Logger: "log", np.random.Generator: "rng", TimeSource: "time_source"}
+
+
+def declaration(component: type[Component]) -> Declaration:
+    """Reads a component's class.
+
+    Raises:
+        DeclarationError: no stage, or an annotation that is no aspect.
+    """
+    where = f"{component.__module__}.{component.__qualname__}"
+    stages = getattr(component, "stage", None)
+    if not stages:
+        raise DeclarationError(f'{where}: no stage; say for example: stage = "think"')
+    try:
+        hints = typing.get_type_hints(component)
+    except (NameError, TypeError, AttributeError) as error:
+        raise DeclarationError(f"{where}: an annotation cannot be read: {error}") from error
+    ports, aspects, config = [], {}, None
+    for attribute, wish in hints.items():
+        if attribute in ("stage", "name") or attribute.startswith("_"):
+            continue
+        default = getattr(component, attribute, None)
+        if get_origin(wish) in _PORT_KINDS:
+            ports.append(_port(where, attribute, _PORT_KINDS[get_origin(wish)], get_args(wish)[0], default))
+        elif wish in (Image, VisionMaster):
+            kind: PortKind = "image" if wish is Image else "vision_master"
+            ports.append(_port(where, attribute, kind, frame_t, default))
+        elif wish in _ASPECTS:
+            aspects[attribute] = _ASPECTS[wish]
+        elif isinstance(wish, type) and issubclass(wish, Config):
+            if attribute != "config":
+                raise DeclarationError(f"{where}.{attribute}: settings are called 'config'")
+            config = wish
+        elif get_origin(wish) is not ClassVar and default is None:
+            raise DeclarationError(
+                f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
+                f"annotate with Reads, Writes, ReadsEach, WritesEach, Image, VisionMaster, a Config, Clock, Logger, "
+                "numpy.random.Generator or TimeSource, "
+                "and set plain attributes in init()"
+            )
+    return Declaration(
+        component, (stages,) if isinstance(stages, str) else tuple(stages), tuple(ports), config, aspects
+    )
+
+
+def _port(where: str, attribute: str, kind: PortKind, message_type: Any, default: Any) -> Port:
+    if not hasattr(message_type, "_get_packed_fingerprint"):
+        raise DeclarationError(f"{where}.{attribute}: {message_type!r} is no LCM type; import it from lcmtypes")
+    if not messages.has_header(message_type):
+        name = messages.type_name(message_type)
+        raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
+    channel = default.name if isinstance(default, ChannelDefault) else attribute
+    if kind in ("reads_each", "writes_each") and "*" not in channel:
+        channel = f"*/{channel}"
+    return Port(attribute, kind, message_type, channel)

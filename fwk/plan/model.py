@@ -1,0 +1,117 @@
+"""What a plan says: components, channels, hosts, stages, time; plain data that can be written down and read back."""
+
+import dataclasses
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+RestartWhen = Literal["never", "on-failure", "always"]
+
+
+@dataclass(frozen=True)
+class RestartPolicy:
+    """When a component that ended is started again: `limit` times within `window_s` at most, waiting longer each time."""
+
+    when: RestartWhen = "on-failure"
+    backoff_s: float = 0.1
+    limit: int = 5
+    window_s: float = 60.0
+
+
+@dataclass(frozen=True)
+class ComponentPlan:
+    """One component of the plan."""
+
+    index: int
+    name: str
+    module: str
+    class_name: str
+    stages: tuple[int, ...]
+    config: dict[str, Any]
+    """Effective settings, every one."""
+    origins: dict[str, str]
+    """Setting, dotted, to where its value comes from: `launch/soccer.yaml:41`, `default`, `--set`."""
+    channels: dict[str, tuple[str, ...]]
+    """Port attribute to channel names."""
+    host: int
+    restart: RestartPolicy = RestartPolicy()
+    ready_timeout_s: float = 20.0
+
+    @property
+    def namespace(self) -> str:
+        """Everything before the last slash of the name."""
+        return self.name.rpartition("/")[0]
+
+
+@dataclass(frozen=True)
+class ChannelPlan:
+    """One channel: an instance of an interface."""
+
+    index: int
+    name: str
+    type_name: str
+    writer: int
+    """Index of the component that writes it."""
+    readers: tuple[int, ...]
+    images: bool = False
+    """Whether frames lie in a shared-memory ring beside it."""
+
+
+@dataclass(frozen=True)
+class HostPlan:
+    """One process and the components in it."""
+
+    index: int
+    name: str
+    components: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Plan:
+    """Everything that processes of a run have to know."""
+
+    name: str
+    file: str
+    folders: tuple[str, ...]
+    """Where the components' modules and .lcm files are found, besides the installed ones."""
+    stages: tuple[str, ...]
+    period_us: int
+    clock: Literal["simulated", "wall"]
+    seed: int
+    components: tuple[ComponentPlan, ...]
+    channels: tuple[ChannelPlan, ...]
+    hosts: tuple[HostPlan, ...]
+    speed: float = 1.0
+    """Logical seconds per wall second; 0: as fast as it goes."""
+    stage_time_us: int = 0
+    """Real time only: how long a stage may take; 0: the period."""
+    bus_port: int = 17700
+    public_url: str = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
+    outside: dict[str, str] = field(default_factory=dict)
+    """Channels that may be written on the public bus: name to type."""
+    scoreboard: str = ""
+    """`module:function` that makes the display's headline of the newest messages."""
+    video: str = ""
+    """`module:function` that draws the top view of a recording."""
+
+    def to_json(self) -> dict[str, Any]:
+        """Plain data for JSON."""
+        return dataclasses.asdict(self)
+
+    @classmethod
+    def from_json(cls, data: dict[str, Any]) -> "Plan":
+        """Reads back what `to_json` gave."""
+        components = tuple(
+            ComponentPlan(
+                **{
+                    **item,
+                    "stages": tuple(item["stages"]),
+                    "channels": {port: tuple(names) for port, names in item["channels"].items()},
+                    "restart": RestartPolicy(**item["restart"]),
+                }
+            )
+            for item in data["components"]
+        )
+        channels = tuple(ChannelPlan(**{**item, "readers": tuple(item["readers"])}) for item in data["channels"])
+        hosts = tuple(HostPlan(**{**item, "components": tuple(item["components"])}) for item in data["hosts"])
+        simple = {"folders": tuple(data["folders"]), "stages": tuple(data["stages"])}
+        return cls(**{**data, **simple, "components": components, "channels": channels, "hosts": hosts})

@@ -1,0 +1,109 @@
+"""One component with its aspects, taken through its iterations: the same for host process, test bench and replay."""
+
+import hashlib
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
+from fwk.aspects.logging import Logger
+from fwk.aspects.vision import Image, Ring, VisionMaster
+from fwk.clock import Clock, TimeSource
+from fwk.component import Component, Declaration, Port
+from fwk.config import Config
+from lcmtypes.core import log_t
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a component gets from the run it is part of."""
+
+    seed: int
+    period_us: int
+    sink: Callable[[log_t], None]
+    rings: Mapping[str, Ring]
+    """Shared-memory rings by channel."""
+
+
+class Runner:
+    """Builds a component and runs it, iteration by iteration.
+
+    `channels` says which channels each port stands for: attribute to channel names.
+    """
+
+    def __init__(
+        self,
+        declaration: Declaration,
+        name: str,
+        config: Config | None,
+        channels: Mapping[str, Sequence[str]],
+        surroundings: Surroundings,
+        incarnation: int = 1,
+    ) -> None:
+        self.name = name
+        self.readers: dict[str, Reads[Any]] = {}
+        self.writers: dict[str, Writes[Any]] = {}
+        self.clock = Clock(surroundings.period_us)
+        self.time_source = TimeSource()
+        self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
+        self.log = Logger(name, self.clock, surroundings.sink)
+        self.component: Component = declaration.component()
+        self._rings = surroundings.rings
+        self.component.name = name
+        for attribute, aspect in declaration.aspects.items():
+            setattr(self.component, attribute, self._aspect(aspect, surroundings.seed))
+        if declaration.config:
+            setattr(self.component, "config", config or declaration.config())  # noqa: B010 - not every component declares one
+        for port in declaration.ports:
+            setattr(self.component, port.attribute, self._port(port, channels[port.attribute]))
+
+    def iterate(
+        self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
+    ) -> list[tuple[str, bytes]]:
+        """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
+
+        `fresh` holds for each channel what became visible since the last iteration. Whatever the component raises comes
+        out, and then nothing was written.
+        """
+        clock, stamp = self.clock, self.stamp
+        clock.tick = stamp.tick = tick
+        clock.now_us = stamp.time_us = time_us
+        clock.stage, stamp.stage = stage_name, stage
+        for channel, reader in self.readers.items():
+            reader.freeze(fresh.get(channel, []))
+        self.time_source.next_us = -1
+        try:
+            self.component.loop()
+        except BaseException:
+            for writer in self.writers.values():
+                writer.drop()
+            raise
+        return [(channel, data) for channel, writer in self.writers.items() for data in writer.take()]
+
+    def _aspect(self, aspect: str, seed: int) -> Any:
+        if aspect == "rng":
+            return np.random.default_rng(seed_of(seed, self.name))
+        return {"clock": self.clock, "log": self.log, "time_source": self.time_source}[aspect]
+
+    def _port(self, port: Port, channels: Sequence[str]) -> Any:
+        if port.writes:
+            made: dict[str, Writes[Any]] = {name: Writes(name, port.message_type, self.stamp) for name in channels}
+            self.writers.update(made)
+            if port.kind == "vision_master":
+                return VisionMaster(made[channels[0]], self._rings[channels[0]])
+            return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
+        read = {channel: self.readers.setdefault(channel, Reads(channel, port.message_type)) for channel in channels}
+        if port.kind == "image":
+            return Image(read[channels[0]], self._rings[channels[0]])
+        return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+
+
+def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:
+    return {channel.rpartition("/")[0]: port for channel, port in channels.items()}
+
+
+def seed_of(seed: int, name: str) -> int:
+    """The seed of a component's random numbers: the same wherever and beside whatever it runs."""
+    return int.from_bytes(hashlib.sha256(f"{seed}/{name}".encode()).digest()[:8], "big")

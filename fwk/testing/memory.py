@@ -1,0 +1,88 @@
+"""A whole system in one process and one thread: the iteration contract without buses, for tests of many components."""
+
+from collections.abc import Mapping
+from typing import Any
+
+from fwk import messages
+from fwk.aspects.vision import Ring
+from fwk.clock import US_PER_S
+from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.plan.wiring import Wish, wire
+from fwk.runner import Runner, Surroundings
+from lcmtypes.core import log_t
+
+
+class MemorySystem:
+    """Components in lockstep: `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`.
+
+    Gives the same messages as the same components in processes of their own.
+    """
+
+    def __init__(
+        self,
+        components: Mapping[str, type[Component]],
+        settings: Mapping[str, Mapping[str, Any]] | None = None,
+        channels: Mapping[str, Mapping[str, str]] | None = None,
+        seed: int = 1,
+        period_s: float = 0.05,
+        stages: tuple[str, ...] = DEFAULT_STAGES,
+    ) -> None:
+        mistakes: list[str] = []
+        wishes = [
+            Wish(name, declaration(component), (channels or {}).get(name, {})) for name, component in components.items()
+        ]
+        wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"))
+        if mistakes:
+            raise ValueError("\n".join(mistakes))
+        self.now_us = 0
+        self.ticks = 0
+        self.logged: list[log_t] = []
+        self.sent: dict[str, list[bytes]] = {channel.name: [] for channel in wiring.channels}
+        """Every message so far, by channel."""
+        self._types = {channel.name: messages.type_named(channel.type_name) for channel in wiring.channels}
+        self._period_us = round(period_s * US_PER_S)
+        self._stages = stages
+        self._time_source: Runner | None = None
+        rings = {channel.name: Ring.create(channel.name) for channel in wiring.channels if channel.images}
+        surroundings = Surroundings(seed, self._period_us, self.logged.append, rings)
+        self.runners: dict[str, Runner] = {}
+        self._seen: dict[str, dict[str, int]] = {}
+        self._by_stage: dict[str, list[Runner]] = {stage: [] for stage in stages}
+        for wish, ports in zip(wishes, wiring.ports, strict=True):
+            config_type = wish.declaration.config
+            config = config_type(**(settings or {}).get(wish.name, {})) if config_type else None
+            runner = Runner(wish.declaration, wish.name, config, ports, surroundings)
+            self.runners[wish.name] = runner
+            self._seen[wish.name] = dict.fromkeys(runner.readers, 0)
+            for stage in wish.declaration.stages:
+                self._by_stage[stage].append(runner)
+            if "time_source" in wish.declaration.aspects.values():
+                self._time_source = runner
+        for runner in self.runners.values():
+            runner.component.init()
+
+    def tick(self, times: int = 1) -> None:
+        """Runs the main loop."""
+        for _ in range(times):
+            self.ticks += 1
+            if self._time_source and self._time_source.time_source.next_us >= 0:
+                self.now_us = self._time_source.time_source.next_us
+            else:
+                self.now_us += self._period_us
+            for number, stage in enumerate(self._stages):
+                visible = {channel: len(sent) for channel, sent in self.sent.items()}
+                for runner in self._by_stage[stage]:
+                    self._iterate(runner, number, stage, visible)
+
+    def newest(self, channel: str) -> Any:
+        """The newest message of a channel, decoded; the type's zero before the first."""
+        sent = self.sent[channel]
+        return messages.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
+
+    def _iterate(self, runner: Runner, number: int, stage: str, visible: Mapping[str, int]) -> None:
+        seen = self._seen[runner.name]
+        fresh = {channel: self.sent[channel][seen[channel] : visible[channel]] for channel in seen}
+        for channel in seen:
+            seen[channel] = visible[channel]
+        for channel, data in runner.iterate(self.ticks, number, stage, self.now_us, fresh):
+            self.sent[channel].append(data)
