@@ -1,0 +1,162 @@
+"""The field of the middle size league: its measures, lines, marks and goals.
+
+World frame: origin in the centre, x towards the goal that magenta defends, y to the left of x, metres. A `side` is -1.0
+for the half and goal of cyan and +1.0 for those of magenta. The letters are those of the rule book's field drawing;
+field and areas are measured to the outer edges of their lines.
+"""
+
+import math
+from typing import NamedTuple
+
+from pydantic import BaseModel, ConfigDict
+
+SIDES = (-1.0, 1.0)
+
+
+class Point(NamedTuple):
+    """A point on the ground in metres."""
+
+    x_m: float
+    y_m: float
+
+
+class Segment(NamedTuple):
+    """The middle of a straight line from one end to the other; its paint reaches half a line width further."""
+
+    start: Point
+    end: Point
+
+
+class Arc(NamedTuple):
+    """The middle of a line that is part of a circle, counter-clockwise from the start angle to the end angle."""
+
+    centre: Point
+    radius_m: float
+    start_rad: float
+    end_rad: float
+
+
+class Field(BaseModel):
+    """Measures of the field, and the geometry that follows from them; all in metres."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    length_m: float = 22.0
+    """A: along x, over the outer edges of the goal lines."""
+    width_m: float = 14.0
+    """B: along y, over the outer edges of the touch lines."""
+    penalty_area_width_m: float = 6.9
+    """C: along y."""
+    penalty_area_depth_m: float = 2.25
+    """E: from the goal line into the field."""
+    goal_area_width_m: float = 3.9
+    """D: along y."""
+    goal_area_depth_m: float = 0.75
+    """F: from the goal line into the field."""
+    corner_radius_m: float = 0.75
+    """G: of the arcs in the corners."""
+    circle_diameter_m: float = 4.0
+    """H: of the centre circle."""
+    penalty_mark_distance_m: float = 3.6
+    """I: from the goal line to the penalty mark."""
+    mark_diameter_m: float = 0.15
+    """J: of the centre mark, the penalty marks and the restart marks."""
+    line_width_m: float = 0.125
+    """K: of every line."""
+    border_m: float = 1.0
+    """L: from the field to the low wall around it."""
+    team_area_width_m: float = 1.0
+    """M: of the technical team areas beside the border."""
+    team_area_length_m: float = 7.5
+    """N: of the technical team areas."""
+    ramp_length_m: float = 1.0
+    """O: of the ramps into the team areas."""
+    ramp_width_m: float = 0.5
+    """P: of the ramps into the team areas."""
+    restart_offset_m: float = 3.5
+    """Q: from the middle of the field to the restart marks beside it."""
+    goal_width_m: float = 2.4
+    """Between the posts."""
+    goal_depth_m: float = 0.6
+    """From the outer edge of the goal line to the net."""
+    goal_height_m: float = 1.0
+    """Under the bar."""
+    post_diameter_m: float = 0.125
+    """Of the goal posts."""
+
+    @property
+    def half_length_m(self) -> float:
+        """From the centre to the outer edge of a goal line."""
+        return self.length_m / 2
+
+    @property
+    def half_width_m(self) -> float:
+        """From the centre to the outer edge of a touch line."""
+        return self.width_m / 2
+
+    def segments(self) -> list[Segment]:
+        """The middles of all straight lines."""
+        inset_m = self.line_width_m / 2
+        x_m, y_m = self.half_length_m - inset_m, self.half_width_m - inset_m
+        lines = [Segment(Point(0.0, -y_m), Point(0.0, y_m))]
+        lines += [Segment(Point(-x_m, side * y_m), Point(x_m, side * y_m)) for side in SIDES]
+        for side in SIDES:
+            lines.append(Segment(Point(side * x_m, -y_m), Point(side * x_m, y_m)))
+            for width_m, depth_m in (
+                (self.penalty_area_width_m, self.penalty_area_depth_m),
+                (self.goal_area_width_m, self.goal_area_depth_m),
+            ):
+                front_m, flank_m = side * (self.half_length_m - depth_m + inset_m), width_m / 2 - inset_m
+                lines.append(Segment(Point(front_m, -flank_m), Point(front_m, flank_m)))
+                lines += [Segment(Point(side * x_m, end * flank_m), Point(front_m, end * flank_m)) for end in SIDES]
+        return lines
+
+    def arcs(self) -> list[Arc]:
+        """The middles of all round lines: the centre circle, then the quarter circles in the corners."""
+        inset_m, quarter = self.line_width_m / 2, math.pi / 2
+        arcs = [Arc(Point(0.0, 0.0), self.circle_diameter_m / 2 - inset_m, 0.0, 2 * math.pi)]
+        for turns, (x, y) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
+            corner = Point(x * self.half_length_m, y * self.half_width_m)
+            arcs.append(Arc(corner, self.corner_radius_m - inset_m, turns * quarter, (turns + 1) * quarter))
+        return arcs
+
+    def marks(self) -> list[Point]:
+        """The middles of the painted spots: centre, penalty marks, restart marks."""
+        rows_m = [side * (self.half_length_m - self.penalty_mark_distance_m) for side in SIDES]
+        offsets_m = (-self.restart_offset_m, 0.0, self.restart_offset_m)
+        return [Point(x_m, y_m) for x_m in (0.0, *rows_m) for y_m in offsets_m]
+
+    def penalty_mark(self, side: float) -> Point:
+        """Where penalties against that side are shot from."""
+        return Point(side * (self.half_length_m - self.penalty_mark_distance_m), 0.0)
+
+    def goal_centre(self, side: float) -> Point:
+        """The middle of the goal mouth, on the outer edge of the goal line."""
+        return Point(side * self.half_length_m, 0.0)
+
+    def goal_posts(self, side: float) -> tuple[Point, Point]:
+        """The middles of the two posts, which stand on the goal line; the one with negative y first."""
+        x_m = side * (self.half_length_m - self.line_width_m / 2)
+        y_m = (self.goal_width_m + self.post_diameter_m) / 2
+        return Point(x_m, -y_m), Point(x_m, y_m)
+
+    def in_field(self, x_m: float, y_m: float, margin_m: float = 0.0) -> bool:
+        """Whether a point is on the field, lines included; a positive margin makes the field larger."""
+        return abs(x_m) <= self.half_length_m + margin_m and abs(y_m) <= self.half_width_m + margin_m
+
+    def in_penalty_area(self, x_m: float, y_m: float, side: float, margin_m: float = 0.0) -> bool:
+        """Whether a point is in that side's penalty area, lines included; a positive margin makes it larger."""
+        return self._in_area(x_m, y_m, side, self.penalty_area_width_m, self.penalty_area_depth_m, margin_m)
+
+    def in_goal_area(self, x_m: float, y_m: float, side: float, margin_m: float = 0.0) -> bool:
+        """Whether a point is in that side's goal area, lines included; a positive margin makes it larger."""
+        return self._in_area(x_m, y_m, side, self.goal_area_width_m, self.goal_area_depth_m, margin_m)
+
+    def in_goal(self, x_m: float, y_m: float, side: float, ball_radius_m: float = 0.0) -> bool:
+        """Whether a ball of that radius (0: a point) is wholly behind that side's goal line and in the goal."""
+        behind_m = side * x_m - self.half_length_m
+        return ball_radius_m < behind_m <= self.goal_depth_m and abs(y_m) < self.goal_width_m / 2
+
+    def _in_area(self, x_m: float, y_m: float, side: float, width_m: float, depth_m: float, margin_m: float) -> bool:
+        from_goal_line_m = self.half_length_m - side * x_m
+        return -margin_m <= from_goal_line_m <= depth_m + margin_m and abs(y_m) <= width_m / 2 + margin_m
