@@ -1,0 +1,1 @@
+"""Recordings: LCM logs written, read, compared, described and drawn."""
