@@ -1,0 +1,44 @@
+# Everything from a fresh clone with Python 3.11 and make: `make soccer`, `make test`.
+
+PYTHON ?= $(shell for each in python3 python3.11 python3.12 python3.13; do \
+	$$each -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$each && break; done)
+BIN := .venv/bin
+READY := .venv/.ready
+
+.DEFAULT_GOAL := help
+.PHONY: help soccer test test-fast lint types docs clean
+
+help:  ## Lists what can be made
+	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
+
+# The stamp is newer than pyproject.toml, so a changed dependency is installed by the next make.
+$(READY): pyproject.toml fwk/packaging/build_backend.py
+	@test -n "$(PYTHON)" || { echo "fwk needs Python 3.11 or newer; install it or say: make PYTHON=/path/to/python3"; exit 2; }
+	test -x $(BIN)/python || $(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	@touch $@
+
+types: $(READY)  ## Generates Python classes from lcmtypes/*.lcm
+	@$(BIN)/python -P fwk/typegen.py lcmtypes
+
+soccer: types  ## Plays five against five; Ctrl-C ends the match
+	@$(BIN)/fwk-launch soccer.yaml
+
+lint: types  ## Format, lint, types
+	$(BIN)/ruff format --check .
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+test: lint  ## Everything that has to hold before a commit
+	$(BIN)/pytest
+
+test-fast: types  ## The tests without the slow ones
+	$(BIN)/pytest -m 'not slow'
+
+docs: types  ## Writes docs/commands.md from the commands themselves
+	$(BIN)/python -m fwk.cli.reference > docs/commands.md
+
+clean:  ## Removes what was made, the environment too
+	rm -rf .venv build/lib build/bdist.* dist fwk.egg-info lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
+
+-include tools/bench/bench.mk
