@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import NamedTuple, Self
 
 _HEAD = struct.Struct(">IqqII")  # sync word, event number, time in µs, length of the channel, length of the data
-_SYNC = (0xEDA1DA01).to_bytes(4, "big")
+SYNC = (0xEDA1DA01).to_bytes(4, "big")
 _CHANNEL_MAX = 999  # what LCM's own reader accepts; on the wire it is 63
 _DATA_MAX = 256 << 20  # LCM's largest message
 _WINDOW_BYTES = 1 << 20
@@ -155,14 +155,14 @@ class LogReader:
 
     def _event(self, window: "_Window", position: int) -> tuple[Event, int] | None:
         head = window.read(position, _HEAD.size)
-        if len(head) < _HEAD.size or not head.startswith(_SYNC):
+        if len(head) < _HEAD.size or not head.startswith(SYNC):
             return None
         _, number, time_us, channel_bytes, data_bytes = _HEAD.unpack(head)
         body = position + _HEAD.size
         end = body + channel_bytes + data_bytes
         if not 1 <= channel_bytes <= _CHANNEL_MAX or data_bytes > _DATA_MAX or end > window.file_bytes:
             return None
-        if not _SYNC.startswith(window.peek(end)):
+        if not SYNC.startswith(window.peek(end)):
             return None
         content = window.read(body, channel_bytes + data_bytes)
         if len(content) < channel_bytes + data_bytes:  # the file shrank while it was read
@@ -199,7 +199,7 @@ class _Window:
         while offset < self.file_bytes:
             if len(self.read(offset, 4)) < 4:
                 break
-            found = self._bytes.find(_SYNC, offset - self._start)
+            found = self._bytes.find(SYNC, offset - self._start)
             if found >= 0:
                 return self._start + found
             offset = self._start + len(self._bytes) - 3
