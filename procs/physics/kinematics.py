@@ -1,0 +1,40 @@
+"""Kinematics of a base with three omnidirectional wheels at 60, 180 and 300 degrees from forward.
+
+Robot frame: x forward, y left, angles counter-clockwise. A positive rim speed turns the robot counter-clockwise.
+"""
+
+import math
+from typing import NamedTuple
+
+SIN_60 = math.sqrt(3) / 2
+
+Wheels = tuple[float, float, float]
+"""One value for each wheel, in the order of the angles."""
+
+
+class Velocity(NamedTuple):
+    """Velocity of a body in its own frame."""
+
+    vx_m_s: float
+    vy_m_s: float
+    omega_rad_s: float
+
+
+STANDSTILL = Velocity(0.0, 0.0, 0.0)
+
+
+def wheels_of(velocity: Velocity, wheel_distance_m: float) -> Wheels:
+    """Rim speeds in m/s at which no wheel slips; `wheel_distance_m` is from the robot's middle to a wheel."""
+    vx, vy, omega = velocity
+    turn = wheel_distance_m * omega
+    return -SIN_60 * vx + 0.5 * vy + turn, -vy + turn, SIN_60 * vx + 0.5 * vy + turn
+
+
+def velocity_of(wheels: Wheels, wheel_distance_m: float) -> Velocity:
+    """The body's velocity when no wheel slips: the inverse of `wheels_of`."""
+    first, second, third = wheels
+    return Velocity(
+        (third - first) * SIN_60 / 1.5,
+        (0.5 * (first + third) - second) / 1.5,
+        (first + second + third) / (3 * wheel_distance_m),
+    )

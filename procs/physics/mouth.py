@@ -1,0 +1,53 @@
+"""What happens at a robot's mouth: ball handling, the light barrier and the kick."""
+
+import math
+
+import pymunk
+
+from procs.physics.ball import Ball
+from procs.physics.robot import Robot
+from procs.physics.settings import HandlingSettings
+
+_GAP_M = 0.002  # kept between mouth and handled ball, so that handling does not fight the contact
+
+
+class Mouth:
+    """The front of one robot, as far as it concerns the ball."""
+
+    def __init__(self, robot: Robot, ball: Ball, handling: HandlingSettings) -> None:
+        self._robot = robot
+        self._ball = ball
+        self._handling = handling
+
+    @property
+    def holds_ball(self) -> bool:
+        """Whether the ball lies in the mouth: what the light barrier sees."""
+        x_m, y_m = self._ball_at()
+        gap_m = x_m - self._robot.mouth_x_m - self._ball.radius_m
+        return gap_m <= self._handling.reach_m and abs(y_m) <= self._handling.half_width_m and x_m > 0
+
+    def handle(self, duration_s: float) -> None:
+        """Draws the ball to the middle of the mouth with limited force, for one step; the robot feels it too."""
+        robot, ball, handling = self._robot.body, self._ball.body, self._handling
+        x_m, y_m = self._ball_at()
+        wanted_x_m = self._robot.mouth_x_m + self._ball.radius_m + _GAP_M
+        approach = pymunk.Vec2d(wanted_x_m - x_m, -y_m) / handling.centring_s
+        mouth_velocity = robot.velocity_at_local_point((x_m, y_m))
+        change = mouth_velocity + approach.rotated(robot.angle) - ball.velocity
+        limit_m_s = handling.pull_m_s2 * duration_s
+        if change.length > limit_m_s:
+            change = change.scale_to_length(limit_m_s)
+        ball.velocity += change
+        robot.apply_impulse_at_world_point(-self._ball.mass_kg * change, ball.position)
+        self._ball.carried = True
+
+    def kick(self, speed_m_s: float, direction_error_rad: float) -> None:
+        """Drives the ball out: `speed_m_s` is along the mouth's direction and relative to the robot."""
+        robot, ball = self._robot.body, self._ball.body
+        direction_rad = robot.angle + direction_error_rad
+        away = speed_m_s * pymunk.Vec2d(math.cos(direction_rad), math.sin(direction_rad))
+        ball.velocity = robot.velocity_at_world_point(ball.position) + away
+        robot.apply_impulse_at_world_point(-self._ball.mass_kg * away, ball.position)
+
+    def _ball_at(self) -> pymunk.Vec2d:
+        return self._robot.body.world_to_local(self._ball.body.position)
