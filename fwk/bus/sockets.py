@@ -1,0 +1,52 @@
+"""Sockets of the inner buses: multicast on the loopback interface, never further."""
+
+import itertools
+import socket
+
+from fwk.bus import wire
+
+GROUP = "239.255.76.67"  # LCM's default group
+LOOPBACK = "127.0.0.1"
+BUFFER_BYTES = 4 << 20
+
+
+def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.socket:
+    """A non-blocking socket that hears the group on `port`, as do any others on this machine."""
+    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
+    made.bind((GROUP, port))
+    membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
+    made.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+    made.setblocking(False)
+    return made
+
+
+class Sender:
+    """Sends LCM messages from a port of its own, by which receivers know who it is; hears what is sent to that port."""
+
+    def __init__(self, port: int) -> None:
+        self.port = port
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
+        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+        self.socket.bind((LOOPBACK, port))
+        self.socket.setblocking(False)
+        self._number = itertools.count()
+        self.refused = 0  # datagrams that the system would not take; receivers fetch them again
+
+    def publish(self, channel: bytes, data: bytes, port: int) -> None:
+        """Sends a message to everybody on `port` of the group."""
+        self._send(channel, data, (GROUP, port))
+
+    def send(self, channel: bytes, data: bytes, port: int) -> None:
+        """Sends a message to the one process that has `port`."""
+        self._send(channel, data, (LOOPBACK, port))
+
+    def _send(self, channel: bytes, data: bytes, address: tuple[str, int]) -> None:
+        for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
+            try:
+                self.socket.sendto(datagram, address)
+            except OSError:  # a full buffer, a firewall's drop, nobody there: the same as a datagram lost on its way
+                self.refused += 1
