@@ -27,8 +27,8 @@ def use_types_of(folder: Path) -> None:
 
 
 def source_folders() -> list[Path]:
-    """The folders of all .lcm files in use."""
-    return [Path(folder) for folder in lcmtypes.__path__]
+    """The folders of all .lcm files in use, each once."""
+    return list(dict.fromkeys(Path(folder).resolve() for folder in lcmtypes.__path__))
 
 
 @cache

@@ -1,0 +1,32 @@
+"""`fwk spy`: lcm-spy that knows our types."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.plan.model import Plan
+from fwk.record.spy import SpyError, build_jar, cache_folder, class_path, start
+from fwk.record.types import source_folders, use_types_of
+from fwk.typegen import TypeGenerationError
+
+
+def spy(
+    jar: Annotated[bool, typer.Option("--jar", help="only build the jar and print the class path")] = False,
+    url: Annotated[str, typer.Option(help="bus to listen on")] = Plan.public_url,
+    types: Annotated[Path, typer.Option(help="folder whose lcmtypes/ are added to the framework's")] = Path(),
+) -> None:
+    """Starts lcm-spy with our types on its class path, so that it shows decoded messages.
+
+    For other Java programs: java -cp "$(fwk spy --jar)" MyProgram
+    """
+    try:
+        use_types_of(types)
+        built = build_jar(source_folders(), cache_folder())
+        if jar:
+            typer.echo(class_path(built))
+        else:
+            start(built, url)
+    except (SpyError, TypeGenerationError) as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(1) from error

@@ -1,0 +1,41 @@
+"""What all tests share: a test that needs a program which is not here is left out by name, and the end says so."""
+
+import shutil
+from collections.abc import Callable
+
+import pytest
+
+_LEFT_OUT = pytest.StashKey[dict[str, list[str]]]()
+
+_PACKAGES = {
+    "Xvfb": "xvfb",
+    "cc": "gcc",
+    "import": "imagemagick",
+    "jar": "default-jdk-headless",
+    "java": "default-jre",
+    "javac": "default-jdk-headless",
+}
+"""Program to Debian package, where the names differ."""
+
+
+@pytest.fixture
+def needs(request: pytest.FixtureRequest) -> Callable[..., None]:
+    """`needs("Xvfb", "java")` skips the test if one of these programs is not on the path."""
+
+    def check(*programs: str) -> None:
+        missing = [program for program in programs if not shutil.which(program)]
+        if missing:
+            packages = " ".join(dict.fromkeys(_PACKAGES.get(program, program) for program in missing))
+            reason = f"needs {', '.join(missing)}: apt install {packages}"
+            request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
+            pytest.skip(reason)
+
+    return check
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Lists what was left out and why, so that a green run does not hide it."""
+    for reason, tests in sorted(config.stash.get(_LEFT_OUT, {}).items()):
+        terminalreporter.section(f"left out, {reason}")
+        for test in tests:
+            terminalreporter.write_line(test)
