@@ -18,10 +18,14 @@ class Mouth:
         self._robot = robot
         self._ball = ball
         self._handling = handling
+        self._far_m = robot.radius_m + ball.radius_m + handling.reach_m
 
     @property
     def holds_ball(self) -> bool:
         """Whether the ball lies in the mouth: what the light barrier sees."""
+        away = self._ball.body.position - self._robot.body.position
+        if away.dot(away) > self._far_m**2:
+            return False
         x_m, y_m = self._ball_at()
         gap_m = x_m - self._robot.mouth_x_m - self._ball.radius_m
         return gap_m <= self._handling.reach_m and abs(y_m) <= self._handling.half_width_m and x_m > 0

@@ -50,8 +50,12 @@ class Robot:
     def move(self, now_us: int, duration_s: float) -> None:
         """Turns the motors and lets the wheels push during the coming step of the physics engine."""
         self.drive.turn_motors(now_us, duration_s)
-        force_x, force_y, torque = self.drive.push(self.velocity)
-        self.body.force = pymunk.Vec2d(force_x, force_y).rotated(self.body.angle)
+        cos, sin = math.cos(self.body.angle), math.sin(self.body.angle)
+        vx, vy = self.body.velocity
+        force_x, force_y, torque = self.drive.push(
+            Velocity(cos * vx + sin * vy, cos * vy - sin * vx, self.body.angular_velocity)
+        )
+        self.body.force = (cos * force_x - sin * force_y, sin * force_x + cos * force_y)
         self.body.torque = torque
 
 

@@ -63,7 +63,10 @@ class World:
         return self._judge.ball_in_field
 
     def place_ball(self, x_m: float, y_m: float) -> None:
-        """The field crew puts the ball down at rest, beside a robot that stands in the way."""
+        """The field crew puts the ball down at rest: inside the border, beside a robot that stands in the way."""
+        x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
+        y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
+        x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
         middles = [Point(*robot.body.position) for robot in self.robots.values()]
         clearance_m = self._physics.robot.radius_m + self.ball.radius_m + _FREE_M
         place = free_place(Point(x_m, y_m), middles, clearance_m)
