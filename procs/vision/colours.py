@@ -1,0 +1,39 @@
+"""Colours of the robot soccer world: as they are painted, and as ranges by which they are told apart."""
+
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+Picture = NDArray[np.uint8]
+"""Height x width x 3, blue green red."""
+Mask = NDArray[np.bool_]
+
+Bgr = tuple[int, int, int]
+GREEN: Bgr = (58, 132, 52)
+WHITE: Bgr = (222, 228, 224)
+BLACK: Bgr = (30, 28, 28)
+ORANGE: Bgr = (22, 108, 236)
+CYAN: Bgr = (214, 196, 40)
+MAGENTA: Bgr = (186, 48, 198)
+FLOOR: Bgr = (124, 120, 112)
+
+Hsv = tuple[int, int, int]
+"""Hue 0..179 (half degrees), saturation and value 0..255, as OpenCV has them."""
+
+
+class ColourRange(NamedTuple):
+    """A box in hue, saturation and value, both corners included."""
+
+    low: Hsv
+    high: Hsv
+
+    def mask(self, hsv: Picture) -> Mask:
+        """Which pixels of a picture in HSV, height x width x 3, are of that colour."""
+        return cv2.inRange(hsv, np.array(self.low), np.array(self.high)).view(np.bool_)
+
+
+def to_hsv(pixels: Picture) -> Picture:
+    """The picture as hue, saturation and value."""
+    return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2HSV), np.uint8)

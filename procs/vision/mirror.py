@@ -1,0 +1,93 @@
+"""The omnidirectional mirror: which pixel sees which direction, and where that meets the ground.
+
+The camera looks up into a parabolic mirror. Such a mirror has one effective viewpoint and maps directions to pixels by
+stereographic projection (Nayar, "Catadioptric Omnidirectional Camera", CVPR 1997): a direction `angle` away from
+straight down appears `scale * tan(angle / 2)` pixels from the centre. The mapping turns circles of directions into
+circles, so a ball's outline is a circle in the picture, wherever it is.
+
+Robot frame: x forward, y left, z up, metres, origin on the ground under the viewpoint. Pixels: (column, row), a whole
+number is the middle of a pixel; forward is up in the picture, left is left.
+"""
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Mirror:
+    """Calibration of one camera with its mirror."""
+
+    size_px: int = 400
+    """Height and width of the picture."""
+    height_m: float = 0.75
+    """Viewpoint above the ground."""
+    view_angle_rad: float = math.radians(92.0)
+    """Angle from straight down that the picture's edge sees; beyond 90 degrees is above the horizon."""
+    roll_rad: float = 0.0
+    """Tilt about the robot's x axis."""
+    pitch_rad: float = 0.0
+    """Tilt about the robot's y axis."""
+
+    @property
+    def centre_px(self) -> float:
+        """Column and row of the picture's centre."""
+        return (self.size_px - 1) / 2
+
+    @property
+    def scale_px(self) -> float:
+        """Distance from the picture's centre at which a level direction appears."""
+        return self.size_px / 2 / math.tan(self.view_angle_rad / 2)
+
+    @cached_property
+    def _from_mirror(self) -> Floats:
+        """Turns directions in the mirror's frame into the robot's."""
+        cr, sr, cp, sp = (f(a) for a in (self.roll_rad, self.pitch_rad) for f in (math.cos, math.sin))
+        about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
+        about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
+        return np.asarray(about_y @ about_x)
+
+    def project(self, points_m: Floats) -> Floats:
+        """Pixels (n, 2) at which points (n, 3) of the robot frame appear."""
+        rays = (points_m - (0.0, 0.0, self.height_m)) @ self._from_mirror
+        spread = np.linalg.norm(rays, axis=1) - rays[:, 2]
+        return self._pixels(rays[:, :2] / spread[:, None])
+
+    def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
+        """Column, row and radius in pixels of the circle as which a sphere appears."""
+        ray = (np.array(centre_m) - (0.0, 0.0, self.height_m)) @ self._from_mirror
+        distance_m = float(np.linalg.norm(ray))
+        sine = min(radius_m / distance_m, 1.0)
+        spread = math.sqrt(1.0 - sine * sine) - float(ray[2]) / distance_m
+        column, row = self._pixels(ray[None, :2] / (distance_m * spread))[0]
+        return float(column), float(row), self.scale_px * sine / spread
+
+    def ground(self, pixels: Floats, plane_m: float = 0.0) -> Floats:
+        """Points (n, 2) of the robot frame that pixels (n, 2) see in the level plane at height `plane_m`.
+
+        Pixels that see the horizon or above it give NaN.
+        """
+        offsets = (self.centre_px - pixels[:, ::-1]) / self.scale_px
+        squares = np.sum(offsets * offsets, axis=1)
+        mirror_rays = np.column_stack((2.0 * offsets, squares - 1.0))
+        rays = mirror_rays @ self._from_mirror.T
+        down = np.where(rays[:, 2] < -1e-9, -rays[:, 2], np.nan)
+        return np.asarray(rays[:, :2] * ((self.height_m - plane_m) / down)[:, None])
+
+    def radius_px(self, distance_m: float) -> float:
+        """How far from the picture's centre ground at that distance appears, without tilt."""
+        return self.scale_px * math.tan(math.atan2(distance_m, self.height_m) / 2)
+
+    def metres_per_px(self, distance_m: float) -> tuple[float, float]:
+        """Ground covered by one pixel at that distance, along the ray and across it."""
+        reach_m = math.hypot(distance_m, self.height_m)
+        along_px_rad = self.scale_px / (1.0 + self.height_m / reach_m)  # of the angle from straight down
+        return reach_m**2 / self.height_m / along_px_rad, reach_m / along_px_rad
+
+    def _pixels(self, offsets: Floats) -> Floats:
+        return self.centre_px - self.scale_px * offsets[:, ::-1]

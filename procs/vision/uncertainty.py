@@ -1,0 +1,24 @@
+"""From pixels to metres: what an error in the picture means on the ground."""
+
+import math
+
+import numpy as np
+
+from procs.vision.mirror import Floats, Mirror
+
+
+def ground_covariance(
+    mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float | None = None
+) -> Floats:
+    """Covariance (2 x 2, robot frame, m²) of a point on the ground.
+
+    `along_px` and `across_px` are its standard deviations in the picture, along and across the ray from the picture's
+    centre; without the second both are the same.
+    """
+    distance_m = math.hypot(x_m, y_m)
+    along_m, across_m = mirror.metres_per_px(distance_m)
+    along_m *= along_px
+    across_m *= along_px if across_px is None else across_px
+    ux, uy = (x_m / distance_m, y_m / distance_m) if distance_m > 0 else (1.0, 0.0)
+    turn = np.array([[ux, -uy], [uy, ux]])
+    return np.asarray(turn @ np.diag([along_m**2, across_m**2]) @ turn.T)
