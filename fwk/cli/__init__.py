@@ -1,0 +1,1 @@
+"""What people type: `fwk-launch`, `fwk` with its commands, and the live display."""

@@ -1,0 +1,68 @@
+"""Reads values of the command line that are more than a number or a name."""
+
+import math
+from enum import StrEnum
+from typing import Any
+
+import typer
+from typer.core import TyperCommand
+
+_MANY = ("--only", "--without")
+_LAUNCH_FILES = (".yaml", ".yml")
+
+
+class Hosting(StrEnum):
+    """Which components share a process."""
+
+    PROCESS = "process"
+    ROBOT = "robot"
+    SINGLE = "single"
+
+
+class SeveralNames(TyperCommand):
+    """A command whose `--only` and `--without` take several names in a row: `--only cyan1 world`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        return super().parse_args(ctx, spread(args))
+
+
+def spread(arguments: list[str]) -> list[str]:
+    """Repeats `--only` and `--without` before each of their names; names are what is no option and no launch file."""
+    made: list[str] = []
+    option = ""
+    for number, argument in enumerate(arguments):
+        option_before = number > 0 and arguments[number - 1] in _MANY
+        if argument.startswith("-") or argument.endswith(_LAUNCH_FILES):
+            option = argument if argument in _MANY else ""
+        elif option and not option_before:
+            made.append(option)
+        made.append(argument)
+    return made
+
+
+def speed(text: str) -> float:
+    """A factor above 0, or `max`, which is 0 in plans.
+
+    Raises:
+        BadParameter: neither.
+    """
+    return 0.0 if text == "max" else _above_zero(text, "a pace; say a number above 0, such as 0.5 or 2, or 'max'")
+
+
+def seconds(text: str) -> float:
+    """A duration above 0.
+
+    Raises:
+        BadParameter: it is none.
+    """
+    return _above_zero(text, "a duration; say seconds above 0, such as 60 or 0.5")
+
+
+def _above_zero(text: str, meaning: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = -1.0
+    if not 0 < number < math.inf:
+        raise typer.BadParameter(f"'{text}' is not {meaning}")
+    return number

@@ -1,0 +1,75 @@
+"""What a status message says in sums: states, losses, restarts, and who takes the time."""
+
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from lcmtypes.core import component_state_t, status_t
+
+WELL = ("init", "loaded", "running", "finalizing", "stopped")
+_UNWELL_FIRST = ("failed", "held")
+
+
+@dataclass(frozen=True)
+class Totals:
+    """Sums over components."""
+
+    states: dict[str, int]
+    """State to number of components in it, the worrying ones first."""
+    lost: int
+    """Messages that could not be had any more."""
+    fetched: int
+    """Messages that were lost and came after asking."""
+    strangers: int
+    """Datagrams refused."""
+
+
+@dataclass(frozen=True)
+class LoopTime:
+    """How long a component's iterations take."""
+
+    name: str
+    mean_ms: float
+    worst_ms: float
+
+
+def components(status: status_t) -> list[component_state_t]:
+    """All components, in the order of the hosts."""
+    return [component for host in status.hosts for component in host.components]
+
+
+def restarts(status: status_t) -> int:
+    """How often hosts were started again."""
+    return sum(host.restarts for host in status.hosts)
+
+
+def totals(some: Iterable[component_state_t]) -> Totals:
+    """Sums over some components."""
+    listed = list(some)
+    counted = Counter(component.state for component in listed)
+    order = sorted(counted, key=lambda state: (state not in _UNWELL_FIRST, state))
+    return Totals(
+        {state: counted[state] for state in order},
+        sum(component.lost for component in listed),
+        sum(component.fetched for component in listed),
+        sum(component.strangers for component in listed),
+    )
+
+
+def loop_times(status: status_t, since: status_t | None = None) -> dict[str, LoopTime]:
+    """Component to its loop time since an earlier status, or since it started, in milliseconds of wall time."""
+    before = {component.name: component for component in components(since)} if since else {}
+    found = {}
+    for component in components(status):
+        busy_us, iterations = component.busy_us, component.iterations
+        earlier = before.get(component.name)
+        if earlier and 0 < earlier.iterations < iterations:  # otherwise it stands still, or was restarted meanwhile
+            busy_us, iterations = busy_us - earlier.busy_us, iterations - earlier.iterations
+        mean_ms = busy_us / iterations / 1000 if iterations else 0.0
+        found[component.name] = LoopTime(component.name, mean_ms, component.worst_us / 1000)
+    return found
+
+
+def slowest(times: dict[str, LoopTime], count: int) -> list[LoopTime]:
+    """The components with the longest mean loop time, longest first."""
+    return sorted(times.values(), key=lambda time: (-time.mean_ms, time.name))[:count]

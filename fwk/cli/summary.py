@@ -1,0 +1,36 @@
+"""What is printed when a run has ended: result, pace, slowest components, what went wrong, where the recording lies."""
+
+from fwk.cli import figures
+from fwk.cli.lines import losses
+from fwk.cli.scoreboard import Scoreboard
+from fwk.plan.model import Plan
+from fwk.supervisor.options import Outcome, RunOptions
+
+_SLOWEST = 3
+
+
+def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
+    """The closing lines of a run, the application's own first."""
+    status = outcome.status
+    rate = outcome.ticks / outcome.wall_s if outcome.wall_s else 0.0
+    pace = outcome.logical_s / outcome.wall_s if outcome.wall_s else 0.0
+    lines = [
+        *Scoreboard(plan.scoreboard).summary(outcome.newest.get),
+        f"{plan.name}: {outcome.reason}",
+        f"{outcome.ticks} ticks, {outcome.logical_s:.2f} s of logical time in {outcome.wall_s:.2f} s: "
+        f"{rate:.1f} ticks/s, {pace:.2f} times real time",
+    ]
+    slowest = figures.slowest(figures.loop_times(status), _SLOWEST)
+    if slowest:
+        named = ", ".join(f"{time.name} {time.mean_ms:.2f} ms (worst {time.worst_ms:.1f})" for time in slowest)
+        lines += [f"slowest: {named}", f"messages and ticks: {losses(status)}"]
+    lines += [
+        f"{component.name} {component.state}: {component.reason or 'no reason given'}"
+        for component in figures.components(status)
+        if component.state not in figures.WELL
+    ]
+    if options.record:
+        lines.append(f"recording: {options.record}")
+    if options.video:
+        lines.append(f"video: {options.video}")
+    return [*lines, f"run directory: {options.run_dir}"]
