@@ -1,0 +1,75 @@
+"""Command line of the benchmark: python -m tools.bench [--quick] [--peers unix,lcm] [--sizes 5,20] [--rounds 5]."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from tools.bench import machine, report, rotation
+from tools.bench.environments import REPOSITORY
+from tools.bench.figures import Run, tick_us
+from tools.bench.registry import PEERS, Peer
+from tools.bench.scenarios import SIZES, growth, variations
+
+_PAGE = REPOSITORY / "docs" / "numbers.md"
+_JSON = REPOSITORY / "build" / "bench" / "numbers.json"
+
+
+def main(
+    peers: Annotated[str, typer.Option(help="Names, comma between; empty: all")] = "",
+    sizes: Annotated[str, typer.Option(help="Numbers of components")] = ",".join(map(str, SIZES)),
+    varied: Annotated[str, typer.Option(help="Sizes of the runs with ten reads, 64 KiB, loss; empty: none")] = "20,80",
+    rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 5,
+    seconds: Annotated[float, typer.Option(help="Longest time that ticks of one run are measured")] = 2.0,
+    quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
+    json_file: Annotated[Path, typer.Option("--json", help="Where every run goes")] = _JSON,
+    page: Annotated[Path, typer.Option(help="Page whose tables are replaced")] = _PAGE,
+    no_page: Annotated[bool, typer.Option("--no-page", help="Print the tables, change no page")] = False,
+) -> None:
+    """Measures a full tick of fwk and of its peers, in rotation, and writes docs/numbers.md."""
+    if quick:
+        sizes, varied, rounds, seconds = "5,20", "20", 2, 0.5
+    chosen, missing = _peers(peers)
+    scenarios = [*growth(_numbers(sizes)), *variations(_numbers(varied))]
+    about: dict[str, str] = {"command": _command(), **machine.describe()}
+    isolated = bool(rotation.isolation())
+    about["isolation"] = "a network and process namespace a run" if isolated else "own ports a run; no namespaces here"
+    about["rounds"] = str(rounds)
+    for name, reason in missing.items():
+        typer.echo(f"{name}: left out: {reason}", err=True)
+    runs = rotation.rotate(chosen, scenarios, rounds, seconds, _show)
+    report.write_json(json_file, {**about, "missing": missing}, runs)
+    tables = report.text(about, chosen, missing, scenarios, runs)
+    typer.echo(tables)
+    if not no_page:
+        report.insert(page, tables)
+
+
+def _peers(names: str) -> tuple[list[Peer], dict[str, str]]:
+    wanted = names.split(",") if names else list(PEERS)
+    unknown = [name for name in wanted if name not in PEERS]
+    if unknown:
+        raise typer.BadParameter(f"no peer '{unknown[0]}'; there are {', '.join(PEERS)}")
+    missing = {PEERS[name].title: reason for name in wanted if (reason := PEERS[name].missing())}
+    return [PEERS[name] for name in wanted if PEERS[name].title not in missing], missing
+
+
+def _numbers(words: str) -> tuple[int, ...]:
+    try:
+        return tuple(int(word) for word in words.split(",") if word)
+    except ValueError as error:
+        raise typer.BadParameter(f"'{words}': numbers with commas between, for example 5,20,40") from error
+
+
+def _show(run: Run) -> None:
+    figure = run.error or f"{tick_us(run.result) / 1000:.2f} ms"
+    typer.echo(f"round {run.round + 1}  {run.scenario:<20} {run.peer:<12} {figure}", err=True)
+
+
+def _command() -> str:
+    return " ".join(["python -m tools.bench", *sys.argv[1:]])
+
+
+if __name__ == "__main__":
+    typer.run(main)

@@ -1,0 +1,51 @@
+"""One component's process: python -m tools.bench.component PEER SHAPE_FILE INDEX."""
+
+import ctypes
+import json
+import signal
+import sys
+from pathlib import Path
+
+from lcmtypes.bench import sample_t
+
+from tools.bench.sample import next_sample
+from tools.bench.shape import WARM_UP_TICKS, Shape
+from tools.bench.sides import STOP, ComponentSide, load
+
+_PR_SET_PDEATHSIG = 1
+
+
+def main() -> None:
+    """Runs until the supervisor says stop; then leaves a file that says how many inputs were stale."""
+    peer, shape, index = sys.argv[1], Shape.read(sys.argv[2]), int(sys.argv[3])
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # nobody is left behind when the run is killed
+    side = load(peer).component(shape, index)
+    iterations, stale = run(side, shape, index)
+    Path(shape.folder, f"component{index}.json").write_text(json.dumps({"iterations": iterations, "stale": stale}))
+    side.close()
+
+
+def run(side: ComponentSide, shape: Shape, index: int) -> tuple[int, int]:
+    """The loop; returns iterations and how many inputs were not the newest that the stages before had written.
+
+    A tick that is repeated is answered again and not run again.
+    """
+    padding = bytes(shape.padding_bytes)
+    sources = shape.sources(index)
+    stage = shape.stage(index)
+    last = iterations = stale = 0
+    while (tick := side.tick()) != STOP:
+        if tick > last:
+            read = side.inputs()
+            for source, sample in zip(sources, read, strict=True):
+                found = sample.header.tick if sample is not None else 0
+                stale += tick > WARM_UP_TICKS and found < shape.expected_tick(index, source, tick)
+            side.publish(next_sample(index, tick, stage, [sample or sample_t() for sample in read], padding))
+            last = tick
+            iterations += 1
+        side.done(tick)
+    return iterations, stale
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,151 @@
+"""One run of one arrangement in a network namespace of its own: python -m tools.bench.driver JSON; prints a result.
+
+It starts the peer's processes, lets the supervisor warm up, and then sleeps while the ticks run. What it reads from
+/proc before and after is the whole tree below it: supervisor, components and any daemon, not itself.
+"""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, TextIO
+
+from tools.bench import accounting, namespace
+from tools.bench.environments import REPOSITORY
+from tools.bench.registry import PEERS, Peer
+from tools.bench.shape import Shape
+from tools.bench.timing import now_us, sleep_s
+
+_FIRST_TICK_S = 50.0
+_END_S = 5.0
+
+
+class RunFailed(Exception):  # noqa: N818 - it says what happened
+    """The run gave no figures; says why."""
+
+
+def main() -> None:
+    """Runs what the JSON argument says: peer, shape, loss, ticks, seconds, whether in a namespace."""
+    job = json.loads(sys.argv[1])
+    try:
+        if job["isolated"]:
+            namespace.set_up(job["loss"])
+        elif job["loss"]:
+            raise RunFailed("packet loss needs a network namespace")
+        result = run(PEERS[job["peer"]], Shape(**job["shape"]), job["ticks"], job["seconds"])
+    except (RunFailed, namespace.NoNamespace) as error:
+        result = {"error": str(error)}
+    print(json.dumps(result))
+
+
+def run(peer: Peer, shape: Shape, ticks: int, seconds: float) -> dict[str, Any]:
+    """Measures up to `ticks` ticks in at most `seconds`; see `docs/numbers.md` for the fields.
+
+    Raises:
+        RunFailed: no first tick, or a component fell silent.
+    """
+    with TemporaryDirectory(prefix="bench-") as folder:
+        shape = replace(shape, folder=folder)
+        path = shape.save()
+        listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        listener.bind(f"{folder}/control")
+        listener.listen(1)
+        start_us = now_us()
+        listener.settimeout(_FIRST_TICK_S)
+        try:
+            with _processes(peer, path, folder):
+                lines = _connect(listener)
+                first = _read(lines)
+                pids = accounting.descendants(os.getpid())
+                before = accounting.usage(pids)
+                lines.write(f"go {ticks} {seconds}\n")
+                lines.flush()
+                measured = _read(lines)
+                used = accounting.usage(pids) - before
+                memory_mb, threads = accounting.pss_mb(pids), accounting.threads(pids)
+                lines.write("stop\n")
+                lines.flush()
+        except (OSError, ValueError, RunFailed) as error:
+            raise RunFailed(f"{error}; {_complaints(folder)}") from error
+        stale = _stale(shape)
+    count = len(measured["tick_us"])
+    wanted = shape.components * (2 + len(shape.sources(0)) * shape.fragments)  # a tick, a done, the inputs
+    return {
+        "tick_us": measured["tick_us"],
+        "repeated": measured["repeated"],
+        "cpu_us": used.cpu_us / count,
+        "switches": used.switches / count,
+        "for_nothing": used.datagrams_read / count - wanted if peer.udp else None,
+        "dropped": used.datagrams_dropped,
+        "stale": stale,
+        "pss_mb": memory_mb,
+        "threads": threads,
+        "first_tick_s": (first["first_tick_us"] - start_us) / 1e6,
+    }
+
+
+@contextmanager
+def _processes(peer: Peer, path: str, folder: str) -> Iterator[None]:
+    variables = peer.environment.process_variables()
+    started: list[subprocess.Popen[bytes]] = []
+    with open(f"{folder}/output", "wb") as output:
+        try:
+            for words in peer.commands(path):
+                started.append(
+                    subprocess.Popen(
+                        words, env=variables, cwd=REPOSITORY, stdin=subprocess.DEVNULL, stdout=output, stderr=output
+                    )
+                )
+            yield
+        finally:
+            _end(started)
+
+
+def _end(started: list[subprocess.Popen[bytes]]) -> None:
+    """Gives components time to end by themselves, then ends daemons and whoever is left."""
+    deadline_us = now_us() + int(_END_S * 1e6)
+    while any(process.poll() is None for process in started) and now_us() < deadline_us:
+        sleep_s(0.02)
+    for pid in accounting.descendants(os.getpid()):
+        with suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGKILL)
+    for process in started:
+        process.wait()
+
+
+def _connect(listener: socket.socket) -> TextIO:
+    connection, _ = listener.accept()
+    connection.settimeout(_FIRST_TICK_S)
+    return connection.makefile("rw")
+
+
+def _read(lines: TextIO) -> dict[str, Any]:
+    answer: dict[str, Any] = json.loads(lines.readline() or '{"error": "the supervisor ended"}')
+    if "error" in answer:
+        raise RunFailed(answer["error"])
+    return answer
+
+
+def _complaints(folder: str) -> str:
+    """The last line that any process wrote."""
+    lines = Path(folder, "output").read_text(errors="replace").strip().splitlines()
+    return lines[-1] if lines else "no process said anything"
+
+
+def _stale(shape: Shape) -> int | None:
+    """Inputs that were not the newest, of all components; None if not every component said."""
+    files = list(Path(shape.folder).glob("component*.json"))
+    if len(files) < shape.components:
+        return None
+    return sum(int(json.loads(file.read_text())["stale"]) for file in files)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""Where each peer's libraries live and which Python runs it; every peer has an environment of its own."""
+
+import os
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+PEERS = REPOSITORY / "build" / "bench-peers"
+_DEBIAN_LIBRARIES = "usr/lib/x86_64-linux-gnu"
+
+
+@dataclass(frozen=True)
+class Environment:
+    """One environment.
+
+    `pip` packages go into a virtual environment, `debian` packages are unpacked (not installed) beside it and run by
+    Debian's own Python; with neither it is the environment that runs the benchmark.
+    """
+
+    name: str
+    pip: tuple[str, ...] = ()
+    debian: tuple[str, ...] = ()
+    imports: tuple[str, ...] = ()
+    variables: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def folder(self) -> Path:
+        """Where it is installed."""
+        return PEERS / self.name
+
+    @property
+    def python(self) -> str:
+        """The interpreter's path."""
+        if self.pip:
+            return str(self.folder / "bin" / "python")
+        return "/usr/bin/python3" if self.debian else sys.executable
+
+    def process_variables(self) -> dict[str, str]:
+        """Environment variables for every process of the peer."""
+        path = [str(REPOSITORY)]
+        made = {**os.environ, **self.variables, "PYTHONDONTWRITEBYTECODE": "1", "PYTHONUNBUFFERED": "1"}
+        if self.debian:
+            path.append(str(self.folder / "usr/lib/python3/dist-packages"))
+            made["LD_LIBRARY_PATH"] = str(self.folder / _DEBIAN_LIBRARIES)
+            made["PATH"] = f"{self.folder / 'usr/bin'}:{made.get('PATH', '')}"
+        elif self.pip:
+            made["PATH"] = f"{self.folder / 'bin'}:{made.get('PATH', '')}"
+        made["PYTHONPATH"] = ":".join(path)
+        return made
+
+    def missing(self) -> str:
+        """Why the environment cannot be used; empty if it can."""
+        if not Path(self.python).exists():
+            return "not installed; say: make bench-peers"
+        if not self.imports:
+            return ""
+        command = [self.python, "-c", f"import {', '.join(self.imports)}"]
+        result = subprocess.run(
+            command, env=self.process_variables(), cwd=REPOSITORY, capture_output=True, text=True, check=False
+        )
+        if result.returncode == 0:
+            return ""
+        lines = result.stderr.strip().splitlines() or ["cannot be imported"]
+        return f"{lines[-1]}; say: make bench-peers"
+
+
+CORE = Environment("core", imports=("lcm",))
+ZMQ = Environment("zmq", pip=("pyzmq==27.3.0",), imports=("zmq",))
+ZENOH = Environment("zenoh", pip=("eclipse-zenoh==1.10.2",), imports=("zenoh",))
+ECAL = Environment("ecal", pip=("eclipse-ecal==6.1.1",), imports=("ecal.nanobind_core",))
+DORA = Environment("dora", pip=("dora-rs==1.1.0", "dora-rs-cli==1.1.0"), imports=("dora",))
+ICE = Environment("ice", debian=("python3-zeroc-ice", "zeroc-ice-slice"), imports=("Ice",))
+ROS = Environment(
+    "ros",
+    debian=("python3-rospy", "python3-rosmaster", "python3-genpy", "python3-gencpp", "libroscpp-dev"),
+    imports=("rospy", "rosmaster", "genpy.dynamic"),
+)
+ALL = (CORE, ZMQ, ZENOH, ECAL, DORA, ICE, ROS)

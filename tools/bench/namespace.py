@@ -1,0 +1,50 @@
+"""A network of its own for each run, so that runs do not disturb each other; with packet loss if asked for."""
+
+import shutil
+import subprocess
+
+# A process namespace too: when the driver ends, the kernel ends all that it started, daemons and their children.
+_UNSHARE = ("unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc")
+_SET_UP = (
+    "ip link set lo up",
+    "ip link set lo multicast on",
+    "ip route add 224.0.0.0/4 dev lo",
+)
+
+
+class NoNamespace(Exception):  # noqa: N818 - it says what is
+    """This machine does not let us make network namespaces; says why."""
+
+
+def command() -> list[str]:
+    """The words to put before a command that shall run in a new network namespace.
+
+    Raises:
+        NoNamespace: neither as this user nor in a user namespace.
+    """
+    for words in ([*_UNSHARE], [*_UNSHARE, "--map-root-user"]):
+        if (
+            shutil.which(words[0])
+            and subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0
+        ):
+            return words
+    raise NoNamespace("unshare --net --pid is not allowed here; run as root, or allow user namespaces")
+
+
+def set_up(loss: float) -> None:
+    """Inside the new namespace: brings up loopback with multicast; drops a share `loss` of all IP packets on arrival.
+
+    Raises:
+        NoNamespace: ip or iptables is missing or refuses.
+    """
+    commands = [words.split() for words in _SET_UP]
+    if loss:
+        drop = f"-A INPUT -m statistic --mode random --probability {loss} -j DROP"
+        commands.append(["iptables", *drop.split()])
+    for words in commands:
+        try:
+            result = subprocess.run(words, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise NoNamespace(f"{' '.join(words)}: {error}") from error
+        if result.returncode:
+            raise NoNamespace(f"{' '.join(words)}: {result.stderr.strip()}")

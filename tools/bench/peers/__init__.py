@@ -1,0 +1,1 @@
+"""One module a peer: `supervisor(shape)` and `component(shape, index)`, see `tools.bench.sides`."""

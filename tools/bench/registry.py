@@ -1,0 +1,56 @@
+"""The peers: what each is called, where it runs, how its messages are encoded, and which processes it needs."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from tools.bench.environments import CORE, Environment
+from tools.bench.shape import Shape
+
+Commands = Callable[[str], list[list[str]]]
+"""Shape file to the command lines to start, in order."""
+
+LCM_GEN = "lcm-gen, Python"
+
+
+@dataclass(frozen=True)
+class Peer:
+    """One way to do the work of `Shape`."""
+
+    name: str
+    title: str
+    environment: Environment
+    codec: str
+    udp: bool = False
+    """Whether it moves everything by UDP, so that datagrams for nothing and packet loss mean something."""
+    bare: bool = False
+    """Whether it offers no more than the transport: what fwk is built on, not a rival."""
+    start: Commands | None = None
+    """Command lines, where they are not one Python process for the supervisor and each component."""
+
+    def commands(self, shape_file: str) -> list[list[str]]:
+        """The command lines to start."""
+        if self.start:
+            return self.start(shape_file)
+        return python_commands(self.environment.python, self.name, shape_file)
+
+    def missing(self) -> str:
+        """Why it cannot be measured here; empty if it can."""
+        return self.environment.missing()
+
+
+def python_commands(python: str, module: str, shape_file: str) -> list[list[str]]:
+    """One process for each component and one for the supervisor."""
+    components = Shape.read(shape_file).components
+    made = [[python, "-m", "tools.bench.component", module, shape_file, str(index)] for index in range(components)]
+    return [*made, [python, "-m", "tools.bench.supervise", module, shape_file]]
+
+
+_ALL = (
+    Peer("unix", "Unix datagrams", CORE, LCM_GEN, bare=True),
+    Peer("lcm", "bare LCM, a port a channel", CORE, LCM_GEN, udp=True, bare=True),
+    Peer("lcm_wire", "LCM's format on plain sockets", CORE, LCM_GEN, udp=True, bare=True),
+    Peer("lcm_groups", "bare LCM, a port for ten channels", CORE, LCM_GEN, udp=True, bare=True),
+    Peer("lcm_mpudpm", "bare LCM, mpudpm", CORE, LCM_GEN, udp=True, bare=True),
+    Peer("lcm_onebus", "bare LCM, one bus", CORE, LCM_GEN, udp=True, bare=True),
+)
+PEERS = {peer.name: peer for peer in _ALL}

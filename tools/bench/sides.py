@@ -1,0 +1,55 @@
+"""What a peer has to offer: one side for the supervisor, one for each component."""
+
+from importlib import import_module
+from typing import Any, Protocol
+
+from lcmtypes.bench import sample_t
+
+from tools.bench.shape import Shape
+
+STOP = -1
+"""The tick that ends a component."""
+
+
+class SupervisorSide(Protocol):
+    """Broadcasts stages and hears who is done."""
+
+    def begin(self, stage: int, tick: int) -> None:
+        """Tells all components of a stage to run their iteration of `tick`."""
+
+    def done(self, timeout_s: float) -> tuple[int, int] | None:
+        """The next answer as (component, tick); None when none came in time."""
+
+    def close(self) -> None:
+        """Lets go of sockets and nodes."""
+
+
+class ComponentSide(Protocol):
+    """One component's way to the others."""
+
+    def tick(self) -> int:
+        """Waits for the component's next tick; `STOP` ends it."""
+
+    def inputs(self) -> list[sample_t | None]:
+        """The newest message of each source, in the order of `Shape.sources`; None before the first."""
+
+    def publish(self, sample: sample_t) -> None:
+        """Sends the component's message to its readers."""
+
+    def done(self, tick: int) -> None:
+        """Tells the supervisor that the iteration is over."""
+
+    def close(self) -> None:
+        """Lets go of sockets and nodes."""
+
+
+class PeerModule(Protocol):
+    """A module of `tools.bench.peers`."""
+
+    def supervisor(self, shape: Shape) -> SupervisorSide: ...
+    def component(self, shape: Shape, index: int) -> ComponentSide: ...
+
+
+def load(name: str) -> Any:
+    """The peer's module; it offers `PeerModule`."""
+    return import_module(f"tools.bench.peers.{name}")

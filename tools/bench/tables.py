@@ -1,0 +1,103 @@
+"""Markdown tables of the figures."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from tools.bench.figures import Runs, Spread, tick_mean_us, tick_p99_us, tick_us
+from tools.bench.registry import Peer
+from tools.bench.scenarios import Scenario
+
+REFERENCE = "lcm"
+"""The peer that ratios are taken to."""
+
+Row = Sequence[str]
+
+
+def markdown(header: Row, rows: Sequence[Row]) -> str:
+    """A table, first column to the left, others to the right."""
+    rule = ["---", *["---:"] * (len(header) - 1)]
+    return "\n".join(
+        "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in [header, rule, *rows]
+    )
+
+
+def milliseconds(spread: Spread | None) -> str:
+    """Median and, in brackets, smallest and largest of the rounds: `1.52 (1.48-1.71)`."""
+    if spread is None:
+        return "-"
+    return f"{_number(spread.middle / 1000)} ({_number(spread.low / 1000)}-{_number(spread.high / 1000)})"
+
+
+def times(spread: Spread | None) -> str:
+    """A ratio: `x1.25 (1.20-1.31)`."""
+    return "-" if spread is None else f"x{spread.middle:.2f} ({spread.low:.2f}-{spread.high:.2f})"
+
+
+def _number(value: float) -> str:
+    return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
+
+
+def tick_table(runs: Runs, peers: Sequence[Peer], scenarios: Sequence[Scenario]) -> str:
+    """Wall time of a tick and its ratio to the reference, one row a peer, one column an arrangement.
+
+    Under packet loss it is the mean that counts, because a median does not see what is rare.
+    """
+    rows = [[peer.title, *(_tick_cell(runs, peer.name, scenario) for scenario in scenarios)] for peer in peers]
+    return markdown(["tick, ms", *(scenario.name for scenario in scenarios)], rows)
+
+
+def _tick_cell(runs: Runs, peer: str, scenario: Scenario) -> str:
+    spread = runs.spread(peer, scenario.name, tick_mean_us if scenario.loss else tick_us)
+    if spread is None:
+        return "failed" if runs.errors(peer, scenario.name) else "-"
+    ratio = runs.ratio(peer, REFERENCE, scenario.name)
+    return milliseconds(spread) + ("" if ratio is None or scenario.loss else f" x{ratio.middle:.2f}")
+
+
+def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
+    """What a tick costs besides wall time, one row a peer, for one arrangement."""
+
+    def middle(peer: str, key: str, form: str) -> str:
+        spread = runs.spread(peer, scenario.name, lambda result: _value(result, key))
+        return "-" if spread is None else format(spread.middle, "z" + form)
+
+    rows = []
+    for peer in peers:
+        if not runs.of(peer.name, scenario.name):
+            continue
+        rows.append(
+            [
+                peer.title,
+                milliseconds(runs.spread(peer.name, scenario.name, tick_us)),
+                milliseconds(runs.spread(peer.name, scenario.name, tick_p99_us)),
+                milliseconds(runs.spread(peer.name, scenario.name, lambda result: _value(result, "cpu_us"))),
+                middle(peer.name, "switches", ".0f"),
+                middle(peer.name, "for_nothing", ".0f"),
+                middle(peer.name, "stale", ".0f"),
+                middle(peer.name, "repeated", ".0f"),
+                middle(peer.name, "threads", ".0f"),
+                middle(peer.name, "pss_mb", ".0f"),
+                middle(peer.name, "first_tick_s", ".2f"),
+                peer.codec,
+            ]
+        )
+    header = [
+        scenario.name,
+        "tick, ms",
+        "p99, ms",
+        "CPU a tick, ms",
+        "switches a tick",
+        "datagrams for nothing a tick",
+        "stale inputs",
+        "repeated stages",
+        "threads",
+        "PSS, MB",
+        "first tick, s",
+        "codec",
+    ]
+    return markdown(header, rows)
+
+
+def _value(result: dict[str, Any], key: str) -> float | None:
+    value = result.get(key)
+    return None if value is None else float(value)
