@@ -54,6 +54,8 @@ class World:
             robot.put(*((starts or {}).get(name) or starting_pose(name, self._field)))
             mouth = Mouth(robot, self.ball, self._physics.handling)
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
+        forwards = list(self.robots)
+        self._turns = (forwards, forwards[::-1])
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
 
@@ -82,16 +84,17 @@ class World:
         events = []
         for step in range(steps):
             self.time_us = start_us + duration_us * step // steps
-            events += self._step(duration_us / steps / 1e6, touched)
+            # Where two robots pull at the ball the later one has the better end, so they take turns.
+            events += self._step(self._turns[step % 2], duration_us / steps / 1e6, touched)
         self.time_us = start_us + duration_us
         events += [self._ball_event(Kind.TOUCH, robot) for robot in touched]
         return sorted(events + self._contacts.take_collisions())
 
-    def _step(self, duration_s: float, touched: set[str]) -> list[Event]:
+    def _step(self, order: Sequence[str], duration_s: float, touched: set[str]) -> list[Event]:
         events = []
         actions = {}
-        for name, robot in self.robots.items():
-            robot.move(self.time_us, duration_s)
+        for name in order:
+            self.robots[name].move(self.time_us, duration_s)
             actions[name] = self.kickers[name].act(self.time_us, duration_s)
             if actions[name] is Action.KICKED:
                 events.append(self._ball_event(Kind.KICK, name))

@@ -1,0 +1,63 @@
+"""The score in words: one line for a running match, a few for one that has ended."""
+
+from collections.abc import Callable
+from typing import Any
+
+from lcmtypes.soccer import game_state_t
+
+Newest = Callable[[str], Any]
+"""Gives the newest message of a channel, decoded, or None."""
+
+GAME_STATE = "world/game_state"
+
+STATES = {
+    game_state_t.FROZEN: "frozen",
+    game_state_t.PLAY: "play",
+    game_state_t.KICK_OFF: "kick-off",
+    game_state_t.DROP_BALL: "dropped ball",
+    game_state_t.PENALTY: "penalty",
+    game_state_t.CORNER_KICK: "corner kick",
+    game_state_t.THROW_IN: "throw-in",
+    game_state_t.FREE_KICK: "free kick",
+    game_state_t.GOAL_KICK: "goal kick",
+    game_state_t.HALF_TIME: "half time",
+}
+TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
+
+
+def score(state: game_state_t) -> str:
+    """`CYAN 2 : 1 MAGENTA`."""
+    return f"CYAN {state.score_cyan} : {state.score_magenta} MAGENTA"
+
+
+def phase(state: game_state_t) -> str:
+    """What is going on: `play`, `throw-in magenta`, `corner kick cyan, taking positions`."""
+    words = STATES.get(state.state, f"state {state.state}")
+    set_piece = state.state not in (game_state_t.FROZEN, game_state_t.PLAY, game_state_t.HALF_TIME)
+    if set_piece and state.state_team in TEAMS:
+        words += f" {TEAMS[state.state_team]}"
+    return f"{words}, taking positions" if set_piece and state.stopped else words
+
+
+def play_time(time_s: float) -> str:
+    """Minutes and seconds: `03:12`."""
+    minutes, seconds = divmod(int(time_s), 60)
+    return f"{minutes:02d}:{seconds:02d}"
+
+
+def headline(newest: Newest) -> str:
+    """One line for the display; empty before the referee has said anything."""
+    state = newest(GAME_STATE)
+    if state is None:
+        return ""
+    return f"{score(state)}   half {state.half}  {play_time(state.time_in_half_s)}   {phase(state)}"
+
+
+def summary(newest: Newest) -> list[str]:
+    """What to say when the run has ended; nothing if there was no referee."""
+    state = newest(GAME_STATE)
+    if state is None:
+        return []
+    difference = state.score_cyan - state.score_magenta
+    verdict = "a draw" if not difference else f"{'cyan' if difference > 0 else 'magenta'} leads"
+    return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}"]
