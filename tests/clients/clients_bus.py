@@ -1,0 +1,85 @@
+"""A public bus for one test, and LCM's own programs on it."""
+
+import itertools
+import os
+import signal
+import subprocess
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import lcm
+
+from fwk.clock import monotonic_us, sleep_s
+from fwk.record.log import LogReader
+from fwk.typegen import lcm_gen
+
+PROBE = "fwk/probe"
+_DEADLINE_S = 60.0  # a busy machine is slow; nothing waits that long when it works
+_number = itertools.count()
+
+
+def program(name: str) -> str:
+    """The program itself, not the wheel's Python wrapper, which would leave it behind when killed."""
+    return str(lcm_gen().with_name(name))
+
+
+class Bus:
+    """A multicast port that no other test uses."""
+
+    def __init__(self) -> None:
+        port = 24_000 + (os.getpid() * 8 + next(_number)) % 8_000
+        self.url = f"udpm://239.255.76.67:{port}?ttl=0&recv_buf_size=4194304"
+        self._lcm = lcm.LCM(self.url)
+
+    def play(self, log: Path, *options: str) -> None:
+        """Publishes a log with lcm-logplayer, four times as fast as recorded."""
+        command = [program("lcm-logplayer"), "--speed=4", f"--lcm-url={self.url}", *options, str(log)]
+        subprocess.run(command, check=True, capture_output=True, timeout=_DEADLINE_S)
+
+    def publish_until(self, heard: Callable[[], bool], data: bytes = b"probe", channel: str = PROBE) -> None:
+        """Publishes something again and again until it has had its effect: the other side listens now."""
+
+        def asked() -> bool:
+            self._lcm.publish(channel, data)
+            return heard()
+
+        wait_until(asked, f"nobody reacts to '{channel}'")
+
+    @contextmanager
+    def logger(self, log: Path) -> Iterator[None]:
+        """Runs lcm-logger; inside the block it listens, after the block everything published in it is in the file."""
+        with process([program("lcm-logger"), "--flush-interval=20", f"--lcm-url={self.url}", str(log)]):
+            self.publish_until(log.exists)
+            self.publish_until(lambda: b"probe" in _probes(log))
+            yield
+            self.publish_until(lambda: b"end" in _probes(log), b"end")
+
+
+def _probes(log: Path) -> set[bytes]:
+    return {event.data for event in LogReader(log) if event.channel == PROBE}
+
+
+@contextmanager
+def process(command: Sequence[str], environment: dict[str, str] | None = None) -> Iterator[subprocess.Popen[str]]:
+    """Runs a program and ends it after the block."""
+    started = subprocess.Popen(
+        command, text=True, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
+    )
+    try:
+        yield started
+    finally:
+        started.send_signal(signal.SIGTERM)
+        try:
+            started.communicate(timeout=10)
+        except subprocess.TimeoutExpired:
+            started.kill()
+            started.communicate()
+
+
+def wait_until(condition: Callable[[], bool], failure: str) -> None:
+    """Waits for something that another process does."""
+    deadline_us = monotonic_us() + round(_DEADLINE_S * 1e6)
+    while not condition():
+        assert monotonic_us() < deadline_us, failure
+        sleep_s(0.05)

@@ -1,0 +1,58 @@
+"""A C program made of nothing but our .lcm files reads the bus."""
+
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import lcm
+import pytest
+
+from tests.clients.clients_bus import Bus, process, program
+from tests.fwk.record.record_made import entry, world_model
+
+pytestmark = pytest.mark.system
+ROOT = Path(__file__).parents[2]
+WHEEL = Path(lcm.__file__).parent.parent
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
+    """Builds the program when first asked; every type of ours is compiled without a warning."""
+    folder = tmp_path_factory.mktemp("ball")
+
+    def build() -> str:
+        if not (folder / "ball").exists():
+            types = map(str, sorted((ROOT / "lcmtypes").glob("*.lcm")))
+            subprocess.run([program("lcm-gen"), "-c", "--c-cpath", folder, "--c-hpath", folder, *types], check=True)
+            sources = [str(ROOT / "tools/clients/ball.c"), *map(str, folder.glob("*.c"))]
+            paths = [f"-I{folder}", f"-I{WHEEL}/include", f"-L{WHEEL}/lib", f"-Wl,-rpath,{WHEEL}/lib"]
+            subprocess.run(["cc", "-Wall", "-Werror", *paths, "-o", folder / "ball", *sources, "-llcm"], check=True)
+        return str(folder / "ball")
+
+    return build
+
+
+def test_the_ball_of_a_robot_is_printed(ball: Callable[[], str], needs: Callable[..., None]) -> None:
+    needs("cc")
+    bus = Bus()
+    channel, data, _ = entry("cyan1/world_model", world_model(7, 1), 7)
+    unknown = world_model(8, 1)
+    unknown.ball.known = False
+    with process([ball(), "cyan1", bus.url, "1"]) as started:
+        bus.publish_until(lambda: started.poll() is not None, data, channel)
+        assert started.stdout
+        assert started.stdout.read() == (
+            "cyan1/world_model tick 7: ball at (0.70, 0.00) m, moving (2.00, 0.00) m/s, seen 0.00 s ago\n"
+        )
+    with process([ball(), "cyan1", bus.url, "1"]) as started:
+        bus.publish_until(lambda: started.poll() is not None, entry(channel, unknown, 8)[1], channel)
+        assert started.stdout
+        assert started.stdout.read() == "cyan1/world_model tick 8: ball unknown\n"
+        assert started.returncode == 0
+
+
+def test_wrong_use_is_explained(ball: Callable[[], str], needs: Callable[..., None]) -> None:
+    needs("cc")
+    result = subprocess.run([ball()], capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert "usage: " in result.stderr
