@@ -46,7 +46,11 @@ class OmniBall(Component):
         if self.config != self._settings:
             self._apply_settings()
         pixels = self.image.pixels
-        self._write(None if pixels is None else self._finder.find(pixels))
+        if pixels is None:
+            self._write(None)
+            return
+        self._settings.mirror.check_frame(pixels, self.name)
+        self._write(self._finder.find(pixels))
 
     def _apply_settings(self) -> None:
         config = self._settings = self.config.model_copy(deep=True)

@@ -31,7 +31,7 @@ class ColourRange(NamedTuple):
 
     def mask(self, hsv: Picture) -> Mask:
         """Which pixels of a picture in HSV, height x width x 3, are of that colour."""
-        return cv2.inRange(hsv, np.array(self.low), np.array(self.high)).view(np.bool_)
+        return np.asarray(cv2.inRange(hsv, np.array(self.low), np.array(self.high)) > 0)
 
 
 def to_hsv(pixels: Picture) -> Picture:

@@ -11,7 +11,6 @@ from procs.vision.colours import FLOOR, Picture
 from procs.vision.mirror import Mirror
 
 MARGIN_PX = 6  # how far the picture can shake
-_NO_SECOND_MAP = np.empty(0, np.float32)  # the first holds both coordinates
 _FAR_M = 1e4  # where pixels above the horizon look: off the carpet, which gives the colour of the surroundings
 
 
@@ -32,9 +31,10 @@ class GroundView:
         ground = self._maps[down % 2][right % 2][top : top + self._size_px, left : left + self._size_px]
         looked_up = cv2.transform(ground, np.array([[cosine, -sine, column], [sine, cosine, row]]))
         # Nearest neighbours: bilinear interpolation differs between OpenCV's versions, and costs more.
-        return np.asarray(
-            cv2.remap(carpet.pixels, looked_up, _NO_SECOND_MAP, cv2.INTER_NEAREST, borderValue=FLOOR), np.uint8
+        view = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
+            carpet.pixels, looked_up, None, cv2.INTER_NEAREST, borderValue=FLOOR
         )
+        return np.asarray(view, np.uint8)
 
 
 def _ground_map(mirror: Mirror, right_px: float, down_px: float) -> NDArray[np.float32]:

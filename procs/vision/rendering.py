@@ -88,8 +88,11 @@ class Renderer:
     def _in_picture(self, outlines_m: Floats, shift_px: Floats) -> cv2.typing.MatLike:
         """Outlines (n, corners, 3) as pixels (n, corners, 2) in OpenCV's fixed-point numbers."""
         pixels = self._mirror.project(outlines_m.reshape(-1, 3)) + shift_px
-        fixed = np.round(pixels.clip(-4096, 4096) * (1 << _SHIFT)).astype(np.int32)
-        return fixed.reshape(*outlines_m.shape[:2], 2)
+        pixels = pixels.clip(-4096, 4096).reshape(*outlines_m.shape[:2], 2)
+        # OpenCV paints every pixel that an outline touches, half a pixel too much all around.
+        inward = pixels.mean(axis=1, keepdims=True) - pixels
+        pixels += inward * (0.5 / np.maximum(np.linalg.norm(inward, axis=2, keepdims=True), 0.5))
+        return np.round(pixels * (1 << _SHIFT)).astype(np.int32)
 
     def _draw_ball(self, frame: Picture, centre_m: tuple[float, float, float], shift_px: Floats) -> None:
         column, row, radius_px = self._mirror.sphere(centre_m, self._bodies.ball_radius_m)

@@ -5,6 +5,7 @@ import math
 from pydantic import Field
 
 from fwk.config import Config
+from procs.vision.colours import Picture
 from procs.vision.mirror import Mirror
 
 
@@ -17,6 +18,15 @@ class MirrorConfig(Config):
     """Effective viewpoint of the mirror above the ground."""
     view_angle_deg: float = Field(default=92.0, gt=45.0, lt=150.0)
     """Angle from straight down that the picture's edge sees; 90 is the horizon."""
+
+    def check_frame(self, pixels: Picture, component: str) -> None:
+        """Raises ValueError for a frame that the calibration does not fit."""
+        wanted = (self.size_px, self.size_px, 3)
+        if pixels.shape != wanted:
+            raise ValueError(
+                f"{component}: the frame is {' x '.join(map(str, pixels.shape))}, but mirror.size_px says "
+                f"{' x '.join(map(str, wanted))}; give camera and detector the same mirror settings"
+            )
 
     def mirror(self, roll_deg: float = 0.0, pitch_deg: float = 0.0) -> Mirror:
         """The mirror itself, tilted about the robot's x and y axis."""

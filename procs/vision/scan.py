@@ -1,0 +1,60 @@
+"""Scan lines: the pixels of a picture along rays from the robot and along rings around it."""
+
+import math
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from procs.vision.colours import Picture
+from procs.vision.mirror import Floats, Mirror
+
+
+class Scan:
+    """A set of equally long scan lines.
+
+    `ground_m` (lines, samples, 2) is where the middle of each looked-up pixel meets the ground, robot frame; NaN above
+    the horizon. The pixel, not the ideal place on the line: what is found in a pixel lies where that pixel looks.
+    """
+
+    def __init__(self, mirror: Mirror, columns: Floats, rows: Floats) -> None:
+        """`columns`, `rows`: (lines, samples) in pixels."""
+        last_px = mirror.size_px - 1
+        self._map = np.rint(np.stack((columns, rows), axis=2)).clip(0, last_px).astype(np.int16)
+        pixels = self._map.reshape(-1, 2).astype(float)
+        self.ground_m = mirror.ground(pixels).reshape(*columns.shape, 2)
+
+    @classmethod
+    def star(cls, mirror: Mirror, rays: int, from_m: float, to_m: float) -> "Scan":
+        """Rays in equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far."""
+        angles = np.linspace(0.0, 2 * math.pi, rays, endpoint=False)
+        radii_px = np.arange(mirror.radius_px(from_m), mirror.radius_px(to_m))
+        return cls(mirror, *_around(mirror, angles[:, None], radii_px[None]))
+
+    @classmethod
+    def rings(cls, mirror: Mirror, distances_m: Sequence[float]) -> "Scan":
+        """Circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel."""
+        radii_px = np.array([mirror.radius_px(distance_m) for distance_m in distances_m])
+        samples = math.ceil(2 * math.pi * max(radii_px))
+        angles = np.linspace(math.pi, 3 * math.pi, samples, endpoint=False)
+        return cls(mirror, *_around(mirror, angles[None], radii_px[:, None]))
+
+    def look_up(self, pixels: Picture) -> Picture:
+        """The picture along the scan lines: (lines, samples, 3)."""
+        seen = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
+            pixels, self._map, None, cv2.INTER_NEAREST
+        )
+        return np.asarray(seen, np.uint8)
+
+
+def _around(mirror: Mirror, angles: Floats, radii_px: Floats) -> tuple[Floats, Floats]:
+    return mirror.centre_px - radii_px * np.sin(angles), mirror.centre_px - radii_px * np.cos(angles)
+
+
+def runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
+    """Unbroken runs of true values along each line of a mask (lines, samples): line, first sample, sample after it."""
+    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).view(np.int8), axis=1)
+    lines, starts = np.nonzero(edges == 1)
+    _, ends = np.nonzero(edges == -1)
+    return lines, starts, ends
