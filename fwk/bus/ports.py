@@ -92,6 +92,7 @@ class PortLock:
                 lock.bind(_address(block))
                 lock.listen()
             except OSError as error:
+                lock.close()
                 self.release()
                 free = (last + 1 + last - first) * _BLOCK
                 raise PortsInUse(
