@@ -1,0 +1,33 @@
+"""Values of the command line that are more than a number or a name."""
+
+import pytest
+import typer
+
+from fwk.cli.arguments import seconds, speed, spread
+
+
+@pytest.mark.parametrize(
+    ("typed", "meant"),
+    [
+        ("soccer.yaml --only cyan1 world", "soccer.yaml --only cyan1 --only world"),
+        ("--only cyan1 world soccer.yaml", "--only cyan1 --only world soccer.yaml"),
+        ("--only a --only b f.yaml", "--only a --only b f.yaml"),
+        ("f.yaml --without a b --ticks 3 --only c d", "f.yaml --without a --without b --ticks 3 --only c --only d"),
+        ("f.yaml --only=a --ticks 3", "f.yaml --only=a --ticks 3"),
+        ("f.yaml --set a=1 --seed 2", "f.yaml --set a=1 --seed 2"),
+    ],
+)
+def test_names_in_a_row_belong_to_the_option_before_them(typed: str, meant: str) -> None:
+    assert spread(typed.split()) == meant.split()
+
+
+@pytest.mark.parametrize(("typed", "meant"), [("max", 0.0), ("1", 1.0), ("0.25", 0.25)])
+def test_a_speed_is_a_factor_or_max(typed: str, meant: float) -> None:
+    assert speed(typed) == meant
+
+
+@pytest.mark.parametrize("typed", ["0", "-1", "fast", "nan", "inf", ""])
+@pytest.mark.parametrize("read", [speed, seconds])
+def test_neither_pace_nor_duration_is_what_is_not_above_zero(read: type, typed: str) -> None:
+    with pytest.raises(typer.BadParameter, match=f"'{typed}' is not a .*; say "):
+        read(typed)

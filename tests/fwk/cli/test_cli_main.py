@@ -1,0 +1,28 @@
+"""`fwk` finds its commands in modules."""
+
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from fwk.cli.main import NAMES, app
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_command_explains_itself(name: str) -> None:
+    result = CliRunner().invoke(app, [name, "--help"])
+    assert result.exit_code == 0
+    assert f"{name} " in result.output
+    assert name in CliRunner().invoke(app, ["--help"]).output
+
+
+def test_an_unknown_command_is_refused_with_the_nearest() -> None:
+    result = CliRunner().invoke(app, ["compar"])
+    assert result.exit_code == 2
+    assert "Did you mean 'compare'?" in result.output
+
+
+def test_a_command_is_imported_only_when_it_is_needed() -> None:
+    asked = "import sys, fwk.cli.main; print('fwk.cli.compare' in sys.modules)"
+    assert subprocess.check_output([sys.executable, "-c", asked], text=True).strip() == "False"
