@@ -10,10 +10,11 @@ _LEFT_OUT = pytest.StashKey[dict[str, list[str]]]()
 _PACKAGES = {
     "Xvfb": "xvfb",
     "cc": "gcc",
-    "import": "imagemagick",
+    "ip": "iproute2",
     "jar": "default-jdk-headless",
     "java": "default-jre",
     "javac": "default-jdk-headless",
+    "unshare": "util-linux",
 }
 """Program to Debian package, where the names differ."""
 

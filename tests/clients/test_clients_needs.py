@@ -1,0 +1,28 @@
+"""Tests that lack a program are left out by name, and the end of the run lists them."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+TESTS = """
+def test_lacks_something(needs):
+    needs("sh", "no-such-program", "Xvfb-of-the-future")
+    assert False
+
+def test_has_everything(needs):
+    needs("sh")
+"""
+
+
+def test_a_test_without_its_program_is_skipped_and_listed(tmp_path: Path) -> None:
+    shutil.copy(Path(__file__).parents[1] / "conftest.py", tmp_path)
+    (tmp_path / "test_it.py").write_text(TESTS)
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert result.returncode == 0
+    assert "1 passed, 1 skipped" in result.stdout
+    reason = "needs no-such-program, Xvfb-of-the-future: apt install no-such-program Xvfb-of-the-future"
+    lines = result.stdout.splitlines()
+    place = next(number for number, line in enumerate(lines) if f"left out, {reason}" in line)
+    assert lines[place + 1] == "test_it.py::test_lacks_something"
