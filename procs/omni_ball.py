@@ -27,6 +27,8 @@ class OmniBallConfig(Config):
     """Standard deviation of the ball's centre in the picture, the shaking of the mirror included."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """A blob whose area is less than this part of a ball's is none; a ball more hidden than that is not seen."""
+    farthest_m: float = Setting(default=8.0, gt=0.0)
+    """Beyond that nothing is taken for a ball."""
 
 
 class OmniBall(Component):
@@ -56,7 +58,9 @@ class OmniBall(Component):
         config = self._settings = self.config.model_copy(deep=True)
         colour = ColourRange(config.ball_low, config.ball_high)
         mirror = config.mirror.mirror()
-        self._finder = BallFinder(mirror, colour, config.ball_radius_m, config.deviation_px, config.least_fit)
+        self._finder = BallFinder(
+            mirror, colour, config.ball_radius_m, config.deviation_px, config.least_fit, config.farthest_m
+        )
 
     def _write(self, ball: BallSighting | None) -> None:
         percept = self.ball_percept.value = ball_percept_t()

@@ -6,12 +6,14 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from procs.vision.colours import ColourRange, Picture, to_hsv
+from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
 from procs.vision.mirror import Floats, Mirror
 from procs.vision.uncertainty import ground_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
 _CANDIDATES = 4
+_LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
+_MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
 _FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
 
 
@@ -38,6 +40,8 @@ class BallFinder:
     """Standard deviation of the found centre."""
     least_fit: float = 0.4
     """Blobs whose area is less than this part of a ball's, or more than a ball's by as much, are none."""
+    farthest_m: float = 8.0
+    """Beyond that nothing is taken for a ball."""
 
     def find(self, pixels: Picture) -> BallSighting | None:
         """The likeliest ball in a picture, height x width x 3, or None."""
@@ -54,20 +58,26 @@ class BallFinder:
     def _sighting(self, pixels: Picture, box: cv2.typing.MatLike) -> BallSighting | None:
         left, top, width, height = (int(edge) * _STEP_PX for edge in box[: cv2.CC_STAT_AREA])
         left, top, right, bottom = max(left - 2, 0), max(top - 2, 0), left + width + 2, top + height + 2
-        cover = _cover(pixels[top:bottom, left:right])
+        window = pixels[top:bottom, left:right]
+        solid = self.colour.mask(to_hsv(window))
+        cover = _cover(window, solid)
         area_px = float(cover.sum())
-        if area_px < 1.0:
+        if solid.sum() < _LEAST_SOLID * area_px:
             return None
-        column = left + float(cover.sum(axis=0) @ np.arange(cover.shape[1])) / area_px
-        row = top + float(cover.sum(axis=1) @ np.arange(cover.shape[0])) / area_px
+        columns, rows = np.arange(left, left + cover.shape[1]), np.arange(top, top + cover.shape[0])
+        column = float(cover.sum(axis=0) @ columns) / area_px
+        row = float(cover.sum(axis=1) @ rows) / area_px
+        spread_px2 = (
+            float(cover.sum(axis=0) @ (columns - column) ** 2 + cover.sum(axis=1) @ (rows - row) ** 2) / area_px
+        )
         place = self._locate(column, row)
-        if place is None:
+        if place is None or math.hypot(*place[:2]) > self.farthest_m:
             return None
         x_m, y_m, expected_px = place
         fit = area_px / (math.pi * expected_px**2)
-        too_long = max(right - left, bottom - top) - 4 > 2 * expected_px + 2 * _STEP_PX
+        scattered = spread_px2 > _MOST_SPREAD * expected_px**2 / 2
         confidence = min(fit, 1 / fit)
-        if confidence < self.least_fit or too_long:
+        if confidence < self.least_fit or scattered:
             return None
         # What is hidden shifts the centre by up to as much of the radius.
         deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2
@@ -87,13 +97,13 @@ class BallFinder:
         return (float(x_m), float(y_m), radius_px) if math.isfinite(x_m) else None
 
 
-def _cover(window: Picture) -> Floats:
-    """How far each pixel is covered by the ball, 0..1.
+def _cover(window: Picture, solid: Mask) -> Floats:
+    """How far each pixel is covered by the ball, 0..1; `solid` marks those that are of its colour.
 
     Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange.
     """
     warmth = window[..., 2].astype(float) - window[..., 0]
-    full = float(np.quantile(warmth[warmth > warmth.max() / 2], 0.5))
-    cover = (warmth / max(full, 1.0)).clip(0.0, 1.0)
+    full = max(float(np.median(warmth[solid])), 1.0)
+    cover = (warmth / full).clip(0.0, 1.0)
     cover[cover < _FAINT] = 0.0
     return cover
