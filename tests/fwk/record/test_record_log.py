@@ -94,14 +94,15 @@ def test_a_damaged_sync_word_costs_that_event_and_the_one_before(tmp_path: Path)
     assert list(LogReader(path)) == EVENTS[:9] + EVENTS[11:]
 
 
-@pytest.mark.parametrize("hole", [3, 5000, (1 << 20) - 2, (1 << 20) + 1, 3 << 20])
-def test_reading_goes_on_behind_foreign_bytes(tmp_path: Path, hole: int) -> None:
+@pytest.mark.parametrize("end", [3000, *range((1 << 20) - 4, (1 << 20) + 2), 3 << 20])
+def test_reading_goes_on_behind_foreign_bytes(tmp_path: Path, end: int) -> None:
+    """The hole ends at byte `end`, also where the reader's buffer cuts the next sync word."""
     path = write(tmp_path / "log")
-    data, begin = path.read_bytes(), starts(path)[10]
-    path.write_bytes(data[:begin] + b"\xed" * hole + data[begin:])
+    data, before, begin = path.read_bytes(), *starts(path)[9:11]
+    path.write_bytes(data[:begin] + b"\xed" * (end - begin) + data[begin:])
     reader = LogReader(path)
     assert list(reader) == EVENTS[:9] + EVENTS[10:]
-    assert reader.skipped_bytes == hole + begin - starts(write(tmp_path / "again"))[9]
+    assert reader.skipped_bytes == end - before
 
 
 @given(st.lists(st.one_of(st.binary(max_size=60), st.just(b"\xed\xa1\xda\x01"), st.just(bytes(30)))))
@@ -158,7 +159,7 @@ def test_a_full_disk_is_reported_once_and_what_fits_later_is_written(tmp_path: P
         writer.append("a", bytes(100), 3)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    writer.append("a", bytes(100), 4)
+    writer.append("a", b"shorter than what was torn", 4)
     writer.close()
     reader = LogReader(tmp_path / "log")
     assert [(event.number, event.time_us) for event in reader] == [(0, 1), (3, 4)]
