@@ -6,10 +6,8 @@ import signal
 import sys
 from pathlib import Path
 
-from lcmtypes.bench import sample_t
-
-from tools.bench.sample import next_sample
-from tools.bench.shape import WARM_UP_TICKS, Shape
+from tools.bench.sample import fill
+from tools.bench.shape import LAST_WARM_UP_TICK, Shape
 from tools.bench.sides import STOP, ComponentSide, load
 
 _PR_SET_PDEATHSIG = 1
@@ -39,8 +37,10 @@ def run(side: ComponentSide, shape: Shape, index: int) -> tuple[int, int]:
             read = side.inputs()
             for source, sample in zip(sources, read, strict=True):
                 found = sample.header.tick if sample is not None else 0
-                stale += tick > WARM_UP_TICKS and found < shape.expected_tick(index, source, tick)
-            side.publish(next_sample(index, tick, stage, [sample or sample_t() for sample in read], padding))
+                stale += tick > LAST_WARM_UP_TICK and found < shape.expected_tick(index, source, tick)
+            made = side.new_sample()
+            fill(made, index, tick, stage, read, padding)
+            side.publish(made)
             last = tick
             iterations += 1
         side.done(tick)

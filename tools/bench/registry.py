@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from tools.bench.environments import CORE, Environment
+from tools.bench.environments import CORE, ECAL, ICE, ROS, ZENOH, ZMQ, Environment
 from tools.bench.shape import Shape
 
 Commands = Callable[[str], list[list[str]]]
@@ -45,6 +45,12 @@ def python_commands(python: str, module: str, shape_file: str) -> list[list[str]
     return [*made, [python, "-m", "tools.bench.supervise", module, shape_file]]
 
 
+def ros_commands(shape_file: str) -> list[list[str]]:
+    """The master, then the nodes; they wait for it by themselves."""
+    master = [ROS.python, str(ROS.folder / "usr/bin/rosmaster"), "--core", "-p", "11311"]
+    return [master, *python_commands(ROS.python, "rospy", shape_file)]
+
+
 _ALL = (
     Peer("unix", "Unix datagrams", CORE, LCM_GEN, bare=True),
     Peer("lcm", "bare LCM, a port a channel", CORE, LCM_GEN, udp=True, bare=True),
@@ -52,5 +58,10 @@ _ALL = (
     Peer("lcm_groups", "bare LCM, a port for ten channels", CORE, LCM_GEN, udp=True, bare=True),
     Peer("lcm_mpudpm", "bare LCM, mpudpm", CORE, LCM_GEN, udp=True, bare=True),
     Peer("lcm_onebus", "bare LCM, one bus", CORE, LCM_GEN, udp=True, bare=True),
+    Peer("zmq", "ZeroMQ, ipc", ZMQ, LCM_GEN),
+    Peer("zenoh", "Zenoh, tcp star", ZENOH, LCM_GEN),
+    Peer("ecal", "eCAL, shared memory", ECAL, LCM_GEN),
+    Peer("ice", "Ice, AMI", ICE, "Slice, Python"),
+    Peer("rospy", "ROS 1, rospy", ROS, "genpy, Python", start=ros_commands),
 )
 PEERS = {peer.name: peer for peer in _ALL}

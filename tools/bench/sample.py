@@ -1,24 +1,34 @@
 """What a component writes in the benchmark: a header, four doubles, sixteen covariances, and padding."""
 
 import math
+from collections.abc import Sequence
+from typing import Any, Protocol
 
-from lcmtypes.bench import sample_t
+
+class Sample(Protocol):
+    """What lcm-gen's class `sample_t` and the classes of peers with an own codec have in common."""
+
+    header: Any
+    x_m: float
+    y_m: float
+    heading_rad: float
+    confidence: float
+    covariance: list[float]
+    n_padding: int
+    padding: bytes
 
 
-def next_sample(component: int, tick: int, stage: int, read: list[sample_t], padding: bytes) -> sample_t:
-    """What a component writes: numbers that depend on everything it read."""
-    made = sample_t()
+def fill(made: Sample, component: int, tick: int, stage: int, read: Sequence[Sample | None], padding: bytes) -> None:
+    """Makes what a component writes: numbers that depend on everything it read."""
     made.header.tick = made.header.sequence = tick
     made.header.time_us = tick * 10_000
     made.header.stage = stage
     made.header.writer = f"bench/c{component}"
-    made.x_m = math.fsum(sample.x_m for sample in read) + 1.0
-    made.y_m = math.fsum(sample.y_m for sample in read) - 1.0
+    # the remainder, since the sums would grow for ever round the ring of readers
+    made.x_m = math.fmod(math.fsum(sample.x_m for sample in read if sample) + 1.0, 100.0)
+    made.y_m = math.fmod(math.fsum(sample.y_m for sample in read if sample) - 1.0, 100.0)
     made.heading_rad = component * 0.01
     made.confidence = 0.5
     made.covariance = [0.01 * index for index in range(16)]
     made.n_padding = len(padding)
     made.padding = padding
-    # the sums would grow for ever round the ring of readers
-    made.x_m, made.y_m = math.fmod(made.x_m, 100.0), math.fmod(made.y_m, 100.0)
-    return made

@@ -4,8 +4,8 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-WARM_UP_TICKS = 20
-"""Ticks before the first that counts; by then every peer's subscriptions have been found."""
+LAST_WARM_UP_TICK = 1_000_000
+"""Number of the last tick that does not count; processes tell by the number whether a tick is measured."""
 
 
 @dataclass(frozen=True)

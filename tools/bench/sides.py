@@ -1,10 +1,10 @@
 """What a peer has to offer: one side for the supervisor, one for each component."""
 
+from collections.abc import Sequence
 from importlib import import_module
 from typing import Any, Protocol
 
-from lcmtypes.bench import sample_t
-
+from tools.bench.sample import Sample
 from tools.bench.shape import Shape
 
 STOP = -1
@@ -30,10 +30,13 @@ class ComponentSide(Protocol):
     def tick(self) -> int:
         """Waits for the component's next tick; `STOP` ends it."""
 
-    def inputs(self) -> list[sample_t | None]:
+    def new_sample(self) -> Sample:
+        """An empty message of the peer's codec."""
+
+    def inputs(self) -> Sequence[Sample | None]:
         """The newest message of each source, in the order of `Shape.sources`; None before the first."""
 
-    def publish(self, sample: sample_t) -> None:
+    def publish(self, sample: Any) -> None:
         """Sends the component's message to its readers."""
 
     def done(self, tick: int) -> None:

@@ -92,6 +92,9 @@ class LcmComponent:
             self._ticks.handle()
         return self._pending.popleft()
 
+    def new_sample(self) -> sample_t:
+        return sample_t()
+
     def inputs(self) -> list[sample_t | None]:
         for link in self._inputs:
             while link.handle_timeout(0):

@@ -120,6 +120,9 @@ class WireComponent:
         tick: int = _NUMBERS.unpack(_body(self._ticks.recv(_DATAGRAM_MAX)))[1]
         return tick
 
+    def new_sample(self) -> sample_t:
+        return sample_t()
+
     def inputs(self) -> list[sample_t | None]:
         raw: dict[int, bytes] = {}
         while ready := self._ready.poll(0):

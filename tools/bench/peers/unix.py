@@ -77,6 +77,9 @@ class UnixComponent:
         tick: int = _NUMBERS.unpack(self._ticks.recv(64))[1]
         return tick
 
+    def new_sample(self) -> sample_t:
+        return sample_t()
+
     def inputs(self) -> list[sample_t | None]:
         raw: dict[int, bytes] = {}
         while ready := self._ready.poll(0):
