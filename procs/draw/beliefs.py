@@ -18,8 +18,8 @@ def draw_beliefs(canvas: Canvas, robot: str, belief: world_model_t) -> None:
     colour = TEAM_COLOURS.get(team_of(robot), UNKNOWN_TEAM)
     if belief.localized:
         canvas.ring((belief.x_m, belief.y_m), 0.28, 0.02, colour)
-    if belief.ball.known:
-        covariance = np.array(belief.ball.covariance)[:2, :2]
+    covariance = np.array(belief.ball.covariance)[:2, :2]
+    if belief.ball.known and np.isfinite(covariance).all():
         variances, axes = np.linalg.eigh((covariance + covariance.T) / 2)
         sizes = [min(_LIMIT_M, _SIGMAS * math.sqrt(max(0.0, variance))) for variance in variances[::-1].tolist()]
         angle_deg = math.degrees(math.atan2(axes[1, 1], axes[0, 1]))

@@ -1,5 +1,6 @@
 """A picture with a scale: draws shapes given in metres of the world frame, smoothed, to fractions of a pixel."""
 
+import math
 from collections.abc import Sequence
 
 import cv2
@@ -14,6 +15,7 @@ Place = tuple[float, float]
 """x and y in metres, world frame."""
 
 _SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
+_FAR_PX = 20_000.0
 _FONT = cv2.FONT_HERSHEY_DUPLEX
 _FONT_HEIGHT_PX = 21  # of a capital letter at scale 1
 
@@ -76,7 +78,9 @@ class Canvas:
 
     @staticmethod
     def _fine(pixels: float) -> int:
-        return round(pixels * (1 << _SHIFT))
+        # OpenCV takes whole numbers of limited size; what lies far off the picture, or nowhere, is not seen anyway.
+        near = min(_FAR_PX, max(-_FAR_PX, pixels)) if math.isfinite(pixels) else -_FAR_PX
+        return round(near * (1 << _SHIFT))
 
 
 def write(

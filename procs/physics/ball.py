@@ -8,6 +8,8 @@ from procs.physics.arena import BALL, BALL_FILTER
 from procs.physics.rolling import RollingFriction
 from procs.physics.settings import BallSettings
 
+_UPRIGHT_SPIN_S = 0.5  # time constant with which the ground stops a spin around the vertical
+
 
 class Ball:
     """A ball that stays on the ground; positions in the world frame."""
@@ -31,6 +33,7 @@ class Ball:
 
     def rub(self, duration_s: float) -> None:
         """Lets the ground act on the ball for a while."""
+        self.body.angular_velocity *= math.exp(-duration_s / _UPRIGHT_SPIN_S)
         vx_m_s, vy_m_s = self.body.velocity
         if self.carried:
             self.friction.roll(vx_m_s, vy_m_s)

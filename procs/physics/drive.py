@@ -37,11 +37,15 @@ class Drive:
         for wanted in self._line.due(now_us):
             self._wanted_m_s = wanted
         share = -math.expm1(-duration_s / self._robot.motor_time_s)
+        catching_up_s = self._robot.motor_time_s * share
         (a, b, c), (to_a, to_b, to_c) = self.wheels_m_s, self._wanted_m_s
         self.wheels_m_s = a + (to_a - a) * share, b + (to_b - b) * share, c + (to_c - c) * share
-        a, b, c = self.wheels_m_s
         way_a, way_b, way_c = self._travelled_m
-        self._travelled_m = way_a + a * duration_s, way_b + b * duration_s, way_c + c * duration_s
+        self._travelled_m = (
+            way_a + to_a * duration_s + (a - to_a) * catching_up_s,
+            way_b + to_b * duration_s + (b - to_b) * catching_up_s,
+            way_c + to_c * duration_s + (c - to_c) * catching_up_s,
+        )
         self._measured_s += duration_s
 
     def push(self, velocity: Velocity) -> tuple[float, float, float]:
