@@ -1,0 +1,78 @@
+"""Where to shoot and whom to pass to: how much room is left beside the robots in the way."""
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from procs.behaviour.geometry import bearing_rad, wrap_rad
+from procs.behaviour.view import Robot
+from procs.field import Field, Point
+
+_BLOCK_M = 0.25 + 0.11  # a ball's middle passes a robot's middle at this distance
+_REACTION_S = 0.25
+_STEP_ASIDE_M_S = 0.8
+_BALL_M_S = 9.0
+_TARGETS = 13
+
+
+class Aim(NamedTuple):
+    """A point to play the ball to, and the room there."""
+
+    place: Point
+    free_rad: float
+    """Smallest angle between the ball's way and what is in the way, post or robot; negative: blocked."""
+
+
+def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:
+    """Free angle beside a ball's way between two points; negative if a robot blocks it, pi if nobody is near.
+
+    A robot far down the way has time to step aside, so it counts as wider.
+    """
+    way_m, way_rad = math.dist(start, end), bearing_rad(start, end)
+    free_rad = math.pi
+    for robot in robots:
+        distance_m = math.dist(start, robot.place)
+        if distance_m > way_m + _BLOCK_M:
+            continue
+        off_rad = abs(wrap_rad(bearing_rad(start, robot.place) - way_rad))
+        width_m = _BLOCK_M + _STEP_ASIDE_M_S * max(0.0, distance_m / ball_m_s - _REACTION_S)
+        free_rad = min(free_rad, off_rad - math.asin(min(1.0, width_m / max(distance_m, 1e-6))))
+    return free_rad
+
+
+def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
+    """The point of the opponents' goal line with the most room, seen from the ball at `start`."""
+    in_the_way = list(robots)
+    posts = field.goal_posts(1.0)
+    post_m = field.post_diameter_m / 2 + 0.11
+    inner_m = field.goal_width_m / 2 - 0.15
+    best = Aim(field.goal_centre(1.0), -math.pi)
+    for index in range(_TARGETS):
+        target = Point(field.half_length_m, inner_m * (2 * index / (_TARGETS - 1) - 1))
+        way_rad = bearing_rad(start, target)
+        post_rad = min(
+            abs(wrap_rad(bearing_rad(start, post) - way_rad)) - post_m / max(post_m, math.dist(start, post))
+            for post in posts
+        )
+        free_rad = min(post_rad, lane_rad(start, target, in_the_way))
+        if free_rad > best.free_rad:
+            best = Aim(target, free_rad)
+    return best
+
+
+def best_pass(start: Point, mates: Iterable[Robot], opponents: Iterable[Robot]) -> Aim | None:
+    """The team mate who is 2 to 9 m away with the freest way; of equally free ones the one further ahead.
+
+    Returns:
+        Where that mate is, and the room beside the way; None if nobody is at a useful distance.
+    """
+    others = list(opponents)
+    best: tuple[float, Aim] | None = None
+    for mate in mates:
+        if not 2.0 <= math.dist(start, mate.place) <= 9.0:
+            continue
+        free_rad = lane_rad(start, mate.place, others, ball_m_s=4.0)
+        worth = min(free_rad, 0.5) + 0.05 * (mate.place.x_m - start.x_m)
+        if best is None or worth > best[0]:
+            best = worth, Aim(mate.place, free_rad)
+    return best[1] if best else None

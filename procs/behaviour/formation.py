@@ -1,0 +1,65 @@
+"""Where the robots without the ball stand, relative to the ball; attack frame."""
+
+import math
+
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.geometry import ahead, bearing_rad, between, clamp
+from procs.behaviour.restarts import State
+from procs.field import Field, Point
+
+_OWN_SET_PIECE_M = 2.3
+_THEIR_SET_PIECE_M = 3.3
+_DROPPED_BALL_M = 1.3
+_HALFWAY_M = 0.5
+"""At a kick-off a robot's middle stays that far in its own half."""
+
+
+def places(ball: Point, ours: bool, field: Field) -> list[Point]:
+    """Places of supporter, first and second defender, and of one more robot, in the order of their importance.
+
+    `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball.
+    """
+    goal = field.goal_centre(-1.0)
+    other_flank = -1.0 if ball.y_m > 0 else 1.0
+    if ours:
+        supporter = Point(clamp(ball.x_m + 1.5, -6.0, 8.0), clamp(ball.y_m + other_flank * 3.5, -5.0, 5.0))
+    else:
+        supporter = Point(clamp(ball.x_m - 2.0, -7.5, 6.0), clamp(ball.y_m * 0.5 + other_flank, -5.0, 5.0))
+    far_m = math.dist(goal, ball)
+    stopper = between(goal, ball, clamp(0.5 * far_m, 3.2, 8.0) / far_m) if far_m > 3.2 else Point(-8.0, ball.y_m * 0.5)
+    sweeper = Point(clamp(ball.x_m - 4.0, -8.0, 1.0), clamp(stopper.y_m + other_flank * 2.5, -4.5, 4.5))
+    spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - other_flank * 2.0, -6.0, 6.0))
+    return [supporter, stopper, sweeper, spare]
+
+
+def taker_place(spot: Point, target: Point) -> Point:
+    """Where the taker of a set piece waits: behind the ball, seen from where it will play it."""
+    return ahead(spot, bearing_rad(spot, target), -0.75)
+
+
+def first_opponent_place(game: Game, field: Field) -> Point:
+    """Where the nearest robot waits at a set piece that is not its team's: on the way from the ball to its goal."""
+    return allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
+
+
+def allowed(place: Point, game: Game, field: Field) -> Point:
+    """The place, or one near it that is far enough from a set piece's ball and, at a kick-off, in the own half."""
+    if game.free_play:
+        return place
+    distance_m = _keep_off_m(game)
+    if math.dist(place, game.spot) < distance_m:
+        way_rad = bearing_rad(game.spot, place)
+        if not field.in_field(*ahead(game.spot, way_rad, distance_m)):
+            way_rad = bearing_rad(game.spot, Point(-0.3 * field.half_length_m, 0.0))
+        place = ahead(game.spot, way_rad, distance_m)
+    if game.state is State.KICK_OFF and place.x_m > -_HALFWAY_M:
+        aside_m = math.sqrt(max(0.0, distance_m**2 - _HALFWAY_M**2))
+        y_m = math.copysign(max(abs(place.y_m), aside_m), place.y_m)
+        place = Point(-_HALFWAY_M, y_m)
+    return place
+
+
+def _keep_off_m(game: Game) -> float:
+    if game.state is State.DROP_BALL:
+        return _DROPPED_BALL_M
+    return _OWN_SET_PIECE_M if game.whose is Whose.OURS else _THEIR_SET_PIECE_M

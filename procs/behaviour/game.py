@@ -1,0 +1,49 @@
+"""The referee's state as one team sees it, in the attack frame."""
+
+from enum import Enum
+from typing import NamedTuple
+
+from lcmtypes.soccer import game_state_t
+from procs.behaviour.restarts import State, Team
+from procs.behaviour.view import Frame
+from procs.field import Point
+
+
+class Whose(Enum):
+    """Whose set piece it is."""
+
+    OURS = "ours"
+    THEIRS = "theirs"
+    NOBODYS = "nobody's"
+
+
+class Game(NamedTuple):
+    """What the referee says."""
+
+    state: State = State.FROZEN
+    stopped: bool = True
+    whose: Whose = Whose.NOBODYS
+    spot: Point = Point(0.0, 0.0)
+    """Where the set piece is taken."""
+
+    @property
+    def free_play(self) -> bool:
+        """Whether everybody may play the ball."""
+        return self.state is State.PLAY or (self.state is State.DROP_BALL and not self.stopped)
+
+    @property
+    def paused(self) -> bool:
+        """Whether nobody is to move."""
+        return self.state in (State.FROZEN, State.HALF_TIME)
+
+
+_STATES = {int(state): state for state in State}
+
+
+def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
+    """Turns the referee's message; a state that we do not know means standing still."""
+    whose = Whose.NOBODYS
+    if message.state_team in (Team.CYAN, Team.MAGENTA):
+        whose = Whose.OURS if message.state_team == team else Whose.THEIRS
+    spot = frame.point(message.ball_x_m, message.ball_y_m)
+    return Game(_STATES.get(message.state, State.FROZEN), message.stopped, whose, spot)

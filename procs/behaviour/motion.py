@@ -1,0 +1,92 @@
+"""Velocities for an omnidirectional robot: as fast as it can still stop, no faster change than its wheels grip."""
+
+import math
+from typing import NamedTuple
+
+from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
+
+from procs.behaviour.geometry import clamp, wrap_rad
+from procs.field import Point
+
+
+class Pose(NamedTuple):
+    """Place and heading in the world frame."""
+
+    place: Point
+    heading_rad: float
+
+
+class Velocity(NamedTuple):
+    """Velocity, in the world frame or the robot's own."""
+
+    vx_m_s: float
+    vy_m_s: float
+    omega_rad_s: float
+
+
+STANDSTILL = Velocity(0.0, 0.0, 0.0)
+
+
+class Limits(BaseModel):
+    """What the robot can do, and how it is steered."""
+
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+    speed_m_s: PositiveFloat = 3.0
+    """Highest speed."""
+    acceleration_m_s2: PositiveFloat = 3.0
+    """Limit of the change of the velocity."""
+    braking_m_s2: PositiveFloat = 2.5
+    """What is counted on for stopping at the target."""
+    omega_rad_s: PositiveFloat = 5.0
+    """Highest turning speed."""
+    angular_acceleration_rad_s2: PositiveFloat = 18.0
+    """Limit of its change."""
+    angular_braking_rad_s2: PositiveFloat = 9.0
+    """What is counted on for stopping at the heading."""
+    ball_omega_rad_s: PositiveFloat = 3.0
+    """Highest turning speed with the ball in the mouth."""
+    ball_acceleration_m_s2: PositiveFloat = 2.5
+    """Limit of the change of the velocity with the ball in the mouth."""
+    position_gain_1_s: PositiveFloat = 4.0
+    """Speed for each metre to go, close to the target."""
+    heading_gain_1_s: PositiveFloat = 6.0
+    """Turning speed for each radian to go, close to the heading."""
+    latency_s: NonNegativeFloat = 0.1
+    """From a pose's measurement until the wheels follow the command that it led to."""
+
+
+def ahead_in_time(pose: Pose, measured: Velocity, duration_s: float) -> Pose:
+    """Where the robot will be; `measured` is in its own frame."""
+    middle_rad = pose.heading_rad + measured.omega_rad_s * duration_s / 2
+    vx_m_s, vy_m_s = turned(measured.vx_m_s, measured.vy_m_s, middle_rad)
+    place = Point(pose.place.x_m + vx_m_s * duration_s, pose.place.y_m + vy_m_s * duration_s)
+    return Pose(place, wrap_rad(pose.heading_rad + measured.omega_rad_s * duration_s))
+
+
+def turned(x: float, y: float, angle_rad: float) -> tuple[float, float]:
+    """A vector turned counter-clockwise."""
+    cos, sin = math.cos(angle_rad), math.sin(angle_rad)
+    return x * cos - y * sin, x * sin + y * cos
+
+
+def speed_to_go_m_s(distance_m: float, end_m_s: float, limit_m_s: float, limits: Limits) -> float:
+    """Highest speed from which the robot still brakes to the end speed within the distance."""
+    braking_m_s = math.sqrt(end_m_s**2 + 2 * limits.braking_m_s2 * max(0.0, distance_m))
+    return min(limit_m_s, braking_m_s, end_m_s + limits.position_gain_1_s * max(0.0, distance_m))
+
+
+def turning_to_go_rad_s(turn_rad: float, limit_rad_s: float, limits: Limits) -> float:
+    """Turning speed from which the robot still stops at the heading."""
+    braking_rad_s = math.sqrt(2 * limits.angular_braking_rad_s2 * abs(turn_rad))
+    return math.copysign(min(limit_rad_s, braking_rad_s, limits.heading_gain_1_s * abs(turn_rad)), turn_rad)
+
+
+def approach(before: Velocity, wanted: Velocity, duration_s: float, change_m_s2: float, turn_rad_s2: float) -> Velocity:
+    """The wanted velocity, or as near to it as the limits let the robot get in the time."""
+    dvx, dvy = wanted.vx_m_s - before.vx_m_s, wanted.vy_m_s - before.vy_m_s
+    change_m_s, possible_m_s = math.hypot(dvx, dvy), change_m_s2 * duration_s
+    share = 1.0 if change_m_s <= possible_m_s else possible_m_s / change_m_s
+    turn = turn_rad_s2 * duration_s
+    omega = clamp(wanted.omega_rad_s, before.omega_rad_s - turn, before.omega_rad_s + turn)
+    return Velocity(before.vx_m_s + dvx * share, before.vy_m_s + dvy * share, omega)

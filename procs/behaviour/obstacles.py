@@ -1,0 +1,49 @@
+"""What the robot's middle keeps out of on its way: other robots, goal posts, if asked the ball; world frame."""
+
+import math
+from collections.abc import Iterable
+
+from lcmtypes.soccer import robot_estimate_t, world_model_t
+from procs.behaviour.geometry import clamp
+from procs.behaviour.path import Disc
+from procs.field import SIDES, Field, Point
+
+_ROBOT_M = 0.25
+_BALL_M = 0.11
+_MARGIN_M = 0.12
+_BALL_MARGIN_M = 0.1
+_FORESIGHT_S = 0.3
+_NEAR_M = 6.0  # what is further away can wait
+
+
+def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
+    """Discs around what is near, where it will be in a moment."""
+    own = Point(model.x_m, model.y_m)
+    found = [
+        Disc(post, _ROBOT_M + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
+    ]
+    if avoid_robots:
+        found += _robots(model.mates) + _robots(model.opponents)
+    if avoid_ball and model.ball.known:
+        ball = Point(model.ball.x_m, model.ball.y_m)
+        found.append(Disc(ball, _ROBOT_M + _BALL_M + _BALL_MARGIN_M))
+    return [disc for disc in found if math.dist(disc.middle, own) < _NEAR_M]
+
+
+def reachable(place: Point, field: Field) -> Point:
+    """The place, or the nearest one that is neither in a goal nor at the wall."""
+    x_m = clamp(place.x_m, -field.half_length_m - field.border_m + 0.35, field.half_length_m + field.border_m - 0.35)
+    y_m = clamp(place.y_m, -field.half_width_m - field.border_m + 0.35, field.half_width_m + field.border_m - 0.35)
+    if abs(y_m) < field.goal_width_m / 2 + 0.5:
+        x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
+    return Point(x_m, y_m)
+
+
+def _robots(estimates: Iterable[robot_estimate_t]) -> list[Disc]:
+    return [
+        Disc(
+            Point(robot.x_m + robot.vx_m_s * _FORESIGHT_S, robot.y_m + robot.vy_m_s * _FORESIGHT_S),
+            2 * _ROBOT_M + _MARGIN_M,
+        )
+        for robot in estimates
+    ]

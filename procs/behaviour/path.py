@@ -1,0 +1,89 @@
+"""Finds a way around discs: the direction of the freest tangent, as in a visibility graph of one step."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from procs.behaviour.geometry import bearing_rad, wrap_rad
+from procs.field import Point
+
+_GRAZE_RAD = 0.02
+_SWITCH_RAD = 0.35
+"""The other side of an obstacle must save so much turning, or a robot in front of two equal ways would dither."""
+_CROWD_M = 0.02
+
+
+class Disc(NamedTuple):
+    """A place that the robot's middle keeps out of."""
+
+    middle: Point
+    radius_m: float
+
+
+class Way(NamedTuple):
+    """How to go on towards the target."""
+
+    direction_rad: float
+    length_m: float
+    """Length of the way, detour included, as far as it can be seen from here."""
+    free_m: float
+    """How far that direction is free."""
+    blocked: bool
+    """No direction is free."""
+
+
+def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: float | None = None) -> Way:
+    """The way that turns least from the straight one and is free until it has passed what blocks that.
+
+    A disc that covers the target shrinks until the target lies outside it; from a disc that covers the start the way
+    leads out. `before_rad` is the direction of the last tick: staying on the same side is preferred.
+    """
+    distance_m, straight_rad = math.dist(start, target), bearing_rad(start, target)
+    shrunk = [_shrink(disc, start, target) for disc in discs]
+    free_m = _free_m(start, straight_rad, shrunk)
+    if free_m >= distance_m:
+        return Way(straight_rad, distance_m, free_m, blocked=False)
+    best: tuple[float, Way] | None = None
+    for disc in shrunk:
+        away_m = math.dist(start, disc.middle)
+        if away_m > distance_m + disc.radius_m:
+            continue
+        middle_rad = bearing_rad(start, disc.middle)
+        half_rad = math.asin(min(1.0, disc.radius_m / max(away_m, 1e-6))) + _GRAZE_RAD
+        needed_m = math.sqrt(max(0.0, away_m**2 - disc.radius_m**2))
+        for direction_rad in (middle_rad + half_rad, middle_rad - half_rad):
+            free_m = _free_m(start, direction_rad, shrunk)
+            if free_m < needed_m:
+                continue
+            turn_rad = wrap_rad(direction_rad - straight_rad)
+            cost_rad = abs(turn_rad)
+            if before_rad is not None and turn_rad * wrap_rad(before_rad - straight_rad) < 0:
+                cost_rad += _SWITCH_RAD
+            if best is None or cost_rad < best[0]:
+                corner = Point(
+                    start.x_m + needed_m * math.cos(direction_rad), start.y_m + needed_m * math.sin(direction_rad)
+                )
+                length_m = needed_m + math.dist(corner, target)
+                best = cost_rad, Way(wrap_rad(direction_rad), length_m, free_m, blocked=False)
+    return best[1] if best else Way(straight_rad, distance_m, _free_m(start, straight_rad, shrunk), blocked=True)
+
+
+def _shrink(disc: Disc, start: Point, target: Point) -> Disc:
+    room_m = min(math.dist(disc.middle, start), math.dist(disc.middle, target)) - _CROWD_M
+    return disc if disc.radius_m <= room_m else Disc(disc.middle, max(0.0, room_m))
+
+
+def _free_m(start: Point, direction_rad: float, discs: Sequence[Disc]) -> float:
+    """How far a ray goes until it meets a disc; infinite if it meets none."""
+    dx, dy = math.cos(direction_rad), math.sin(direction_rad)
+    free_m = math.inf
+    for disc in discs:
+        to_x, to_y = disc.middle.x_m - start.x_m, disc.middle.y_m - start.y_m
+        along_m = to_x * dx + to_y * dy
+        if along_m <= 0.0:
+            continue
+        aside_m2 = to_x * to_x + to_y * to_y - along_m * along_m
+        depth_m2 = disc.radius_m * disc.radius_m - aside_m2
+        if depth_m2 > 0.0:
+            free_m = min(free_m, max(0.0, along_m - math.sqrt(depth_m2)))
+    return free_m

@@ -1,0 +1,67 @@
+"""Who does what: every robot computes the same assignment from what the team knows."""
+
+import itertools
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from procs.behaviour import ballistics
+from procs.behaviour.formation import places
+from procs.behaviour.view import Robot, View
+from procs.field import Field, Point
+from procs.physics.teams import number_of
+
+GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
+
+_STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
+_STAY_M = 1.0  # a robot keeps its place in the formation unless changing saves so much way
+
+
+class Job(NamedTuple):
+    """A robot's part in the team."""
+
+    role: str
+    place: Point
+    """Where the role stands when it has nothing better to do."""
+
+
+def assign(view: View, field: Field) -> dict[str, Job]:
+    """Jobs of the own robot, if it is localized, and of its mates, by name.
+
+    The lowest number keeps the goal unless it is alone; of the others the one that meets the ball first attacks. The
+    rest fill the formation so that they drive little. The order of the mates does not matter.
+    """
+    team = sorted((*view.mates, view.own) if view.localized else view.mates, key=lambda robot: robot.name)
+    jobs: dict[str, Job] = {}
+    if len(team) > 1:
+        keeper = min(team, key=lambda robot: (number_of(robot.name), robot.name))
+        jobs[keeper.name] = Job(GOALKEEPER, field.goal_centre(-1.0))
+        team.remove(keeper)
+    if not team:
+        return jobs
+    times_s = {robot.name: ballistics.meet(view.ball, robot.place).time_s for robot in team}
+    attacker = min(team, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
+    jobs[attacker.name] = Job(ATTACKER, view.ball.place)
+    team.remove(attacker)
+    theirs_s = min((ballistics.meet(view.ball, other.place).time_s for other in view.opponents), default=math.inf)
+    ours = times_s[attacker.name] <= theirs_s
+    roles = [SUPPORTER, DEFENDER, DEFENDER, DEFENDER]
+    posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, field), strict=True)]
+    jobs.update(_fill(team, posts))
+    return jobs
+
+
+def _fill(team: Sequence[Robot], posts: Sequence[Job]) -> dict[str, Job]:
+    filled = list(posts[: len(team)])
+    best = min(itertools.permutations(range(len(filled))), key=lambda order: (_way_m(team, filled, order), order))
+    jobs = {robot.name: filled[index] for robot, index in zip(team, best, strict=False)}
+    left = {robot.name: posts[-1] for robot in team if robot.name not in jobs}
+    return jobs | left
+
+
+def _way_m(team: Sequence[Robot], posts: Sequence[Job], order: Sequence[int]) -> float:
+    way_m = 0.0
+    for robot, index in zip(team, order, strict=False):
+        post = posts[index]
+        way_m += math.dist(robot.place, post.place) - _STAY_M * (robot.role == post.role)
+    return way_m

@@ -1,0 +1,48 @@
+"""All skills by the names that agents use, and the machine that runs one at a time."""
+
+from procs.behaviour.skills.getting import GetBall, Intercept
+from procs.behaviour.skills.keeping import KeepGoal
+from procs.behaviour.skills.moving import Goto, Mark, Stop
+from procs.behaviour.skills.playing import Dribble, Pass, Shoot
+from procs.behaviour.skills.skill import Scene, Skill, Status, Step, failed
+
+SKILLS: dict[str, type[Skill]] = {
+    "stop": Stop,
+    "goto": Goto,
+    "get_ball": GetBall,
+    "dribble": Dribble,
+    "shoot": Shoot,
+    "pass": Pass,
+    "intercept": Intercept,
+    "keep_goal": KeepGoal,
+    "mark": Mark,
+}
+
+
+class Machine:
+    """Runs the skill of the newest command.
+
+    A new command for the same skill moves its target while it runs; it begins anew if it had ended. A skill that
+    has reached its end stays there if it is a lasting one; the others stop the robot and wait for a new command.
+    """
+
+    def __init__(self) -> None:
+        self._name = ""
+        self._command_id = 0
+        self._skill: Skill | None = None
+        self._ended: Step | None = None
+
+    def step(self, command_id: int, name: str, scene: Scene) -> Step:
+        """Goes on by one tick of the command."""
+        if command_id != self._command_id and (name != self._name or self._ended):
+            self._skill, self._ended = (SKILLS[name]() if name in SKILLS else None), None
+            if self._skill is None:
+                self._ended = failed(f"no skill '{name}'; there are {', '.join(SKILLS)}")
+        self._command_id, self._name = command_id, name
+        if self._ended or self._skill is None:
+            ended = self._ended or Step(status=Status.INACTIVE)
+            return ended._replace(drive=None, kick_m_s=0.0, dribble=scene.holds_ball)
+        step = self._skill.step(scene)
+        if step.status is not Status.RUNNING and not self._skill.lasting:
+            self._ended = step
+        return step

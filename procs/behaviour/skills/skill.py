@@ -1,0 +1,77 @@
+"""What every skill gets and gives: a scene goes in, a step comes out, once a tick; attack frame."""
+
+from abc import ABC, abstractmethod
+from enum import IntEnum
+from typing import NamedTuple
+
+from procs.behaviour.view import View
+from procs.field import Field, Point
+
+
+class Status(IntEnum):
+    """How a skill is doing; the numbers are those of the message, after the Fawkes skiller."""
+
+    INACTIVE = 0
+    FINAL = 1
+    RUNNING = 2
+    FAILED = 3
+
+
+class Scene(NamedTuple):
+    """Everything a skill may look at."""
+
+    view: View
+    place: Point
+    """Target of the order."""
+    heading_rad: float
+    speed_m_s: float = 0.0
+    """Limit of the order; 0: the robot's own."""
+    holds_ball: bool = False
+    charged: bool = True
+    kicks_done: int = 0
+    """Number of the newest kick that the kicker carried out."""
+    kicks_asked: int = 0
+    """Number of the newest kick that was asked for."""
+    set_piece: bool = False
+    """The ball lies still and waits for the own team."""
+    duration_s: float = 0.05
+    """Since the last scene."""
+    field: Field = Field()
+
+
+class Drive(NamedTuple):
+    """Where to drive."""
+
+    place: Point
+    heading_rad: float
+    speed_m_s: float = 0.0
+    end_speed_m_s: float = 0.0
+    avoid_ball: bool = False
+    avoid_robots: bool = True
+
+
+class Step(NamedTuple):
+    """What a skill wants now; without a drive the robot stops."""
+
+    drive: Drive | None = None
+    dribble: bool = False
+    kick_m_s: float = 0.0
+    """Above 0: kick now with that speed."""
+    status: Status = Status.RUNNING
+    reason: str = ""
+
+
+def failed(reason: str) -> Step:
+    """The robot stops; says why."""
+    return Step(status=Status.FAILED, reason=reason)
+
+
+class Skill(ABC):
+    """One skill from its start to its end; a fresh object for every new command of another kind."""
+
+    lasting = False
+    """Goes on after it has reached its end, to stay there."""
+
+    @abstractmethod
+    def step(self, scene: Scene) -> Step:
+        """Goes on by one tick."""

@@ -1,0 +1,169 @@
+"""What a robot does next: from its view of the match, the referee's state and its job to one order for its skills."""
+
+import math
+from typing import NamedTuple
+
+from procs.behaviour import aim, ballistics, formation
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.geometry import bearing_rad, clamp
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
+from procs.behaviour.view import Robot, View
+from procs.field import Field, Point
+
+_SHOT_RANGE_M = 8.0
+_PRESSED_M = 1.3
+_PATIENCE_S = 4.0  # with the ball, before any shot or pass is better than none
+_FAST_BALL_M_S = 1.2
+
+
+class Order(NamedTuple):
+    """A skill and its target in the attack frame."""
+
+    skill: str
+    place: Point = Point(0.0, 0.0)
+    heading_rad: float = 0.0
+    intention: str = ""
+
+
+class Tactics:
+    """Decides for one robot, once a tick; remembers what it was about to do."""
+
+    def __init__(self, field: Field) -> None:
+        self.field = field
+        self._last = Order("stop")
+        self._held_s = 0.0
+        self._taking = False  # the ball in the mouth is that of the own set piece
+
+    def decide(self, view: View, game: Game, job: Job, holds_ball: bool, duration_s: float) -> Order:
+        """The order for this tick, `duration_s` after the last."""
+        self._held_s = self._held_s + duration_s if holds_ball else 0.0
+        if not game.free_play:
+            self._taking = game.whose is Whose.OURS and job.role == ATTACKER
+        elif not holds_ball:
+            self._taking = False
+        self._last = self._order(view, game, job, holds_ball)
+        return self._last
+
+    def _order(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
+        if game.paused or not view.localized:
+            return Order("stop", intention="pause" if game.paused else "lost")
+        if job.role == GOALKEEPER:
+            return self._keep(view, game, holds_ball)
+        if not game.free_play:
+            return self._set_piece(view, game, job, holds_ball)
+        if not view.ball.known:
+            return self._stand(view, job.place, "search")
+        if holds_ball:
+            return self._play_ball(view)
+        if job.role == ATTACKER and not keeper_takes(view, self.field):
+            return self._go_for_ball(view)
+        return self._help(view, game, job)
+
+    def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
+        if game.free_play and holds_ball:
+            return self._pass_on(view) or Order(
+                "shoot", aim.best_shot(view.ball.place, view.opponents, self.field).place
+            )
+        if game.free_play and view.ball.known and keeper_takes(view, self.field):
+            return self._go_for_ball(view)
+        return Order("keep_goal", intention="keep goal")
+
+    def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
+        if job.role != ATTACKER:
+            return self._stand(view, formation.allowed(job.place, game, self.field), "take position")
+        if game.whose is not Whose.OURS:
+            return self._stand(view, formation.first_opponent_place(game, self.field), "keep distance")
+        receiver = aim.best_pass(game.spot, _field_players(view), view.opponents)
+        target = receiver.place if receiver else self.field.goal_centre(1.0)
+        way_rad = bearing_rad(game.spot, target)
+        if game.stopped:
+            return Order("goto", formation.taker_place(game.spot, target), way_rad, "take set piece")
+        if holds_ball:
+            return self._play_ball(view)
+        return Order("get_ball", game.spot, way_rad, "take set piece")
+
+    def _play_ball(self, view: View) -> Order:
+        ball = view.ball.place
+        if self._taking:
+            passed = self._pass_on(view)
+            if passed:
+                return passed
+        shot = self._shot(view)
+        if shot:
+            return shot
+        pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
+        if pressed or self._held_s > _PATIENCE_S:
+            passed = self._pass_on(view)
+            if passed:
+                return passed
+        goal = self.field.goal_centre(1.0)
+        target = Point(min(ball.x_m + 3.0, self.field.half_length_m - 2.5), clamp(0.6 * ball.y_m, -3.0, 3.0))
+        return Order("dribble", target, bearing_rad(target, goal), "dribble")
+
+    def _shot(self, view: View) -> Order | None:
+        start = view.ball.place
+        best = aim.best_shot(start, view.opponents, self.field)
+        distance_m = math.dist(start, best.place)
+        if start.x_m < 0.3 or distance_m > _SHOT_RANGE_M:
+            return None
+        needed_m = 0.3 if self._held_s < _PATIENCE_S / 2 else 0.12 if self._held_s < _PATIENCE_S else -math.inf
+        if self._last.skill == "shoot":
+            kept_rad = aim.lane_rad(start, self._last.place, view.opponents)
+            if kept_rad > max(0.0, best.free_rad - 0.1):
+                return self._last
+        if best.free_rad * distance_m > needed_m:
+            return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
+        return None
+
+    def _pass_on(self, view: View) -> Order | None:
+        best = aim.best_pass(view.own.place, _field_players(view), view.opponents)
+        if best is None or best.free_rad < 0.12:
+            return None
+        return Order("pass", best.place, bearing_rad(view.own.place, best.place), "pass")
+
+    def _go_for_ball(self, view: View) -> Order:
+        ball = view.ball
+        goal_rad = bearing_rad(ball.place, self.field.goal_centre(1.0))
+        towards = ball.velocity_m_s.x_m * (view.own.place.x_m - ball.place.x_m) + ball.velocity_m_s.y_m * (
+            view.own.place.y_m - ball.place.y_m
+        )
+        distance_m = math.dist(view.own.place, ball.place)
+        if ball.speed_m_s > _FAST_BALL_M_S and towards > 0.7 * ball.speed_m_s * distance_m:
+            return Order("intercept", ball.place, goal_rad, "intercept")
+        return Order("get_ball", ball.place, goal_rad, "get ball")
+
+    def _help(self, view: View, game: Game, job: Job) -> Order:
+        if job.role == DEFENDER:
+            runner = _free_opponent(view)
+            if runner and math.dist(runner.place, view.own.place) < 3.0:
+                return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
+        return self._stand(view, formation.allowed(job.place, game, self.field), job.role)
+
+    def _stand(self, view: View, place: Point, intention: str) -> Order:
+        return Order("goto", place, bearing_rad(place, view.ball.place), intention)
+
+
+def keeper_takes(view: View, field: Field) -> bool:
+    """Whether the goalkeeper leaves its line for the ball: a slow ball before its goal that it reaches first."""
+    ball = view.ball
+    if ball.speed_m_s > _FAST_BALL_M_S or not field.in_penalty_area(*ball.place, -1.0, 0.3):
+        return False
+    keepers = [robot for robot in (view.own, *view.mates) if robot.role == GOALKEEPER]
+    if not keepers:
+        return False
+    others = [*view.opponents, *(robot for robot in (view.own, *view.mates) if robot.role != GOALKEEPER)]
+    keeper_s = ballistics.meet(ball, keepers[0].place).time_s
+    return all(keeper_s < ballistics.meet(ball, other.place).time_s + 0.3 for other in others)
+
+
+def _field_players(view: View) -> list[Robot]:
+    return [mate for mate in view.mates if mate.role != GOALKEEPER]
+
+
+def _free_opponent(view: View) -> Robot | None:
+    """The opponent deepest in the own half, other than the one at the ball."""
+    if len(view.opponents) < 2:
+        return None
+    at_ball = min(view.opponents, key=lambda other: (math.dist(other.place, view.ball.place), other.place))
+    runners = [other for other in view.opponents if other is not at_ball and other.place.x_m < 0.0]
+    return min(runners, key=lambda other: other.place, default=None)

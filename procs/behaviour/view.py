@@ -1,0 +1,90 @@
+"""A robot's view of the match in the attack frame: the world turned so that the own team always attacks +x.
+
+For cyan this is the world frame; for magenta it is turned by half a turn. Everything that thinks about the game uses
+it, so that both teams run the same code and play alike.
+"""
+
+import math
+from typing import NamedTuple
+
+from lcmtypes.soccer import robot_estimate_t, world_model_t
+from procs.behaviour.geometry import wrap_rad
+from procs.field import Point
+
+
+class Frame(NamedTuple):
+    """Turns points and directions between world frame and attack frame; both ways are the same."""
+
+    sign: float
+    """1.0: the team attacks +x and nothing changes; -1.0: half a turn."""
+
+    def point(self, x_m: float, y_m: float) -> Point:
+        """A point, or a velocity, in the other frame."""
+        return Point(self.sign * x_m, self.sign * y_m)
+
+    def heading_rad(self, heading_rad: float) -> float:
+        """A direction in the other frame."""
+        return heading_rad if self.sign > 0 else wrap_rad(heading_rad + math.pi)
+
+
+class Robot(NamedTuple):
+    """A robot as the own robot knows it; heading and role only for team mates and itself."""
+
+    name: str
+    place: Point
+    heading_rad: float = 0.0
+    velocity_m_s: Point = Point(0.0, 0.0)
+    role: str = ""
+
+
+class Ball(NamedTuple):
+    """The ball as the team knows it; not `known` means that nobody saw it lately."""
+
+    known: bool
+    place: Point = Point(0.0, 0.0)
+    velocity_m_s: Point = Point(0.0, 0.0)
+
+    @property
+    def speed_m_s(self) -> float:
+        """Speed over the ground."""
+        return math.hypot(*self.velocity_m_s)
+
+
+class View(NamedTuple):
+    """What a robot believes about the match."""
+
+    localized: bool
+    own: Robot
+    ball: Ball
+    mates: tuple[Robot, ...] = ()
+    opponents: tuple[Robot, ...] = ()
+
+
+def view_of(model: world_model_t, name: str, role: str, frame: Frame, mate_timeout_s: float = 2.0) -> View:
+    """Turns the world model into the attack frame; mates that were silent for the time-out are left out."""
+    own = Robot(
+        name,
+        frame.point(model.x_m, model.y_m),
+        frame.heading_rad(model.heading_rad),
+        frame.point(model.vx_m_s, model.vy_m_s),
+        role,
+    )
+    ball = model.ball
+    mates = zip(model.mates, model.mate_roles, strict=True)
+    return View(
+        model.localized,
+        own,
+        Ball(ball.known, frame.point(ball.x_m, ball.y_m), frame.point(ball.vx_m_s, ball.vy_m_s)),
+        tuple(_robot(mate, said, frame) for mate, said in mates if mate.age_s <= mate_timeout_s),
+        tuple(_robot(other, "", frame) for other in model.opponents),
+    )
+
+
+def _robot(estimate: robot_estimate_t, role: str, frame: Frame) -> Robot:
+    return Robot(
+        estimate.name,
+        frame.point(estimate.x_m, estimate.y_m),
+        frame.heading_rad(estimate.heading_rad),
+        frame.point(estimate.vx_m_s, estimate.vy_m_s),
+        role,
+    )
