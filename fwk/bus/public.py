@@ -1,0 +1,107 @@
+"""The public bus: an ordinary LCM udpm URL, which lcm-spy, lcm-logger and programs in any language understand."""
+
+import ctypes
+import itertools
+import socket
+import struct
+from urllib.parse import parse_qs, urlsplit
+
+from fwk.bus import wire
+from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
+
+_SO_ATTACH_FILTER = 26
+
+
+class UrlError(Exception):
+    """A bus URL that is not understood; says which and what would be right."""
+
+
+def parse_url(url: str) -> tuple[str, int, int]:
+    """Group, port and ttl of `udpm://239.255.76.67:7667?ttl=0`.
+
+    Raises:
+        UrlError: something else.
+    """
+    parts = urlsplit(url)
+    try:
+        group, port = parts.hostname or "239.255.76.67", parts.port or 7667
+        ttl = int(parse_qs(parts.query).get("ttl", ["0"])[0])
+        if parts.scheme != "udpm" or not 224 <= socket.inet_aton(group)[0] <= 239 or not 0 <= ttl <= 255:
+            raise ValueError
+    except (ValueError, OSError) as error:
+        raise UrlError(f"{url!r} is no LCM bus; say for example udpm://239.255.76.67:7667?ttl=0") from error
+    return group, port, ttl
+
+
+class PublicBus:
+    """Publishes on, and hears, one LCM bus; does not hear itself."""
+
+    def __init__(self, url: str) -> None:
+        group, port, ttl = parse_url(url)
+        self._address = (group, port)
+        self._number = itertools.count()
+        self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
+        self._sender.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, BUFFER_BYTES)
+        self._receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+        self._receiver.bind((group, port))
+        self._receiver.setblocking(False)
+        try:
+            self._sender.sendto(b"", (group, port))  # an empty datagram: finds out whether there is a way, and binds
+            self._join(group, "0.0.0.0")
+        except OSError:  # no multicast route: the loopback interface is always there
+            self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
+            self._sender.sendto(b"", (group, port))
+            self._join(group, LOOPBACK)
+        _ignore_source(self._receiver, self._sender.getsockname()[1])
+        self._assembler = wire.Assembler()
+
+    def fileno(self) -> int:
+        """For waiting until something arrives."""
+        return self._receiver.fileno()
+
+    def publish(self, channel: str, data: bytes) -> None:
+        """Sends a message; on this bus loss is not repaired."""
+        for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel.encode(), data):
+            try:
+                self._sender.sendto(datagram, self._address)
+            except OSError:
+                return
+
+    def receive(self) -> tuple[str, bytes, int] | None:
+        """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.
+
+        Raises:
+            MessageError: a datagram that is not of LCM's format.
+        """
+        while True:
+            try:
+                datagram, address = self._receiver.recvfrom(wire.DATAGRAM_MAX)
+            except BlockingIOError:
+                return None
+            if not datagram:
+                continue
+            message = self._assembler.feed(datagram, address[1])
+            if message is not None:
+                return message[0].decode("utf-8", "replace"), message[1], address[1]
+
+    def _join(self, group: str, interface: str) -> None:
+        membership = socket.inet_aton(group) + socket.inet_aton(interface)
+        self._receiver.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+
+
+def _ignore_source(receiver: socket.socket, port: int) -> None:
+    """Has the kernel drop datagrams from one source port: the gateway's own would cost it as much as everybody's."""
+    program = struct.pack(
+        "HBBI" * 4,
+        *(0x28, 0, 0, 0),  # load half word 0 of the UDP header: the source port
+        *(0x15, 0, 1, port),  # equal: next, else one further
+        *(0x06, 0, 0, 0),  # drop
+        *(0x06, 0, 0, 0xFFFFFFFF),  # keep
+    )
+    memory = ctypes.create_string_buffer(program)
+    receiver.setsockopt(
+        socket.SOL_SOCKET, _SO_ATTACH_FILTER, struct.pack("HxxxxxxP", len(program) // 8, ctypes.addressof(memory))
+    )

@@ -1,0 +1,201 @@
+"""Follows the main loop by its tick records, collects each tick's messages and hands them on in one fixed order."""
+
+import select
+import socket
+from typing import Protocol
+
+from fwk.aspects.logging import Logger
+from fwk.bus import wire
+from fwk.bus.ports import Ports
+from fwk.bus.public import PublicBus
+from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.clock import Clock
+from fwk.host.inputs import Inputs
+from fwk.host.report import Complaints
+from fwk.messages import Header, MessageError
+from fwk.plan.model import Plan
+from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
+
+SUPERVISOR_CHANNEL = -1
+"""In a fetch: the tick records themselves, numbered by tick."""
+
+
+class Sink(Protocol):
+    """Takes everything that the gateway sees."""
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """A message of a component, of the main loop, a line of text or a status."""
+
+    def tick(self) -> None:
+        """A tick is complete."""
+
+    def close(self) -> None:
+        """The run is over."""
+
+
+class Gateway:
+    """Collects; `serve` returns when the supervisor has closed its end of `control` and everything is written."""
+
+    def __init__(self, plan: Plan, run: int, control: socket.socket, public: PublicBus | None) -> None:
+        self.sinks: list[Sink] = []
+        self._plan = plan
+        self._run = run
+        self._control = control
+        self._public = public
+        self._names = {channel.name for channel in plan.channels}
+        self._ports = Ports.of(plan)
+        self._sender = Sender(self._ports.host(self._ports.gateway))
+        self._clock = Clock(plan.period_us)
+        self.log = Logger("gateway", self._clock, self._log_line)
+        self._complaints = Complaints(self.log)
+        self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
+        self._records = multicast_receiver(self._ports.record)
+        self._lines = multicast_receiver(self._ports.log)
+        self._status = multicast_receiver(self._ports.status)
+        self._waiting: dict[int, tick_record_t] = {}
+        self._next = 1  # tick whose record comes next
+        self._open = True
+        self._poller = select.poll()
+        for source in (self._records, self._lines, self._status, self._sender.socket, control):
+            self._poller.register(source, select.POLLIN)
+        if public:
+            self._poller.register(public, select.POLLIN)
+
+    def serve(self) -> None:
+        """Works until the supervisor closes the control connection."""
+        while self._open:
+            self._poller.poll(100)
+            self._handle_own()
+            self._hear_strangers()
+            self._receive_lines()
+            self._receive_records()
+            if self._next in self._waiting or not self._waiting:
+                continue
+            self._ask_for_records()
+        self._receive_lines()
+        for sink in self.sinks:
+            sink.close()
+
+    def _receive_records(self) -> None:
+        for data in self._drain(self._records, b"fwk/record"):
+            record = tick_record_t.decode(data)
+            if record.run == self._run and record.tick >= self._next:
+                self._waiting[record.tick] = record
+            elif record.run == self._run:
+                self._acknowledge()
+        while self._next in self._waiting:
+            record = self._waiting.pop(self._next)
+            if not self._take(record):
+                return
+            self._next += 1
+            self._acknowledge()
+
+    def _take(self, record: tick_record_t) -> bool:
+        self._clock.tick, self._clock.now_us = record.tick, record.time_us
+        moved = self._inputs.advance(record.channel, record.sequence, record.voids)
+        if not self._inputs.wait(moved, self._handle_own):
+            return False
+        collected = []
+        for box in moved:
+            for data in box.take():
+                header = Header.of(data)
+                collected.append((header.tick, header.stage, box.plan.index, header.sequence, box.plan.name, data))
+        collected.sort()
+        for sink in self.sinks:
+            for *_, channel, data in collected:
+                sink.message(channel, data, record.time_us)
+            sink.message("fwk/record", record.encode(), record.time_us)
+            sink.tick()
+        return True
+
+    def _acknowledge(self) -> None:
+        done = done_t()
+        done.run, done.host, done.tick, done.stage, done.next_time_us = (
+            self._run,
+            self._ports.gateway,
+            self._next - 1,
+            -1,
+            -1,
+        )
+        self._sender.publish(b"fwk/done", done.encode(), self._ports.sync)
+
+    def _ask_for_records(self) -> None:
+        fetch = fetch_t()
+        fetch.run, fetch.host, fetch.channel = self._run, self._ports.gateway, SUPERVISOR_CHANNEL
+        fetch.first_sequence, fetch.last_sequence = self._next, min(self._waiting) - 1
+        self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.supervisor)
+
+    def _receive_lines(self) -> None:
+        for data in self._drain(self._lines, b"fwk/log", anybody=True):
+            self._emit("fwk/log", data)
+        for data in self._drain(self._status, b"fwk/status"):
+            self._emit("fwk/status", data)
+
+    def _log_line(self, line: log_t) -> None:
+        self._emit("fwk/log", line.encode())
+
+    def _emit(self, channel: str, data: bytes) -> None:
+        for sink in self.sinks:
+            sink.message(channel, data, self._clock.now_us)
+
+    def _hear_strangers(self) -> None:
+        while self._public:
+            try:
+                heard = self._public.receive()
+            except MessageError as error:
+                self._complaints("public bus", f"{error}; refused")
+                continue
+            if heard is None:
+                return
+            channel, _, port = heard
+            if channel in self._names or channel.startswith("fwk/"):
+                self._complaints(channel, f"somebody else (port {port}) writes it on the public bus; not taken")
+
+    def _handle_own(self) -> bool:
+        while True:
+            try:
+                datagram, address = self._sender.socket.recvfrom(wire.DATAGRAM_MAX)
+            except (BlockingIOError, ConnectionRefusedError):
+                break
+            try:
+                message = wire.Assembler().feed(datagram, address[1])
+                if not message or message[0] != b"fwk/gone":
+                    raise MessageError("not fwk/gone")
+                gone = gone_t.decode(message[1])
+                if gone.run == self._run:
+                    self._give_up(gone)
+            except (MessageError, ValueError) as error:
+                self._complaints("fwk/gone", f"{error}; refused")
+        try:
+            if not self._control.recv(1):
+                self._open = False
+        except BlockingIOError:
+            pass
+        except OSError:
+            self._open = False
+        return self._open
+
+    def _give_up(self, gone: gone_t) -> None:
+        lost = self._inputs.gone(gone)
+        if lost:
+            channel = self._plan.channels[gone.channel].name
+            numbers = f"{gone.first_sequence} to {gone.last_sequence}"
+            self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
+
+    def _drain(self, source: socket.socket, channel: bytes, anybody: bool = False) -> list[bytes]:
+        found: list[bytes] = []
+        while True:
+            try:
+                datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
+            except BlockingIOError:
+                return found
+            try:
+                known = self._ports.supervisor <= address[1] <= self._ports.host(self._ports.gateway)
+                if not known or not (anybody or address[1] == self._ports.supervisor):
+                    raise MessageError(f"datagram from port {address[1]}, which is not of this run")
+                message = wire.Assembler().feed(datagram, address[1])
+                if message is None or message[0] != channel:
+                    raise MessageError("a message of another channel")
+                found.append(message[1])
+            except MessageError as error:
+                self._complaints(channel.decode(), f"{error}; refused")

@@ -1,0 +1,141 @@
+"""Where the gateway's messages go: LCM log, public bus, text log, display, and the newest of each for the summary."""
+
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+from fwk.aspects.logging import LEVEL_NAMES
+from fwk.bus.public import PublicBus
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.plan.model import Plan
+from fwk.record.log import LogWriter
+from lcmtypes.core import log_t
+
+DISPLAY_PERIOD_US = US_PER_S // 4
+
+
+class Recorder:
+    """Writes the LCM log; its time stamps are logical time, so that equal runs give equal logs."""
+
+    def __init__(self, path: Path, report: Callable[[str], None]) -> None:
+        self._writer = LogWriter(path, report)
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Adds a message."""
+        self._writer.append(channel, data, time_us)
+
+    def tick(self) -> None:
+        """Nothing to do: the log is written when its buffer is full."""
+
+    def close(self) -> None:
+        """Finishes the log."""
+        self._writer.close()
+
+
+class Mirror:
+    """Publishes everything on the public bus."""
+
+    def __init__(self, bus: PublicBus) -> None:
+        self._bus = bus
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Publishes a message."""
+        self._bus.publish(channel, data)
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Nothing to do."""
+
+
+class TextLog:
+    """Writes the lines of text into a file."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = open(path, "a", buffering=1, encoding="utf-8")  # noqa: SIM115 - closed by close()
+        self._broken = False
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Adds a line of text; anything else is not its business."""
+        if channel != "fwk/log":
+            return
+        line = log_t.decode(data)
+        place = f"{line.file}:{line.line}"
+        try:
+            self._file.write(
+                f"{line.wall_us / US_PER_S:.6f} tick {line.tick} {line.time_us / US_PER_S:.3f} s "
+                f"{LEVEL_NAMES.get(line.level, '?')} {line.component} {place}: {line.text}\n"
+            )
+        except OSError:  # a full disk: the run goes on, the bus still has the lines
+            self._broken = True
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Closes the file."""
+        self._file.close()
+
+
+class Display:
+    """Feeds the display: lines and status at once, the newest of the shown channels four times a second."""
+
+    def __init__(self, plan: Plan, connection: socket.socket) -> None:
+        self._connection = connection
+        self._shown = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._newest: dict[str, bytes] = {}
+        self._due_us = 0
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a message."""
+        if channel in ("fwk/log", "fwk/status"):
+            self._send(channel, data)
+        elif channel in self._shown:
+            self._newest[channel] = data
+
+    def tick(self) -> None:
+        """Sends what changed, if it is time."""
+        if monotonic_us() >= self._due_us:
+            self._due_us = monotonic_us() + DISPLAY_PERIOD_US
+            for channel, data in self._newest.items():
+                self._send(channel, data)
+            self._newest = {}
+
+    def close(self) -> None:
+        """Sends the rest; the display ends by itself."""
+        self._due_us = 0
+        self.tick()
+        self._connection.close()
+
+    def _send(self, channel: str, data: bytes) -> None:
+        try:
+            self._connection.send(channel.encode() + b"\0" + data, socket.MSG_DONTWAIT)
+        except OSError:  # a slow terminal: the display lacks something, the run does not wait
+            return
+
+
+class Newest:
+    """Keeps the newest message of each channel and hands them to the supervisor at the end."""
+
+    def __init__(self, plan: Plan, connection: socket.socket) -> None:
+        self._wanted = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._newest: dict[str, bytes] = {}
+        self._connection = connection
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a message."""
+        if channel in self._wanted:
+            self._newest[channel] = data
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Hands them over."""
+        self._connection.setblocking(True)
+        for channel, data in self._newest.items():
+            try:
+                self._connection.send(channel.encode() + b"\0" + data)
+            except OSError:
+                return

@@ -1,0 +1,263 @@
+"""The host process: answers each tick with one iteration of each of its components and one done."""
+
+import select
+import traceback
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Any
+
+from fwk.aspects.logging import Logger
+from fwk.aspects.vision import Ring
+from fwk.bus import wire
+from fwk.bus.inbox import Box
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.clock import US_PER_S, Clock, monotonic_us
+from fwk.component import declaration
+from fwk.host.inputs import Inputs
+from fwk.host.outputs import Outputs
+from fwk.host.report import Complaints, Figures
+from fwk.messages import MessageError
+from fwk.plan.model import ComponentPlan, Plan
+from fwk.runner import Runner, Surroundings
+from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
+
+READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
+REPORT_US = US_PER_S
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What a host process is told when it starts."""
+
+    plan: Plan
+    host: int
+    run: int
+    incarnation: int
+    sequences: Mapping[str, int]
+    """Sequence numbers that its channels have reached, for one that was restarted."""
+    rings: Mapping[str, Ring]
+
+
+class Failure(Exception):  # noqa: N818 - a failure of a component, not an error of the framework
+    """A component failed; the text says which, where and why."""
+
+
+class Host:
+    """Takes its components from `init` to `finalize`."""
+
+    def __init__(self, assignment: Assignment, stopping: Callable[[], bool], wakeup: int) -> None:
+        plan = assignment.plan
+        self._assignment = assignment
+        self._plan = plan
+        self._stopping = stopping
+        self._ports = Ports.of(plan)
+        self._sender = Sender(self._ports.host(assignment.host))
+        self._own = [plan.components[index] for index in plan.hosts[assignment.host].components]
+        self.figures = {component.name: Figures(component.name) for component in self._own}
+        self.log = Logger(plan.hosts[assignment.host].name, Clock(), self._send_log)
+        self._complaints = Complaints(self.log)
+        indices = {component.index for component in self._own}
+        written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
+        read = [channel for channel in plan.channels if indices & set(channel.readers)]
+        local = [channel for channel in read if channel.name in written]
+        self.inputs = Inputs(plan, read, local, assignment.host, assignment.run, self._sender, self._complaints)
+        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local)
+        self._stages = sorted({stage for component in self._own for stage in component.stages})
+        self._sockets = {stage: multicast_receiver(self._ports.stage(stage)) for stage in self._stages}
+        self._poller = select.poll()
+        for source in (*self._sockets.values(), self._sender.socket):
+            self._poller.register(source, select.POLLIN)
+        self._poller.register(wakeup, select.POLLIN)
+        self._runners: dict[str, Runner] = {}
+        self._waiting: dict[str, dict[str, list[bytes]]] = {}  # what each component has not seen yet, by channel
+        self._readers: dict[int, list[str]] = {
+            channel.index: [plan.components[reader].name for reader in channel.readers if reader in indices]
+            for channel in read
+        }
+        self._answered = (0, -1)  # the newest (tick, stage) done
+        self._done = b""
+        self._report_us = 0
+
+    def serve(self) -> None:
+        """Initialises the components, answers ticks until it is told to stop, finalizes the components.
+
+        Raises:
+            Failure: a component raised.
+        """
+        try:
+            self._init()
+            while not self._stopping():
+                self._poller.poll(READY_REPORT_MS if self._answered[0] == 0 else REPORT_US // 1000)
+                self._handle_own()
+                for stage, source in self._sockets.items():
+                    tick = self._newest_tick(source)
+                    if tick is not None:
+                        self._answer(tick, stage)
+                if monotonic_us() >= self._report_us:
+                    self._report()
+            self._finalize()
+        finally:
+            self._report()
+
+    def _init(self) -> None:
+        for plan in self._own:
+            self.figures[plan.name].state = "init"
+            with self._guard(plan.name, "init"):
+                runner = self._runner(plan)
+                self._runners[plan.name] = runner
+                self._waiting[plan.name] = {channel: [] for channel in runner.readers}
+                runner.component.init()
+            self.figures[plan.name].state = "running"
+        self._report()
+
+    def _runner(self, plan: ComponentPlan) -> Runner:
+        component = getattr(import_module(plan.module), plan.class_name)
+        declared = declaration(component)
+        surroundings = Surroundings(self._plan.seed, self._plan.period_us, self._send_log, self._assignment.rings)
+        config = declared.config.model_validate(plan.config) if declared.config else None
+        runner = Runner(declared, plan.name, config, plan.channels, surroundings, self._assignment.incarnation)
+        for channel, writer in runner.writers.items():
+            writer.sequence = self._assignment.sequences.get(channel, 0)
+        return runner
+
+    def _finalize(self) -> None:
+        for name, runner in reversed(self._runners.items()):
+            self.figures[name].state = "finalizing"
+            with self._guard(name, "finalize"):
+                runner.component.finalize()
+            self.figures[name].state = "stopped"
+
+    def _newest_tick(self, source: Any) -> tick_t | None:
+        newest = None
+        while True:
+            try:
+                datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
+            except BlockingIOError:
+                return newest
+            try:
+                if address[1] != self._ports.supervisor:
+                    raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
+                message = wire.Assembler().feed(datagram, address[1])
+                tick = tick_t.decode(message[1] if message else b"")
+            except (MessageError, ValueError) as error:
+                self._complaints("fwk/tick", f"{error}; refused")
+                continue
+            if tick.run == self._assignment.run:
+                newest = tick
+
+    def _answer(self, tick: tick_t, stage: int) -> None:
+        if self._assignment.host in tick.absent:
+            return
+        if (tick.tick, stage) <= self._answered:
+            if (tick.tick, stage) == self._answered:
+                self._sender.publish(b"fwk/done", self._done, self._ports.sync)
+            return
+        moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
+        if self._answered[0] == 0 and tick.tick > 1:
+            self.inputs.newest_only()
+        if not self.inputs.wait(moved, self._handle_own):
+            return
+        self._deliver(moved)
+        self._iterate(tick, stage)
+        self._answered = (tick.tick, stage)
+
+    def _deliver(self, moved: list[Box]) -> None:
+        for box in moved:
+            arrived = box.take()
+            for name in self._readers[box.plan.index]:
+                self._waiting[name][box.plan.name] += arrived
+
+    def _iterate(self, tick: tick_t, stage: int) -> None:
+        written: list[tuple[str, bytes]] = []
+        next_us, began_us = -1, monotonic_us()
+        for plan in self._own:
+            if stage not in plan.stages:
+                continue
+            runner, waiting = self._runners[plan.name], self._waiting[plan.name]
+            self._waiting[plan.name] = {channel: [] for channel in waiting}
+            start_us = monotonic_us()
+            with self._guard(plan.name, f"loop, tick {tick.tick}"):
+                written += runner.iterate(tick.tick, stage, self._plan.stages[stage], tick.time_us, waiting)
+            self.figures[plan.name].ran(monotonic_us() - start_us)
+            next_us = max(next_us, runner.time_source.next_us)
+        marks = self._outputs.publish(written)
+        done = done_t()
+        done.run, done.host, done.incarnation = tick.run, self._assignment.host, self._assignment.incarnation
+        done.tick, done.stage, done.next_time_us = tick.tick, stage, next_us
+        done.busy_us = monotonic_us() - began_us
+        done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
+        self._done = done.encode()
+        self._sender.publish(b"fwk/done", self._done, self._ports.sync)
+
+    def _handle_own(self) -> bool:
+        """Handles what was sent to this host's own port; false when it is time to stop."""
+        while True:
+            try:
+                datagram, address = self._sender.socket.recvfrom(wire.DATAGRAM_MAX)
+            except (BlockingIOError, ConnectionRefusedError):
+                return not self._stopping()
+            try:
+                message = wire.Assembler().feed(datagram, address[1])
+                if message and message[0] == b"fwk/fetch":
+                    fetch = fetch_t.decode(message[1])
+                    if fetch.run == self._assignment.run:
+                        self._outputs.answer(fetch)
+                elif message and message[0] == b"fwk/gone":
+                    gone = gone_t.decode(message[1])
+                    if gone.run == self._assignment.run:
+                        self._give_up(gone)
+                else:
+                    raise MessageError("neither fetch nor gone")
+            except (MessageError, ValueError) as error:
+                self._complaints("fwk/fetch", f"{error}; refused")
+
+    def _give_up(self, gone: gone_t) -> None:
+        lost = self.inputs.gone(gone)
+        if lost:
+            channel = self._plan.channels[gone.channel].name
+            numbers = f"{gone.first_sequence} to {gone.last_sequence}"
+            self.log.warning(f"{channel}: {lost} messages of {numbers} lost: their writer no longer has them")
+
+    def _guard(self, name: str, moment: str) -> "_Guard":
+        return _Guard(self, name, moment)
+
+    def fail(self, name: str, moment: str, error: BaseException) -> Failure:
+        """Marks a component as failed and logs why, with the traceback."""
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        reason = f"{type(error).__name__}: {error} ({place.filename}:{place.lineno}, in {moment})"
+        self.figures[name].state, self.figures[name].reason = "failed", reason
+        self.log.error(f"{name} failed in {moment}\n{''.join(traceback.format_exception(error)).rstrip()}")
+        return Failure(f"{name}: {reason}")
+
+    def _report(self) -> None:
+        self._report_us = monotonic_us() + REPORT_US
+        actual = actual_t()
+        actual.run, actual.host, actual.incarnation = (
+            self._assignment.run,
+            self._assignment.host,
+            self._assignment.incarnation,
+        )
+        actual.components = [figures.message() for figures in self.figures.values()]
+        actual.n = len(actual.components)
+        first = actual.components[0]
+        first.fetched, first.lost, first.strangers = self.inputs.fetched, self.inputs.lost, self._complaints.total
+        self._sender.publish(b"fwk/actual", actual.encode(), self._ports.sync)
+
+    def _send_log(self, line: log_t) -> None:
+        self._sender.publish(b"fwk/log", line.encode(), self._ports.log)
+
+
+class _Guard:
+    """Turns whatever a component raises into a `Failure` of that component."""
+
+    def __init__(self, host: Host, name: str, moment: str) -> None:
+        self._host, self._name, self._moment = host, name, moment
+
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
+        if isinstance(error, Exception):
+            raise self._host.fail(self._name, self._moment, error) from error

@@ -1,0 +1,112 @@
+"""What a host reads: waits until everything that a tick's marks name is here, asking writers for what was lost."""
+
+import select
+from collections.abc import Callable, Sequence
+
+from fwk.bus.inbox import Box, Complain, Inbox
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.clock import monotonic_us
+from fwk.plan.model import ChannelPlan, Plan
+from lcmtypes.core import fetch_t, gone_t, void_t
+
+FIRST_WAIT_MS = 2  # on one machine a message is there before the tick that names it, unless it was lost
+LONGEST_WAIT_MS = 100
+
+
+class Inputs:
+    """The channels that a process reads, whether from other processes (`inboxes`) or from itself (`local`)."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        read: Sequence[ChannelPlan],
+        local: Sequence[ChannelPlan],
+        host: int,
+        run: int,
+        sender: Sender,
+        complain: Complain,
+    ) -> None:
+        ports = Ports.of(plan)
+        self._sender = sender
+        self._ports = ports
+        self._host = host
+        self._run = run
+        self._writer_host = {channel.index: plan.components[channel.writer].host for channel in read}
+        self.local = {channel.name: Box(channel) for channel in local}
+        self._boxes: dict[int, Box] = {box.plan.index: box for box in self.local.values()}
+        for channel in read:
+            if channel.name not in self.local:
+                writer_port = ports.host(self._writer_host[channel.index])
+                self._boxes[channel.index] = Inbox(channel, ports.channel(channel.index), writer_port, complain)
+        self.fetched = 0  # messages that were lost and came after asking
+        self.lost = 0  # messages that could not be had any more
+
+    def close(self) -> None:
+        """Gives all sockets back."""
+        for box in self._boxes.values():
+            if isinstance(box, Inbox):
+                box.close()
+
+    def advance(self, channels: Sequence[int], sequences: Sequence[int], voids: Sequence[void_t]) -> list[Box]:
+        """Takes over a tick's marks; returns the boxes in which something becomes visible."""
+        for void in voids:
+            box = self._boxes.get(void.channel)
+            if box is not None:
+                box.void(void.above_sequence, void.before_incarnation)
+        moved = []
+        for index, sequence in zip(channels, sequences, strict=True):
+            box = self._boxes.get(index)
+            if box is not None and sequence > box.mark:
+                box.mark = sequence
+                moved.append(box)
+        return moved
+
+    def newest_only(self) -> None:
+        """For a late joiner: of what is visible already it wants the newest."""
+        for box in self._boxes.values():
+            box.skip_to(box.mark - 1)
+
+    def wait(self, boxes: Sequence[Box], serve: Callable[[], bool]) -> bool:
+        """Waits until everything visible in `boxes` is here; false if `serve` says that waiting is over.
+
+        `serve` is called whenever the process's own port has something, because who waits must still answer others.
+        """
+        lacking = [box for box in boxes if not box.collect()]
+        if not lacking:
+            return True
+        poller = select.poll()
+        poller.register(self._sender.socket, select.POLLIN)
+        for box in lacking:
+            if isinstance(box, Inbox):
+                poller.register(box, select.POLLIN)
+        wait_ms, ask_us, asked = FIRST_WAIT_MS, monotonic_us() + FIRST_WAIT_MS * 1000, 0
+        while lacking:
+            poller.poll(wait_ms)
+            if not serve():
+                return False
+            lacking = [box for box in lacking if not box.collect()]
+            if lacking and monotonic_us() >= ask_us:
+                asked = max(asked, sum(len(box.missing()) for box in lacking))
+                self._ask(lacking)
+                wait_ms = min(2 * wait_ms, LONGEST_WAIT_MS)
+                ask_us = monotonic_us() + wait_ms * 1000
+        self.fetched += asked
+        return True
+
+    def gone(self, message: gone_t) -> int:
+        """A writer no longer has some messages; returns how many were lost by that."""
+        box = self._boxes.get(message.channel)
+        lost = box.give_up(message.first_sequence, message.last_sequence) if box else 0
+        self.lost += lost
+        return lost
+
+    def _ask(self, lacking: Sequence[Box]) -> None:
+        for box in lacking:
+            missing = box.missing()
+            if not missing:
+                continue
+            fetch = fetch_t()
+            fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
+            fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]
+            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(self._writer_host[box.plan.index]))

@@ -1,0 +1,55 @@
+"""What a host sends: its components' messages, and again those that readers lost."""
+
+from collections.abc import Mapping
+
+from fwk.bus.history import History
+from fwk.bus.inbox import Box
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.messages import sequence_of
+from fwk.plan.model import ChannelPlan
+from lcmtypes.core import fetch_t, gone_t
+
+
+class Outputs:
+    """The channels that a host's components write."""
+
+    def __init__(
+        self, written: Mapping[str, ChannelPlan], ports: Ports, sender: Sender, local: Mapping[str, Box]
+    ) -> None:
+        self._written = {
+            name: (plan.index, name.encode(), ports.channel(plan.index), History()) for name, plan in written.items()
+        }
+        self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
+        self._sender = sender
+        self._ports = ports
+        self._local = local
+
+    def publish(self, written: list[tuple[str, bytes]]) -> dict[int, int]:
+        """Sends messages; returns the new mark of each channel index."""
+        marks = {}
+        for channel, data in written:
+            index, name, port, history = self._written[channel]
+            sequence = sequence_of(data)
+            history.add(sequence, data)
+            box = self._local.get(channel)
+            if box is not None:
+                box.put(sequence, data)
+            self._sender.publish(name, data, port)
+            marks[index] = sequence
+        return marks
+
+    def answer(self, fetch: fetch_t) -> None:
+        """Sends again what a reader lacks, or tells it that this is no longer to be had."""
+        if fetch.channel not in self._by_index:
+            return
+        name, port, history = self._by_index[fetch.channel]
+        kept = history.between(fetch.first_sequence, fetch.last_sequence)
+        for _, data in kept:
+            self._sender.publish(name, data, port)
+        oldest = kept[0][0] if kept else fetch.last_sequence + 1
+        if oldest > fetch.first_sequence:
+            gone = gone_t()
+            gone.run, gone.channel = fetch.run, fetch.channel
+            gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1
+            self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))

@@ -1,0 +1,61 @@
+"""Life of a forked process: dies with its parent, stops politely, leaves a trace when it crashes."""
+
+import ctypes
+import faulthandler
+import os
+import resource
+import signal
+import sys
+from collections.abc import Callable
+
+import cv2
+
+_PR_SET_PDEATHSIG = 1
+
+
+def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
+    """Asks the kernel to send this process `death_signal` when `parent` ends, however that happens."""
+    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, death_signal)
+    if os.getppid() != parent:  # it ended before we could ask
+        os._exit(1)
+
+
+def raise_file_limit() -> None:
+    """Allows as many open files as the system lets us: a socket a channel adds up."""
+    _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
+
+
+class StopSignal:
+    """Becomes true when the process is asked to stop; `wakeup` is readable from then on."""
+
+    def __init__(self) -> None:
+        self.wakeup, self._write = os.pipe()
+        os.set_blocking(self.wakeup, False)
+        os.set_blocking(self._write, False)
+        self._set = False
+        signal.set_wakeup_fd(self._write, warn_on_full_buffer=False)
+        signal.signal(signal.SIGTERM, self._on_signal)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the supervisor's business
+
+    def __call__(self) -> bool:
+        return self._set
+
+    def _on_signal(self, _number: int, _frame: object) -> None:
+        self._set = True
+
+
+def run_forked(work: Callable[[StopSignal], int]) -> None:
+    """Runs `work` as the whole rest of a forked child; never returns to the parent's code."""
+    code = 1
+    try:
+        faulthandler.enable()
+        cv2.setNumThreads(1)
+        code = work(StopSignal())
+    except BaseException as error:
+        if not isinstance(error, SystemExit):
+            sys.excepthook(type(error), error, error.__traceback__)
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)

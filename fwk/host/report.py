@@ -1,0 +1,58 @@
+"""What a host tells of its components: their states and figures, and what was refused on their channels."""
+
+from dataclasses import dataclass
+
+from fwk.aspects.logging import Logger
+from fwk.clock import monotonic_us
+from lcmtypes.core import component_state_t
+
+
+@dataclass
+class Figures:
+    """State and figures of one component."""
+
+    name: str
+    state: str = "loaded"
+    reason: str = ""
+    iterations: int = 0
+    busy_us: int = 0
+    worst_us: int = 0
+
+    def __post_init__(self) -> None:
+        self._since_us = monotonic_us()
+
+    def ran(self, duration_us: int) -> None:
+        """Counts an iteration."""
+        self.iterations += 1
+        self.busy_us += duration_us
+        if duration_us > self.worst_us:
+            self.worst_us = duration_us
+
+    def message(self) -> component_state_t:
+        """As it is reported."""
+        made = component_state_t()
+        made.name, made.state, made.reason = self.name, self.state, self.reason
+        made.iterations, made.busy_us, made.worst_us = self.iterations, self.busy_us, self.worst_us
+        made.awake_us = monotonic_us() - self._since_us
+        return made
+
+
+class Complaints:
+    """Datagrams refused: each kind is named once, all are counted."""
+
+    def __init__(self, log: Logger) -> None:
+        self.total = 0
+        self._log = log
+        self._counts: dict[tuple[str, str], int] = {}
+
+    def __call__(self, channel: str, text: str) -> None:
+        """Takes one; logs the first and then every power of ten of the same kind."""
+        self.total += 1
+        key = (channel, text.partition(";")[0].partition(":")[0][:60])
+        if key not in self._counts and len(self._counts) >= 100:
+            key = ("", "others")
+        count = self._counts[key] = self._counts.get(key, 0) + 1
+        if count == 1:
+            self._log.warning(f"{channel}: {text}")
+        elif str(count).strip("0") == "1":
+            self._log.warning(f"{channel}: {text} ({count} times)")

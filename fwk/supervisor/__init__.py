@@ -1,0 +1,122 @@
+"""The supervisor: owns plan, clock, marks and main loop, and every process of the run."""
+
+import json
+import secrets
+
+from fwk.aspects.logging import Logger
+from fwk.aspects.vision import Ring
+from fwk.bus.ports import PortLock, Ports, PortsInUse
+from fwk.bus.sockets import Sender
+from fwk.clock import US_PER_S, Clock
+from fwk.host.process import raise_file_limit
+from fwk.host.report import Complaints
+from fwk.plan.model import Plan
+from fwk.supervisor.children import Children, decoded
+from fwk.supervisor.hosts import Hosts, StartFailure
+from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.mailbox import Mailbox
+from fwk.supervisor.options import Outcome, RunOptions
+from fwk.supervisor.pace import Pace
+from fwk.supervisor.status import StatusReport
+from fwk.supervisor.zygote import Zygote
+from lcmtypes.core import log_t, status_t
+
+__all__ = ["Outcome", "PortsInUse", "RunOptions", "run"]
+
+
+def run(plan: Plan, options: RunOptions) -> Outcome:
+    """Runs a plan in the foreground until it is done, interrupted or broken.
+
+    Raises:
+        PortsInUse: another run on this machine has the ports.
+    """
+    ports = Ports.of(plan)
+    lock = PortLock(ports, plan.file or plan.name)
+    raise_file_limit()
+    (options.run_dir / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
+    number = secrets.randbits(62)
+    rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+    zygote = Zygote(plan, number, rings)
+    children = Children(plan, number, options)
+    supervisor = Supervisor(plan, options, number, zygote)
+    reason, failed = supervisor.work()
+    status = supervisor.stop()
+    newest = decoded(plan, children.stop())
+    zygote.close()
+    lock.release()
+    return Outcome(
+        1 if failed else 0,
+        supervisor.loop.tick,
+        supervisor.pace.time_us / US_PER_S,
+        supervisor.wall_s,
+        reason,
+        status,
+        newest,
+    )
+
+
+class Supervisor:
+    """One run of a plan, from the first process to the last."""
+
+    def __init__(self, plan: Plan, options: RunOptions, number: int, zygote: Zygote) -> None:
+        self._plan = plan
+        self._options = options
+        self._ports = Ports.of(plan)
+        self._sender = Sender(self._ports.supervisor)
+        self._clock = Clock(plan.period_us)
+        self.log = Logger("supervisor", self._clock, self._send_log)
+        self._mailbox = Mailbox(self._ports, number, Complaints(self.log))
+        ledger = Ledger(plan)
+        self.pace = Pace(plan, options.speed)
+        self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log)
+        self.loop = MainLoop(
+            plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
+        )
+        self._status = StatusReport(number, self._hosts.table, self.loop, self.pace)
+        self.wall_s = 0.0
+
+    def work(self) -> tuple[str, bool]:
+        """Starts everything and runs the main loop; returns why it ended and whether that is a failure."""
+        try:
+            self._hosts.start_all(self._interrupted)
+        except StartFailure as failure:
+            self.log.error(f"not started:\n{failure}")
+            return f"not started: {failure}", True
+        self._status = StatusReport(self._status.run, self._hosts.table, self.loop, self.pace)
+        while not self._interrupted() and not self._done():
+            self.loop.run_tick()
+            self._clock.tick, self._clock.now_us = self.loop.tick, self.pace.time_us
+            if self._status.due:
+                self._publish_status()
+        self.wall_s = self._status.wall_s
+        self.loop.finish()
+        broken = [f"{entry.name}: {entry.reason}" for entry in self._hosts.table if entry.state == "failed"]
+        if broken:
+            return f"failed: {'; '.join(broken)}", True
+        return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
+
+    def stop(self) -> status_t:
+        """Stops every process; returns the last view of them."""
+        status = self._publish_status()
+        for name in self._hosts.stop_all():
+            self.log.warning(f"{name} did not stop when asked; killed")
+        self._publish_status()
+        return status
+
+    def _done(self) -> bool:
+        ticks, time_s = self._options.ticks, self._options.time_s
+        return (ticks is not None and self.loop.tick >= ticks) or (
+            time_s is not None and self.pace.time_us >= round(time_s * US_PER_S)
+        )
+
+    def _interrupted(self) -> bool:
+        return bool(self._mailbox.signals)
+
+    def _publish_status(self) -> status_t:
+        status = self._status.message()
+        self._sender.publish(b"fwk/status", status.encode(), self._ports.status)
+        return status
+
+    def _send_log(self, line: log_t) -> None:
+        self._sender.publish(b"fwk/log", line.encode(), self._ports.log)

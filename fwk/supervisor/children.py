@@ -1,0 +1,96 @@
+"""The supervisor's own children beside the zygote: gateway and display."""
+
+import os
+import signal
+import socket
+
+from fwk import messages
+from fwk.bus.public import PublicBus
+from fwk.cli.display import run_display
+from fwk.gateway import sinks
+from fwk.gateway.gateway import Gateway
+from fwk.host.process import die_with_parent, run_forked
+from fwk.messages import MessageError
+from fwk.plan.model import Plan
+from fwk.supervisor.options import RunOptions
+
+_PACKET_MAX = 1 << 20
+
+
+class Children:
+    """Forks gateway and display, before the supervisor has sockets of its own."""
+
+    def __init__(self, plan: Plan, run: int, options: RunOptions) -> None:
+        self.control, gateway_control = _pair()
+        display_feed, display_end = _pair()
+        parent = os.getpid()
+        self._display = os.fork()
+        if self._display == 0:
+            self.control.close()
+            gateway_control.close()
+            display_feed.close()
+            die_with_parent(parent, signal.SIGTERM)
+            run_forked(lambda _: _display(plan, display_end, options.plain))
+        display_end.close()
+        self._gateway = os.fork()
+        if self._gateway == 0:
+            self.control.close()
+            os.setsid()
+            die_with_parent(parent, signal.SIGTERM)
+            run_forked(lambda _: _gateway(plan, run, options, gateway_control, display_feed))
+        gateway_control.close()
+        display_feed.close()
+
+    def stop(self) -> dict[str, object]:
+        """Lets both finish; returns the newest messages that the gateway saw, decoded."""
+        self.control.shutdown(socket.SHUT_WR)
+        self.control.settimeout(5.0)
+        newest: dict[str, object] = {}
+        try:
+            while packet := self.control.recv(_PACKET_MAX):
+                channel, _, data = packet.partition(b"\0")
+                newest[channel.decode()] = data
+        except OSError:
+            os.kill(self._gateway, signal.SIGKILL)
+        os.waitpid(self._gateway, 0)
+        os.waitpid(self._display, 0)
+        return newest
+
+
+def _pair() -> tuple[socket.socket, socket.socket]:
+    return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+
+
+def _display(plan: Plan, connection: socket.socket, plain: bool) -> int:
+    run_display(plan, connection, plain)
+    return 0
+
+
+def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, display: socket.socket) -> int:
+    signal.signal(
+        signal.SIGTERM, signal.SIG_IGN
+    )  # ends when the supervisor's end of `control` is closed, also by its death
+    control.setblocking(False)
+    public = PublicBus(plan.public_url) if plan.public_url else None
+    gateway = Gateway(plan, run, control, public)
+    if options.record:
+        gateway.sinks.append(sinks.Recorder(options.record, gateway.log.error))
+    if public:
+        gateway.sinks.append(sinks.Mirror(public))
+    gateway.sinks.append(sinks.TextLog(options.run_dir / "fwk.log"))
+    gateway.sinks.append(sinks.Display(plan, display))
+    gateway.sinks.append(sinks.Newest(plan, control))
+    gateway.serve()
+    return 0
+
+
+def decoded(plan: Plan, newest: dict[str, object]) -> dict[str, object]:
+    """Decodes the newest messages of the plan's channels."""
+    types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
+    made: dict[str, object] = {}
+    for channel, data in newest.items():
+        try:
+            made[channel] = messages.decode(types[channel], data, channel)  # type: ignore[arg-type]
+        except MessageError:
+            continue
+    return made

@@ -1,0 +1,138 @@
+"""The host processes of a run: starts them, hears of their states and ends, starts them again as their policy says."""
+
+import signal
+from collections.abc import Callable
+from functools import partial
+
+from fwk.aspects.logging import Logger
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.plan.model import Plan
+from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.mailbox import Mailbox
+from fwk.supervisor.output import Captured
+from fwk.supervisor.table import HostEntry, host_table
+from fwk.supervisor.zygote import Started, Zygote
+from lcmtypes.core import actual_t
+
+STOP_GRACE_US = 3 * US_PER_S
+
+
+class StartFailure(Exception):  # noqa: N818 - what happened to the run
+    """Components did not become ready; names each with its reason."""
+
+
+class Hosts:
+    """All host processes, by index."""
+
+    def __init__(self, plan: Plan, zygote: Zygote, ledger: Ledger, mailbox: Mailbox, log: Logger) -> None:
+        self.table: list[HostEntry] = host_table(plan)
+        self.on_started: Callable[[HostEntry], None] = lambda _: None
+        self.on_lost: Callable[[HostEntry], None] = lambda _: None
+        self._plan = plan
+        self._zygote = zygote
+        self._ledger = ledger
+        self._mailbox = mailbox
+        self._log = log
+        self._stopping = False
+        mailbox.on_actual = self._on_actual
+        mailbox.watch(zygote.socket.fileno(), self._on_zygote)
+
+    def start_all(self, interrupted: Callable[[], bool]) -> None:
+        """Starts every host and waits until all are ready.
+
+        Raises:
+            StartFailure: some are not, with the reasons.
+        """
+        for entry in self.table:
+            self._start(entry)
+        while any(entry.state == "starting" for entry in self.table) and not interrupted():
+            self._mailbox.pump(100_000)
+            now_us = monotonic_us()
+            for entry in self.table:
+                if entry.state == "starting" and now_us - entry.since_us > entry.ready_timeout_us:
+                    entry.state = "failed"
+                    entry.reason = f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{self._where(entry)}"
+        failed = [f"{entry.name}: {entry.reason}" for entry in self.table if entry.state in ("failed", "waiting")]
+        if failed:
+            raise StartFailure("\n".join(failed))
+
+    def maintain(self) -> None:
+        """Starts hosts again whose time has come; gives up on those that do not become ready."""
+        now_us = monotonic_us()
+        for entry in self.table:
+            if entry.state == "waiting" and now_us >= entry.restart_us and not self._stopping:
+                self._start(entry)
+            elif entry.state == "starting" and now_us - entry.since_us > entry.ready_timeout_us:
+                self._log.error(f"{entry.name}: not ready after {entry.ready_timeout_us / US_PER_S:g} s; killed")
+                entry.since_us = now_us
+                if entry.pid:
+                    self._zygote.signal(entry.pid, signal.SIGKILL)
+
+    @property
+    def unsettled(self) -> bool:
+        """Whether something has to be maintained."""
+        return any(entry.state in ("waiting", "starting") for entry in self.table)
+
+    def stop_all(self) -> list[str]:
+        """Asks all hosts to stop, kills those that do not; returns the names of those killed."""
+        self._stopping = True
+        killed = []
+        for entry in self.table:
+            if entry.alive and entry.pid:
+                self._zygote.signal(entry.pid, signal.SIGTERM)
+            elif entry.state == "waiting":
+                entry.state = "failed"
+        deadline_us = monotonic_us() + STOP_GRACE_US
+        while any(entry.pid for entry in self.table) and monotonic_us() < deadline_us:
+            self._mailbox.pump(deadline_us - monotonic_us())
+        for entry in self.table:
+            if entry.pid:
+                killed.append(entry.name)
+                self._zygote.signal(entry.pid, signal.SIGKILL)
+        deadline_us = monotonic_us() + STOP_GRACE_US
+        while any(entry.pid for entry in self.table) and monotonic_us() < deadline_us:
+            self._mailbox.pump(deadline_us - monotonic_us())
+        return killed
+
+    def _start(self, entry: HostEntry) -> None:
+        incarnation = entry.starting(monotonic_us())
+        self._zygote.start(entry.index, incarnation, self._ledger.sequences(entry.index))
+
+    def _where(self, entry: HostEntry) -> str:
+        stuck = [item.name for item in entry.components if item.state == "init"]
+        return f"; still in init: {', '.join(stuck)}" if stuck else ""
+
+    def _on_actual(self, actual: actual_t) -> None:
+        if actual.host >= len(self.table):
+            return
+        entry = self.table[actual.host]
+        if actual.incarnation != entry.incarnation:
+            return
+        entry.components = actual.components
+        failed = [item.reason for item in actual.components if item.state == "failed"]
+        if failed:
+            entry.reason = failed[0]
+        elif entry.state == "starting" and all(item.state == "running" for item in actual.components):
+            entry.state, entry.since_us = "running", monotonic_us()
+            self.on_started(entry)
+
+    def _on_zygote(self) -> None:
+        for event in self._zygote.events():
+            entry = self.table[event.host]
+            if isinstance(event, Started):
+                entry.pid = event.pid
+                Captured(event.output, self._mailbox, partial(self._say, self._log.info, entry.name))
+                Captured(event.errors, self._mailbox, partial(self._say, self._log.warning, entry.name))
+            elif event.incarnation == entry.incarnation:
+                self._ended(entry, event.code)
+
+    def _ended(self, entry: HostEntry, code: int) -> None:
+        entry.ended(code, monotonic_us(), self._stopping)
+        self._ledger.void(entry.index, entry.incarnation + 1)
+        self.on_lost(entry)
+        if not self._stopping:
+            again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
+            self._log.error(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
+
+    def _say(self, log: Callable[[str], None], name: str, text: str) -> None:
+        log(f"{name} printed: {text}")

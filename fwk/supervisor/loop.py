@@ -1,0 +1,232 @@
+"""The main loop: one barrier a stage, in lockstep or in real time."""
+
+from collections import deque
+from collections.abc import Callable
+
+from fwk.aspects.logging import Logger
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.clock import monotonic_us
+from fwk.plan.model import Plan
+from fwk.supervisor.hosts import Hosts
+from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.mailbox import Mailbox
+from fwk.supervisor.pace import Pace
+from fwk.supervisor.table import HostEntry
+from lcmtypes.core import done_t, tick_event_t, tick_record_t, tick_t, void_t
+
+REPEAT_US = 20_000  # silence after which a tick is repeated; doubles with each time
+REPEAT_LONGEST_US = 500_000
+UNSETTLED_US = 20_000  # how often to look after hosts that are being started again
+WINDOW = 16  # ticks that the loop may be ahead of the gateway
+
+
+class MainLoop:
+    """Runs ticks. `interrupted` ends whatever it waits for."""
+
+    def __init__(
+        self,
+        plan: Plan,
+        run: int,
+        hosts: Hosts,
+        ledger: Ledger,
+        mailbox: Mailbox,
+        sender: Sender,
+        pace: Pace,
+        log: Logger,
+        interrupted: Callable[[], bool],
+    ) -> None:
+        self.tick = 0
+        self.repeated = 0
+        self.late = 0
+        self.recorded = 0  # newest tick that the gateway has
+        self._plan = plan
+        self._run = run
+        self._hosts = hosts
+        self._ledger = ledger
+        self._mailbox = mailbox
+        self._sender = sender
+        self._pace = pace
+        self._log = log
+        self._interrupted = interrupted
+        self._ports = Ports.of(plan)
+        self._lockstep = plan.clock == "simulated"
+        self._stage_time_us = plan.stage_time_us or plan.period_us
+        self._by_stage = [
+            [entry for entry in hosts.table if any(stage in plan.components[i].stages for i in self._members(entry))]
+            for stage in range(len(plan.stages))
+        ]
+        self._stage = 0
+        self._step = 0
+        self._outstanding: set[int] = set()
+        self._again = False  # somebody joined the stage that runs: tell it at once
+        self._events: list[tick_event_t] = []
+        self._changed: dict[int, int] = {}
+        self._records: deque[tuple[int, bytes]] = deque(maxlen=4 * WINDOW)
+        mailbox.on_done = self._on_done
+        hosts.on_started = self._on_started
+        hosts.on_lost = self._on_lost
+
+    def run_tick(self) -> None:
+        """Waits until the next tick may begin, then runs all its stages."""
+        begin_us = self._pace.begin_us(monotonic_us())
+        self._wait_until(begin_us)
+        self._let_gateway_follow(self.tick + 1 - WINDOW)
+        if self._interrupted():
+            return
+        if self._hosts.unsettled:
+            self._hosts.maintain()
+        self.tick += 1
+        time_us = self._pace.advance(monotonic_us())
+        for stage, members in enumerate(self._by_stage):
+            if members and not self._interrupted():
+                self._run_stage(stage, members, time_us)
+        self._record(time_us)
+
+    def finish(self) -> None:
+        """Waits until the gateway has everything."""
+        self._let_gateway_follow(self.tick)
+
+    def _members(self, entry: HostEntry) -> tuple[int, ...]:
+        return self._plan.hosts[entry.index].components
+
+    def _run_stage(self, stage: int, members: list[HostEntry], time_us: int) -> None:
+        self._step = self._ledger.begin()
+        self._stage = stage
+        if self._lockstep:
+            self._outstanding = {entry.index for entry in members if entry.expected}
+        else:
+            self._outstanding = {entry.index for entry in members if entry.state == "running" and not entry.busy}
+        self._event(tick_event_t.STAGE, stage)
+        self._broadcast(members, time_us)
+        began_us = sent_us = monotonic_us()
+        repeat_us = REPEAT_US
+        while self._outstanding and not self._interrupted():
+            now_us = monotonic_us()
+            due_us = sent_us + repeat_us
+            if not self._lockstep:
+                due_us = min(due_us, began_us + self._stage_time_us)
+            if self._hosts.unsettled:
+                due_us = min(due_us, now_us + UNSETTLED_US)
+            self._mailbox.pump(due_us - now_us)
+            now_us = monotonic_us()
+            if not self._outstanding:
+                return
+            if not self._lockstep and now_us >= began_us + self._stage_time_us:
+                self._leave_behind(members, stage)
+                return
+            if self._hosts.unsettled:
+                self._hosts.maintain()
+                self._outstanding &= {entry.index for entry in members if entry.expected}
+            if self._again or now_us >= sent_us + repeat_us:
+                self.repeated += not self._again
+                repeat_us = REPEAT_US if self._again else min(2 * repeat_us, REPEAT_LONGEST_US)
+                self._again = False
+                self._broadcast(members, time_us)
+                sent_us = monotonic_us()
+
+    def _broadcast(self, members: list[HostEntry], time_us: int) -> None:
+        told = [entry for entry in members if entry.index in self._outstanding and entry.state == "running"]
+        if not told:
+            return
+        since = min(entry.seen for entry in told)
+        tick = tick_t()
+        tick.run, tick.tick, tick.stage, tick.time_us = self._run, self.tick, self._stage, time_us
+        tick.channel, tick.sequence = self._ledger.news(self._stage, since)
+        tick.n_marks = len(tick.channel)
+        tick.voids = self._voids(since)
+        tick.n_voids = len(tick.voids)
+        tick.absent = [entry.index for entry in members if entry not in told]
+        tick.n_absent = len(tick.absent)
+        self._sender.publish(b"fwk/tick", tick.encode(), self._ports.stage(self._stage))
+
+    def _voids(self, since: int) -> list[void_t]:
+        made = []
+        for void in self._ledger.voids_since(since):
+            message = void_t()
+            message.channel, message.above_sequence = void.channel, void.above_sequence
+            message.before_incarnation = void.before_incarnation
+            made.append(message)
+        return made
+
+    def _on_done(self, done: done_t) -> None:
+        if done.host == self._ports.gateway:
+            self.recorded = max(self.recorded, done.tick)
+            return
+        entry = self._hosts.table[done.host]
+        if done.incarnation != entry.incarnation:
+            return
+        if entry.busy == (done.tick, done.stage):
+            entry.busy = None
+            self._log.warning(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
+        elif (done.tick, done.stage) == (self.tick, self._stage) and done.host in self._outstanding:
+            self._outstanding.discard(done.host)
+            entry.seen = self._step
+        else:
+            return
+        for channel, sequence in zip(done.channel, done.sequence, strict=True):
+            self._ledger.publish(channel, sequence)
+            self._changed[channel] = sequence
+        if done.next_time_us >= 0:
+            self._pace.source(done.next_time_us)
+        self._event(tick_event_t.DONE, done.host, done.tick, done.stage)
+
+    def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
+        for entry in members:
+            if entry.index in self._outstanding:
+                entry.busy = (self.tick, stage)
+                entry.seen = self._step
+                self.late += 1
+                self._event(tick_event_t.LATE, entry.index)
+                self._log.warning(
+                    f"{entry.name} is late: {self._plan.stages[stage]} of tick {self.tick} took longer than "
+                    f"{self._stage_time_us / 1000:g} ms; the loop goes on without it"
+                )
+        self._outstanding = set()
+
+    def _on_started(self, entry: HostEntry) -> None:
+        self._event(tick_event_t.STARTED, entry.index)
+        if entry.incarnation > 1:
+            self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
+        self._again = True
+
+    def _on_lost(self, entry: HostEntry) -> None:
+        self._event(tick_event_t.LOST, entry.index)
+        if not self._lockstep or not entry.expected:
+            self._outstanding.discard(entry.index)
+
+    def _event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
+        event = tick_event_t()
+        event.kind, event.index, event.tick, event.stage = kind, index, tick, stage
+        self._events.append(event)
+
+    def _record(self, time_us: int) -> None:
+        record = tick_record_t()
+        record.run, record.tick, record.time_us = self._run, self.tick, time_us
+        record.events, self._events = self._events, []
+        record.n_events = len(record.events)
+        record.channel, record.sequence = list(self._changed), list(self._changed.values())
+        record.n_marks = len(record.channel)
+        record.voids = self._voids(self._step - 4 * len(self._by_stage))
+        record.n_voids = len(record.voids)
+        self._changed = {}
+        data = record.encode()
+        self._records.append((self.tick, data))
+        self._sender.publish(b"fwk/record", data, self._ports.record)
+
+    def _let_gateway_follow(self, tick: int) -> None:
+        """Waits until the gateway has `tick`; what it may have lost is sent again."""
+        wait_us = REPEAT_US
+        while self.recorded < tick and not self._interrupted():
+            before = self.recorded
+            self._mailbox.pump(wait_us)
+            if self.recorded == before:
+                wait_us = min(2 * wait_us, REPEAT_LONGEST_US)
+                for number, data in self._records:
+                    if number > self.recorded:
+                        self._sender.publish(b"fwk/record", data, self._ports.record)
+
+    def _wait_until(self, begin_us: int) -> None:
+        self._mailbox.pump(0)
+        while not self._interrupted() and (left_us := begin_us - monotonic_us()) > 0:
+            self._mailbox.pump_until(left_us)

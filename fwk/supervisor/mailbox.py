@@ -1,0 +1,99 @@
+"""Everything that reaches the supervisor from outside its own thread of work, handed out as events."""
+
+import os
+import select
+import signal
+from collections.abc import Callable
+
+from fwk.bus import wire
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import multicast_receiver
+from fwk.clock import US_PER_S, sleep_s
+from fwk.messages import MessageError
+from lcmtypes.core import actual_t, done_t
+
+_COARSE_US = 1500  # poll counts in whole milliseconds
+
+Handler = Callable[[], None]
+
+
+class Mailbox:
+    """The supervisor's sockets. `pump` waits for something and lets the handlers deal with it."""
+
+    def __init__(self, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
+        self.on_done: Callable[[done_t], None] = lambda _: None
+        self.on_actual: Callable[[actual_t], None] = lambda _: None
+        self.signals: list[int] = []
+        self._ports = ports
+        self._run = run
+        self._complain = complain
+        self._socket = multicast_receiver(ports.sync)
+        self._poller = select.poll()
+        self._handlers: dict[int, Handler] = {}
+        self._wakeup, write = os.pipe()
+        os.set_blocking(self._wakeup, False)
+        os.set_blocking(write, False)
+        signal.set_wakeup_fd(write, warn_on_full_buffer=False)
+        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+            signal.signal(number, lambda received, _frame: self.signals.append(received))
+        self.watch(self._socket.fileno(), self._receive)
+        self.watch(self._wakeup, self._drain_wakeup)
+
+    def watch(self, descriptor: int, handler: Handler) -> None:
+        """Calls `handler` from `pump` when there is something to read."""
+        self._handlers[descriptor] = handler
+        self._poller.register(descriptor, select.POLLIN)
+
+    def unwatch(self, descriptor: int) -> None:
+        """No longer."""
+        if self._handlers.pop(descriptor, None):
+            self._poller.unregister(descriptor)
+
+    def pump(self, timeout_us: int) -> None:
+        """Handles what is there; if nothing is, waits for the first thing or `timeout_us`."""
+        for descriptor, _ in self._poller.poll(max(0, timeout_us) / 1000):
+            handler = self._handlers.get(descriptor)
+            if handler:
+                handler()
+
+    def pump_until(self, left_us: int) -> None:
+        """As `pump`, but never longer than `left_us`, to the microsecond as well as the system can."""
+        if left_us > _COARSE_US:
+            self.pump(left_us - _COARSE_US)
+        else:
+            sleep_s(left_us / US_PER_S)
+
+    def _drain_wakeup(self) -> None:
+        os.read(self._wakeup, 1024)
+
+    def _receive(self) -> None:
+        while True:
+            try:
+                datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
+            except BlockingIOError:
+                return
+            try:
+                self._dispatch(datagram, address[1])
+            except (MessageError, ValueError) as error:
+                self._complain("fwk/sync", f"{error}; refused")
+
+    def _dispatch(self, datagram: bytes, source: int) -> None:
+        message = wire.Assembler().feed(datagram, source)
+        if message is None:
+            return
+        if message[0] == b"fwk/done":
+            done = done_t.decode(message[1])
+            self._check(done, source)
+            if done.run == self._run:
+                self.on_done(done)
+        elif message[0] == b"fwk/actual":
+            actual = actual_t.decode(message[1])
+            self._check(actual, source)
+            if actual.run == self._run:
+                self.on_actual(actual)
+        else:
+            raise MessageError(f"channel {message[0]!r} does not belong on the sync bus")
+
+    def _check(self, message: done_t | actual_t, source: int) -> None:
+        if not 0 <= message.host <= self._ports.gateway or source != self._ports.host(message.host):
+            raise MessageError(f"datagram from port {source}, which is not host {message.host}'s")

@@ -1,0 +1,65 @@
+"""The central clock: the logical time of each tick, from its one source, and when on the wall a tick may begin."""
+
+from fwk.clock import US_PER_S
+from fwk.plan.model import Plan
+
+
+class Pace:
+    """Logical time of the run.
+
+    Simulated: from the time source if there is one, else a period a tick; `speed` logical seconds a wall second, 0
+    without waiting. Wall: the wall time since the first tick; a tick begins every period.
+    """
+
+    def __init__(self, plan: Plan, speed: float) -> None:
+        self.period_us = plan.period_us
+        self.wall = plan.clock == "wall"
+        self.time_us = 0
+        self._speed = speed
+        self._next_us = -1
+        self._ticks = 0
+        self._origin_us = -1  # wall clock only: wall time of logical time 0
+        self._anchor: tuple[int, int] | None = None  # wall and logical time at which the pace was last set
+
+    @property
+    def speed(self) -> float:
+        """Logical seconds a wall second; 0: as fast as it goes."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, value: float) -> None:
+        self._speed = value
+        self._anchor = None
+
+    def source(self, next_us: int) -> None:
+        """The time source says when the next tick happens."""
+        self._next_us = next_us
+
+    def begin_us(self, now_us: int) -> int:
+        """Wall time at which the next tick may begin, as seen at wall time `now_us`."""
+        if not self.wall and self._speed <= 0:
+            return now_us
+        upcoming = self._ticks * self.period_us if self.wall else self._upcoming_us()
+        if self._anchor is None:
+            self._anchor = (now_us, upcoming)
+        wall_us, logical_us = self._anchor
+        begin = wall_us + (upcoming - logical_us if self.wall else round((upcoming - logical_us) / self._speed))
+        if begin < now_us - US_PER_S // 2:  # too slow for this pace: do not run after lost time
+            self._anchor = (now_us, upcoming)
+            return now_us
+        return begin
+
+    def advance(self, now_us: int) -> int:
+        """Begins the next tick at wall time `now_us`; returns its logical time."""
+        self._ticks += 1
+        if self.wall:
+            if self._origin_us < 0:
+                self._origin_us = now_us - self.period_us
+            self.time_us = max(self.time_us + 1, now_us - self._origin_us)
+        else:
+            self.time_us = self._upcoming_us()
+        self._next_us = -1
+        return self.time_us
+
+    def _upcoming_us(self) -> int:
+        return self._next_us if self._next_us > self.time_us else self.time_us + self.period_us

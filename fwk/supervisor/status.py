@@ -1,0 +1,57 @@
+"""The supervisor's view of the run, published twice a second."""
+
+from collections.abc import Sequence
+
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.pace import Pace
+from fwk.supervisor.table import HostEntry
+from lcmtypes.core import host_status_t, status_t
+
+PERIOD_US = US_PER_S // 2
+
+
+class StatusReport:
+    """Makes status messages and knows how fast the run is."""
+
+    def __init__(self, run: int, table: Sequence[HostEntry], loop: MainLoop, pace: Pace) -> None:
+        self.run = run
+        self._table = table
+        self._loop = loop
+        self._pace = pace
+        self._began_us = monotonic_us()
+        self._before = (self._began_us, 0, 0)  # wall, tick, logical time of the last message
+
+    @property
+    def due(self) -> bool:
+        """Whether it is time for the next message."""
+        return monotonic_us() >= self._before[0] + PERIOD_US
+
+    @property
+    def wall_s(self) -> float:
+        """Wall time since the loop began."""
+        return (monotonic_us() - self._began_us) / US_PER_S
+
+    def message(self) -> status_t:
+        """The state of everything now."""
+        now_us = monotonic_us()
+        wall_us, tick, time_us = self._before
+        self._before = (now_us, self._loop.tick, self._pace.time_us)
+        made = status_t()
+        made.run, made.tick, made.time_us = self.run, self._loop.tick, self._pace.time_us
+        elapsed_us = max(1, now_us - wall_us)
+        made.speed = (self._pace.time_us - time_us) / elapsed_us
+        made.ticks_per_s = (self._loop.tick - tick) * US_PER_S / elapsed_us
+        made.repeated, made.late = self._loop.repeated, self._loop.late
+        made.hosts = [_host(entry) for entry in self._table]
+        made.n = len(made.hosts)
+        return made
+
+
+def _host(entry: HostEntry) -> host_status_t:
+    made = host_status_t()
+    made.host, made.pid, made.restarts = entry.index, entry.pid, entry.restarts
+    made.state = "late" if entry.busy else entry.state
+    made.components = list(entry.components)
+    made.n = len(made.components)
+    return made

@@ -1,0 +1,172 @@
+"""The zygote: a process that has imported everything and forks hosts when asked, so that they start in no time."""
+
+import gc
+import json
+import os
+import select
+import signal
+import socket
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from fwk.aspects.vision import Ring
+from fwk.host.host import Assignment, Failure, Host
+from fwk.host.process import StopSignal, die_with_parent, run_forked
+from fwk.plan.model import Plan
+
+_PACKET_MAX = 1 << 20
+
+
+@dataclass(frozen=True)
+class Started:
+    """A host process was forked; its standard output and error can be read from the two descriptors."""
+
+    host: int
+    incarnation: int
+    pid: int
+    output: int
+    errors: int
+
+
+@dataclass(frozen=True)
+class Ended:
+    """A host process ended: exit code, or minus the signal that killed it."""
+
+    host: int
+    incarnation: int
+    pid: int
+    code: int
+
+
+class Zygote:
+    """The supervisor's side of the zygote."""
+
+    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring]) -> None:
+        self.socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        parent = os.getpid()
+        gc.collect()
+        gc.freeze()  # what is here now stays; hosts share its memory as long as nobody touches it
+        self.pid = os.fork()
+        if self.pid == 0:
+            self.socket.close()
+            os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
+            die_with_parent(parent)
+            run_forked(lambda stop: _Forker(plan, run, rings, other).serve(stop))
+        other.close()
+        self.socket.setblocking(False)
+
+    def start(self, host: int, incarnation: int, sequences: Mapping[str, int]) -> None:
+        """Asks for a host process; `Started` comes with the events."""
+        self._send({"start": host, "incarnation": incarnation, "sequences": dict(sequences)})
+
+    def signal(self, pid: int, number: int) -> None:
+        """Signals a host process; one that has ended meanwhile is left alone."""
+        self._send({"signal": number, "pid": pid})
+
+    def events(self) -> list[Started | Ended]:
+        """What happened since the last call."""
+        found: list[Started | Ended] = []
+        while True:
+            try:
+                packet, descriptors, _, _ = socket.recv_fds(self.socket, _PACKET_MAX, 2)
+            except BlockingIOError:
+                return found
+            if not packet:
+                raise ChildProcessError("the zygote ended")
+            event = json.loads(packet)
+            if event.pop("event") == "started":
+                found.append(Started(**event, output=descriptors[0], errors=descriptors[1]))
+            else:
+                found.append(Ended(**event))
+
+    def close(self) -> None:
+        """Ends the zygote; hosts that still run are killed."""
+        self.socket.close()
+        os.waitpid(self.pid, 0)
+
+    def _send(self, request: dict[str, Any]) -> None:
+        self.socket.setblocking(True)
+        self.socket.send(json.dumps(request).encode())
+        self.socket.setblocking(False)
+
+
+class _Forker:
+    """The zygote's own side."""
+
+    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring], connection: socket.socket) -> None:
+        self._plan = plan
+        self._run = run
+        self._rings = rings
+        self._connection = connection
+        self._children: dict[int, tuple[int, int]] = {}
+
+    def serve(self, stop: StopSignal) -> int:
+        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake us
+        poller = select.poll()
+        poller.register(self._connection, select.POLLIN)
+        poller.register(stop.wakeup, select.POLLIN)
+        while not stop():
+            for descriptor, _ in poller.poll():
+                if descriptor == stop.wakeup:
+                    os.read(stop.wakeup, 1024)
+                elif not self._request():
+                    return 0
+            self._reap()
+        return 0
+
+    def _request(self) -> bool:
+        packet = self._connection.recv(_PACKET_MAX)
+        if not packet:
+            for pid in self._children:
+                os.kill(pid, signal.SIGKILL)
+            return False
+        request = json.loads(packet)
+        if "start" in request:
+            self._fork(request["start"], request["incarnation"], request["sequences"])
+        elif request["pid"] in self._children:
+            os.kill(request["pid"], request["signal"])
+        return True
+
+    def _fork(self, host: int, incarnation: int, sequences: dict[str, int]) -> None:
+        output, output_write = os.pipe()
+        errors, errors_write = os.pipe()
+        parent = os.getpid()
+        pid = os.fork()
+        if pid == 0:
+            die_with_parent(parent)
+            signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+            self._connection.close()
+            os.dup2(output_write, 1)
+            os.dup2(errors_write, 2)
+            for descriptor in (output, output_write, errors, errors_write):
+                os.close(descriptor)
+            assignment = Assignment(self._plan, host, self._run, incarnation, sequences, self._rings)
+            run_forked(lambda stop: _serve_host(assignment, stop))
+        os.close(output_write)
+        os.close(errors_write)
+        self._children[pid] = (host, incarnation)
+        event = {"event": "started", "host": host, "incarnation": incarnation, "pid": pid}
+        socket.send_fds(self._connection, [json.dumps(event).encode()], [output, errors])
+        os.close(output)
+        os.close(errors)
+
+    def _reap(self) -> None:
+        while self._children:
+            pid, status = os.waitpid(-1, os.WNOHANG)
+            if pid == 0:
+                return
+            host, incarnation = self._children.pop(pid)
+            code = os.waitstatus_to_exitcode(status)
+            event = {"event": "ended", "host": host, "incarnation": incarnation, "pid": pid, "code": code}
+            self._connection.send(json.dumps(event).encode())
+
+
+def _serve_host(assignment: Assignment, stop: StopSignal) -> int:
+    sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+    try:
+        Host(assignment, stop, stop.wakeup).serve()
+    except Failure:
+        return 1  # logged and reported already
+    return 0

@@ -1,0 +1,75 @@
+"""Plans without launch files, for tests and measurements."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fwk.clock import US_PER_S
+from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
+from fwk.plan.wiring import Wish, wire
+
+
+def plan_of(
+    components: Mapping[str, type[Component]],
+    settings: Mapping[str, Mapping[str, Any]] | None = None,
+    channels: Mapping[str, Mapping[str, str]] | None = None,
+    groups: Sequence[Sequence[str]] | None = None,
+    period_s: float = 0.05,
+    stages: tuple[str, ...] = DEFAULT_STAGES,
+    restart: RestartPolicy = RestartPolicy(),
+    **fields: Any,
+) -> Plan:
+    """The plan of some components; `groups` names those that share a process, otherwise each has its own.
+
+    Raises:
+        ValueError: they do not fit together.
+    """
+    mistakes: list[str] = []
+    wishes = [Wish(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()]
+    wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"))
+    if mistakes:
+        raise ValueError("\n".join(mistakes))
+    names = list(components)
+    shared = [list(group) for group in groups or ()]
+    grouped = {name for group in shared for name in group}
+    shared += [[name] for name in names if name not in grouped]
+    host_of = {name: index for index, group in enumerate(shared) for name in group}
+    planned = []
+    for index, (wish, ports) in enumerate(zip(wishes, wiring.ports, strict=True)):
+        kind, config_type = wish.declaration.component, wish.declaration.config
+        config = config_type(**(settings or {}).get(wish.name, {})).model_dump() if config_type else {}
+        planned.append(
+            ComponentPlan(
+                index=index,
+                name=wish.name,
+                module=kind.__module__,
+                class_name=kind.__qualname__,
+                stages=tuple(stages.index(stage) for stage in wish.declaration.stages),
+                config=config,
+                origins={},
+                channels=ports,
+                host=host_of[wish.name],
+                restart=restart,
+            )
+        )
+    hosts = [
+        HostPlan(index, group[0] if len(group) == 1 else "+".join(group), tuple(sorted(map(names.index, group))))
+        for index, group in enumerate(shared)
+    ]
+    return Plan(
+        **{
+            "name": "test",
+            "file": "test",
+            "folders": (),
+            "stages": stages,
+            "period_us": round(period_s * US_PER_S),
+            "clock": "simulated",
+            "seed": 1,
+            "components": tuple(planned),
+            "channels": wiring.channels,
+            "hosts": tuple(hosts),
+            "speed": 0.0,
+            "public_url": "",
+            **fields,
+        }
+    )
