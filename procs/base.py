@@ -12,6 +12,9 @@ from procs.physics.kinematics import STANDSTILL, Velocity, velocity_of, wheels_o
 from procs.physics.odometry import Odometry
 from procs.physics.ramp import Ramp, within_wheel_limit
 
+_PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, not even when they are pushed
+_LONGEST_GAP_S = 0.5  # a measurement after a longer silence says nothing about the time before
+
 
 class BaseConfig(Config):
     """Settings of the wheels' driver."""
@@ -70,10 +73,14 @@ class Base(Component):
             self._report()
 
     def _add(self, state: wheel_state_t) -> None:
-        time_us = state.header.time_us
-        passed_s = (time_us - self._measured_us) / US_PER_S if self._measured_us else self.clock.period_s
-        self._measured_us = time_us
         first, second, third = state.wheel_m_s
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.wheel_m_s):
+            self.log.warning(f"wheels say {first}, {second}, {third} m/s, which cannot be; ignored")
+            return
+        passed_s = (state.header.time_us - self._measured_us) / US_PER_S
+        self._measured_us = state.header.time_us
+        if not 0 < passed_s <= _LONGEST_GAP_S:
+            passed_s = self.clock.period_s
         self._odometry.advance(velocity_of((first, second, third), self.config.wheel_distance_m), passed_s)
 
     def _report(self) -> None:

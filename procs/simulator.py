@@ -113,7 +113,9 @@ class Simulator(Component):
             fresh = self._is_fresh(reader)
             first, second, third = reader.value.wheel_m_s if fresh else (0.0, 0.0, 0.0)
             world.robots[robot].drive.command((first, second, third), world.time_us)
-        for robot in self.kicker_drive.keys() & world.kickers.keys():
+        for robot in world.kickers:
+            if robot not in self.kicker_drive:
+                continue
             drives = self.kicker_drive[robot]
             wishes = [KickerCommand(drive.kick_id, drive.speed_m_s, drive.dribble) for drive in drives.fresh]
             for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,8 @@ BALL: Colour = (30, 196, 250)
 BALL_EDGE: Colour = (20, 90, 130)
 BAR: Colour = (32, 28, 26)
 TEXT: Colour = (245, 245, 245)
+
+TRUTH = "world/ground_truth"
 
 _ROBOT_RADIUS_M = 0.25
 _MOUTH_RAD = math.radians(30)
@@ -96,13 +99,25 @@ class TopView:
         write(picture, phase(state), (self.width_px - edge_px, y_px), small_px, TEXT, align=1.0)
 
 
-def picture(newest: Callable[[str], Any], view: TopView) -> Picture | None:
+def picture(newest: Callable[[str], Any]) -> Picture | None:
     """Draws the newest messages, decoded, of a running or recorded match; None before the world was seen."""
-    truth = newest("world/ground_truth")
+    truth = newest(TRUTH)
+    return None if truth is None else _view().draw(truth, newest(GAME_STATE))
+
+
+def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
+    """The same with what every robot believes about itself and the ball."""
+    truth = newest(TRUTH)
     if truth is None:
         return None
     models = {robot.name: newest(f"{robot.name}/world_model") for robot in truth.robots}
-    return view.draw(truth, newest(GAME_STATE), {name: model for name, model in models.items() if model is not None})
+    beliefs = {name: model for name, model in models.items() if model is not None}
+    return _view().draw(truth, newest(GAME_STATE), beliefs)
+
+
+@cache
+def _view() -> TopView:
+    return TopView()
 
 
 def _outline(robot: true_robot_t, radius_m: float) -> list[tuple[float, float]]:

@@ -100,3 +100,20 @@ def test_a_lost_measurement_is_bridged() -> None:
     base.iterate(2, stage="sensor_acquire")
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("speed_m_s", [math.nan, math.inf, 1e300])
+def test_impossible_wheel_speeds_are_refused_aloud(speed_m_s: float) -> None:
+    base = bench()
+    base.port("wheel_state").put(wheel_m_s=[0.0, speed_m_s, 0.0])
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
+    assert base.logged[0].text == f"wheels say 0.0, {speed_m_s}, 0.0 m/s, which cannot be; ignored"
+
+
+def test_after_a_long_silence_only_the_last_period_counts() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    base.iterate(100, stage="sensor_acquire")
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)

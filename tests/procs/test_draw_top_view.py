@@ -7,7 +7,7 @@ from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_mo
 from procs.draw.canvas import Picture
 from procs.draw.ground import GRASS, WHITE
 from procs.draw.palette import TEAM_COLOURS
-from procs.draw.top_view import BALL, BAR, TopView, picture
+from procs.draw.top_view import BALL, BAR, TopView, picture, picture_with_beliefs
 
 VIEW = TopView(960)
 PX_PER_M = 960 / 24
@@ -89,6 +89,17 @@ def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
 
 
 def test_a_picture_of_the_newest_messages() -> None:
-    messages = {"world/ground_truth": truth(("cyan1", 0.0, 0.0, 0.0))}
-    assert picture(messages.get, VIEW) is not None
-    assert picture(lambda _: None, VIEW) is None
+    belief = world_model_t()
+    belief.localized, belief.x_m, belief.y_m = True, 5.0, 5.0
+    messages = {"world/ground_truth": truth(("cyan1", 0.0, 0.0, 0.0)), "cyan1/world_model": belief}
+    plain, believed = picture(messages.get), picture_with_beliefs(messages.get)
+    assert plain is not None
+    assert believed is not None
+    _, columns = np.nonzero((plain != believed).any(axis=2))
+    assert columns.mean() / plain.shape[1] == pytest.approx((12.0 + 5.0) / 24.0, abs=0.002)
+    assert np.ptp(columns) < 40
+
+
+def test_before_the_world_was_seen_there_is_no_picture() -> None:
+    assert picture(lambda _: None) is None
+    assert picture_with_beliefs(lambda _: None) is None
