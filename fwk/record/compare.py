@@ -12,7 +12,7 @@ from fwk.record.log import Event, LogError, LogReader
 from fwk.record.types import header_of, is_interface
 
 FRAMEWORK = "fwk/"
-_RECENT = 1024  # messages of a channel among which a message sent again is recognized
+_RECENT = 1024  # messages of a channel among which one sent again is recognized; writers keep fewer to send again
 
 
 def compare(a: Path, b: Path, common: bool = False) -> Difference | None:

@@ -35,7 +35,7 @@ def drawing(name: str) -> Draw:
     try:
         found = getattr(import_module(module), word)
     except (ImportError, AttributeError, ValueError) as error:
-        raise VideoError(f"no drawing '{name}': {error}; say module:name, as procs.draw.top_view:picture") from error
+        raise VideoError(f"no drawing '{name}': {error}; say module:name, as my_robot.pictures:top_view") from error
     draw: Draw = found().draw if isinstance(found, type) else found
     return draw
 

@@ -6,9 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from fwk.record.compare import Comparison, compare
 from fwk.record.log import LogError
+from fwk.record.log_info import log_info
 from tests.fwk.record.record_made import Entry, entries, entry, odometry, world_model, write
 
 
@@ -198,6 +201,23 @@ def test_a_torn_tail_is_a_missing_message(tmp_path: Path) -> None:
     assert "cyan2/world_model: tick 20" in str(result.difference)
     assert result.skipped_bytes[0] == 0
     assert result.skipped_bytes[1] > 0
+
+
+@given(st.lists(st.tuples(st.integers(0, 12_000), st.integers(1, 255)), min_size=1, max_size=12), st.integers(0, 400))
+@settings(max_examples=60, deadline=None)
+def test_no_damage_makes_the_tools_crash(
+    tmp_path_factory: pytest.TempPathFactory, flips: list[tuple[int, int]], cut: int
+) -> None:
+    folder = tmp_path_factory.getbasetemp()
+    whole = write(folder / "whole", entries())
+    data = bytearray(whole.read_bytes())
+    for place, bits in flips:
+        data[place % len(data)] ^= bits
+    (folder / "damaged").write_bytes(data[: len(data) - cut])
+    for common in (False, True):
+        for a, b in [(whole, folder / "damaged"), (folder / "damaged", whole)]:
+            assert str(compare(a, b, common))
+    assert log_info(folder / "damaged").events <= len(entries())
 
 
 def test_files_with_nothing_to_compare_are_refused(tmp_path: Path) -> None:
