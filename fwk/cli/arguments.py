@@ -1,7 +1,9 @@
 """Reads values of the command line that are more than a number or a name."""
 
 import math
+import os
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
 
 import typer
@@ -56,6 +58,34 @@ def seconds(text: str) -> float:
         BadParameter: it is none.
     """
     return _above_zero(text, "a duration; say seconds above 0, such as 60 or 0.5")
+
+
+def new_file(text: str) -> Path:
+    """The absolute path of a file that can be written, in a folder that is there or can be made.
+
+    Raises:
+        BadParameter: it names a folder, or lies where nothing may be written.
+    """
+    path = Path(text).absolute()
+    nearest = next(folder for folder in path.parents if folder.exists())
+    if path.is_dir():
+        raise typer.BadParameter(f"'{text}' is a folder; name a file in it")
+    if not nearest.is_dir() or not os.access(path if path.exists() else nearest, os.W_OK):
+        raise typer.BadParameter(f"'{text}' cannot be written: {nearest} is no folder that you may write to")
+    return path
+
+
+def video_file(text: str) -> Path:
+    """A new file that ends in .mp4.
+
+    Raises:
+        BadParameter: it ends otherwise, or cannot be written.
+    """
+    if Path(text).suffix != ".mp4":
+        raise typer.BadParameter(
+            f"'{text}' is no .mp4, the only kind that is written; say {Path(text).with_suffix('.mp4')}"
+        )
+    return new_file(text)
 
 
 def _above_zero(text: str, meaning: str) -> float:

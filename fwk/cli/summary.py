@@ -31,6 +31,4 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
     ]
     if options.record:
         lines.append(f"recording: {options.record}")
-    if options.video:
-        lines.append(f"video: {options.video}")
     return [*lines, f"run directory: {options.run_dir}"]

@@ -4,12 +4,15 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+NOBODY = -1
+"""As a channel's writer: no component of the plan."""
+
 RestartWhen = Literal["never", "on-failure", "always"]
 
 
 @dataclass(frozen=True)
 class RestartPolicy:
-    """When a component that ended is started again: `limit` times within `window_s` at most, waiting longer each time."""
+    """When a component that ended is started again: at most `limit` times in `window_s`, waiting longer each time."""
 
     when: RestartWhen = "on-failure"
     backoff_s: float = 0.1
@@ -35,6 +38,8 @@ class ComponentPlan:
     host: int
     restart: RestartPolicy = RestartPolicy()
     ready_timeout_s: float = 20.0
+    needs: tuple[int, ...] = ()
+    """Indices of components that have to be ready before this one starts."""
 
     @property
     def namespace(self) -> str:
@@ -50,7 +55,8 @@ class ChannelPlan:
     name: str
     type_name: str
     writer: int
-    """Index of the component that writes it."""
+    """Index of the component that writes it. `NOBODY`: programs outside write it, if it is one of `Plan.outside`;
+    otherwise its writer was left out of the run, and its readers never see a value."""
     readers: tuple[int, ...]
     images: bool = False
     """Whether frames lie in a shared-memory ring beside it."""
@@ -107,6 +113,7 @@ class Plan:
                     "stages": tuple(item["stages"]),
                     "channels": {port: tuple(names) for port, names in item["channels"].items()},
                     "restart": RestartPolicy(**item["restart"]),
+                    "needs": tuple(item["needs"]),
                 }
             )
             for item in data["components"]

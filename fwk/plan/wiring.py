@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from fnmatch import fnmatchcase
 
 from fwk import messages
 from fwk.component import Declaration, Port
-from fwk.plan.model import ChannelPlan
+from fwk.plan.errors import hint
+from fwk.plan.model import NOBODY, ChannelPlan
+from fwk.plan.names import mistake_in, mistake_in_pattern
 
 
 @dataclass(frozen=True)
@@ -42,62 +43,110 @@ class Wiring:
     ports: tuple[dict[str, tuple[str, ...]], ...]
 
 
-def wire(wishes: Sequence[Wish], report: Report) -> Wiring:
-    """Wires components; every mistake goes to `report`, and the wiring is then not to be used."""
-    read = {
-        wish.pattern(port) for wish in wishes for port in wish.declaration.ports if not port.writes and not port.each
-    }
-    writers: dict[str, tuple[int, Port]] = {}
-    ports: list[dict[str, tuple[str, ...]]] = [{} for _ in wishes]
-    for index, wish in enumerate(wishes):
-        for port in wish.declaration.ports:
+def wire(
+    wishes: Sequence[Wish],
+    report: Report,
+    outside: Mapping[str, type[messages.Message]] | None = None,
+    may_lack_writer: Callable[[str], bool] = lambda _: False,
+) -> Wiring:
+    """Wires components; every mistake goes to `report`, and the wiring is then not to be used.
+
+    `outside` are channels that other programs write, with their types. `may_lack_writer` says for which channels it is
+    no mistake that nobody writes them; a reader of such a channel never sees a value.
+    """
+    return _Wiring(wishes, report, outside or {}, may_lack_writer).done()
+
+
+class _Wiring:
+    def __init__(
+        self,
+        wishes: Sequence[Wish],
+        report: Report,
+        outside: Mapping[str, type[messages.Message]],
+        may_lack_writer: Callable[[str], bool],
+    ) -> None:
+        self._wishes = wishes
+        self._report = report
+        self._may_lack_writer = may_lack_writer
+        self._writers = {name: (NOBODY, Port(name, "writes", kind, name)) for name, kind in outside.items()}
+        self._readers: dict[str, list[int]] = {}
+        self._ports: list[dict[str, tuple[str, ...]]] = [{} for _ in wishes]
+
+    def done(self) -> Wiring:
+        asked = [
+            (index, wish, port) for index, wish in enumerate(self._wishes) for port in wish.declaration.ports
+            if self._well_named(wish, port)
+        ]  # fmt: skip
+        read = {wish.pattern(port) for _, wish, port in asked if not port.writes and not port.each}
+        for index, wish, port in asked:
             if port.writes:
-                pattern = wish.pattern(port)
-                names = tuple(sorted(name for name in read if fnmatchcase(name, pattern))) if port.each else (pattern,)
-                ports[index][port.attribute] = names
-                for name in names:
-                    if name in writers:
-                        other = wishes[writers[name][0]].name
-                        report(wish.name, port.attribute, f"two writers of '{name}': {other} and {wish.name}; keep one")
-                    else:
-                        writers[name] = (index, port)
-    readers: dict[str, list[int]] = {name: [] for name in writers}
-    for index, wish in enumerate(wishes):
-        for port in wish.declaration.ports:
+                self._write(index, wish, port, read)
+        written = sorted(self._writers)
+        for index, wish, port in asked:
             if not port.writes:
-                ports[index][port.attribute] = _readable(wishes, wish, port, writers, report)
-                for name in ports[index][port.attribute]:
-                    if index not in readers[name]:
-                        readers[name].append(index)
-    channels = tuple(
-        ChannelPlan(number, name, messages.type_name(port.message_type), writer, tuple(readers[name]), port.images)
-        for number, (name, (writer, port)) in enumerate(sorted(writers.items()))
-    )
-    for channel in channels:
-        if len(channel.name.encode()) > 63:
-            report(wishes[channel.writer].name, None, f"channel name '{channel.name}' is longer than LCM's 63 bytes")
-    return Wiring(channels, tuple(ports))
+                self._read(index, wish, port, written)
+        channels = tuple(
+            ChannelPlan(
+                number,
+                name,
+                messages.type_name(port.message_type),
+                writer,
+                tuple(self._readers.get(name, ())),
+                port.images,
+            )
+            for number, (name, (writer, port)) in enumerate(sorted(self._writers.items()))
+        )
+        return Wiring(channels, tuple(self._ports))
 
+    def _well_named(self, wish: Wish, port: Port) -> bool:
+        mistake = (mistake_in_pattern if port.each else mistake_in)(wish.pattern(port))
+        if mistake:
+            self._report(wish.name, port.attribute, f"port '{port.attribute}': {mistake}")
+            self._ports[self._wishes.index(wish)][port.attribute] = ()
+        return not mistake
 
-def _readable(
-    wishes: Sequence[Wish], wish: Wish, port: Port, writers: Mapping[str, tuple[int, Port]], report: Report
-) -> tuple[str, ...]:
-    pattern = wish.pattern(port)
-    names = sorted(name for name in writers if fnmatchcase(name, pattern)) if port.each else [pattern]
-    if not port.each and pattern not in writers:
-        near = get_close_matches(pattern, writers, 1)
-        hint = f"did you mean '{near[0]}'?" if near else "load a component that writes it, or name another channel"
-        report(wish.name, port.attribute, f"nobody writes '{pattern}', which {wish.name} reads; {hint}")
-        return ()
-    for name in names:
-        index, writer = writers[name]
-        if messages.fingerprint(writer.message_type) != messages.fingerprint(port.message_type):
-            report(
+    def _write(self, index: int, wish: Wish, port: Port, read: set[str]) -> None:
+        pattern = wish.pattern(port)
+        names = tuple(sorted(name for name in read if fnmatchcase(name, pattern))) if port.each else (pattern,)
+        self._ports[index][port.attribute] = names
+        for name in names:
+            if name in self._writers:
+                first = self._writers[name][0]
+                other = "programs outside" if first == NOBODY else self._wishes[first].name
+                self._report(wish.name, port.attribute, f"two writers of '{name}': {other} and {wish.name}; keep one")
+            else:
+                self._writers[name] = (index, port)
+
+    def _read(self, index: int, wish: Wish, port: Port, written: Sequence[str]) -> None:
+        pattern = wish.pattern(port)
+        if port.each:
+            names = tuple(name for name in written if fnmatchcase(name, pattern))
+        else:
+            names = (pattern,)
+            if pattern not in self._writers and self._may_lack_writer(pattern):
+                self._writers[pattern] = (NOBODY, port)
+            elif pattern not in self._writers:
+                right = hint(pattern, self._writers)
+                text = f"nobody writes '{pattern}', which {wish.name} reads as '{port.attribute}'; {right}"
+                self._report(wish.name, port.attribute, text)
+                names = ()
+        self._ports[index][port.attribute] = names
+        for name in names:
+            self._fits(wish, port, name)
+            readers = self._readers.setdefault(name, [])
+            if index not in readers:
+                readers.append(index)
+
+    def _fits(self, wish: Wish, port: Port, name: str) -> None:
+        index, written = self._writers[name]
+        writer = "programs outside" if index == NOBODY else self._wishes[index].name
+        if messages.fingerprint(written.message_type) != messages.fingerprint(port.message_type):
+            self._report(
                 wish.name,
                 port.attribute,
-                f"'{name}' is written by {wishes[index].name} as {messages.type_name(writer.message_type)} "
-                f"and read by {wish.name} as {messages.type_name(port.message_type)}",
+                f"'{name}' is written by {writer} as {messages.type_name(written.message_type)} "
+                f"and read by {wish.name} as {messages.type_name(port.message_type)}; use one type",
             )
-        if port.images and not writer.images:
-            report(wish.name, port.attribute, f"'{name}' is no camera: {wishes[index].name} is not its vision master")
-    return tuple(names)
+        elif port.images and not written.images:
+            text = f"'{name}' is no camera: {writer} is not its vision master; read a channel that is an Image"
+            self._report(wish.name, port.attribute, text)

@@ -15,8 +15,8 @@ from fwk.supervisor.pace import Pace
 from fwk.supervisor.table import HostEntry
 from lcmtypes.core import done_t, tick_event_t, tick_record_t, tick_t, void_t
 
-REPEAT_US = 20_000  # silence after which a tick is repeated; doubles with each time
-REPEAT_LONGEST_US = 500_000
+REPEAT_US = 2_000  # a tick is repeated after so much more than the stage usually takes; doubles with each time
+REPEAT_LONGEST_US = 100_000
 UNSETTLED_US = 20_000  # how often to look after hosts that are being started again
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 
@@ -56,6 +56,7 @@ class MainLoop:
             [entry for entry in hosts.table if any(stage in plan.components[i].stages for i in self._members(entry))]
             for stage in range(len(plan.stages))
         ]
+        self._usual_us = [10 * REPEAT_US] * len(plan.stages)  # what a stage takes, smoothed
         self._stage = 0
         self._step = 0
         self._outstanding: set[int] = set()
@@ -100,7 +101,8 @@ class MainLoop:
         self._event(tick_event_t.STAGE, stage)
         self._broadcast(members, time_us)
         began_us = sent_us = monotonic_us()
-        repeat_us = REPEAT_US
+        first_us = REPEAT_US + 3 * self._usual_us[stage]
+        repeat_us = first_us
         while self._outstanding and not self._interrupted():
             now_us = monotonic_us()
             due_us = sent_us + repeat_us
@@ -111,6 +113,7 @@ class MainLoop:
             self._mailbox.pump(due_us - now_us)
             now_us = monotonic_us()
             if not self._outstanding:
+                self._usual_us[stage] += (now_us - sent_us - self._usual_us[stage]) // 8
                 return
             if not self._lockstep and now_us >= began_us + self._stage_time_us:
                 self._leave_behind(members, stage)
@@ -120,7 +123,7 @@ class MainLoop:
                 self._outstanding &= {entry.index for entry in members if entry.expected}
             if self._again or now_us >= sent_us + repeat_us:
                 self.repeated += not self._again
-                repeat_us = REPEAT_US if self._again else min(2 * repeat_us, REPEAT_LONGEST_US)
+                repeat_us = first_us if self._again else min(2 * repeat_us, max(first_us, REPEAT_LONGEST_US))
                 self._again = False
                 self._broadcast(members, time_us)
                 sent_us = monotonic_us()
@@ -216,7 +219,7 @@ class MainLoop:
 
     def _let_gateway_follow(self, tick: int) -> None:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us = REPEAT_US
+        wait_us = 10 * REPEAT_US
         while self.recorded < tick and not self._interrupted():
             before = self.recorded
             self._mailbox.pump(wait_us)

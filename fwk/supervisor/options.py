@@ -22,7 +22,7 @@ class RunOptions:
     record: Path | None = None
     """Where the LCM log goes; None: no recording."""
     video: Path | None = None
-    """Where the picture of the run goes, made from the recording."""
+    """Where a video of the run goes; the launcher draws it from the recording when the run has ended."""
     debug: str | None = None
     """Component that runs under pdb in this terminal."""
     plain: bool = False

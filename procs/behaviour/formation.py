@@ -32,9 +32,9 @@ def places(ball: Point, ours: bool, field: Field) -> list[Point]:
     return [supporter, stopper, sweeper, spare]
 
 
-def taker_place(spot: Point, target: Point) -> Point:
-    """Where the taker of a set piece waits: behind the ball, seen from where it will play it."""
-    return ahead(spot, bearing_rad(spot, target), -0.75)
+def taker_place(spot: Point, way_rad: float) -> Point:
+    """Where the taker of a set piece waits: behind the ball that it will play in that direction."""
+    return ahead(spot, way_rad, -0.75)
 
 
 def first_opponent_place(game: Game, field: Field) -> Point:

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from procs.behaviour import aim, ballistics, formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.geometry import bearing_rad, clamp
+from procs.behaviour.restarts import State
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
 from procs.field import Field, Point
@@ -14,6 +15,7 @@ _SHOT_RANGE_M = 8.0
 _PRESSED_M = 1.3
 _PATIENCE_S = 4.0  # with the ball, before any shot or pass is better than none
 _FAST_BALL_M_S = 1.2
+_KICK_OFF_RAD = 0.8
 
 
 class Order(NamedTuple):
@@ -76,8 +78,10 @@ class Tactics:
         receiver = aim.best_pass(game.spot, _field_players(view), view.opponents)
         target = receiver.place if receiver else self.field.goal_centre(1.0)
         way_rad = bearing_rad(game.spot, target)
+        if game.state is State.KICK_OFF:  # from the own half
+            way_rad = clamp(way_rad, -_KICK_OFF_RAD, _KICK_OFF_RAD)
         if game.stopped:
-            return Order("goto", formation.taker_place(game.spot, target), way_rad, "take set piece")
+            return Order("goto", formation.taker_place(game.spot, way_rad), way_rad, "take set piece")
         if holds_ball:
             return self._play_ball(view)
         return Order("get_ball", game.spot, way_rad, "take set piece")

@@ -2,11 +2,10 @@
 
 import numpy as np
 
-from fwk.aspects.blackboard import Reads, Writes, channel
+from fwk.aspects.blackboard import Reads, ReadsEach, Writes, channel
 from fwk.clock import Clock
 from fwk.component import Component
 from fwk.config import Config
-from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
 from procs.physics.teams import team_of
 
@@ -21,7 +20,7 @@ class PerfectWorldModelConfig(Config):
 
 
 class PerfectWorldModel(Component):
-    """Stands in for camera, vision, localization, world model and radio of one robot; mates' roles are told by none."""
+    """Stands in for camera, vision, localization, world model and radio of one robot."""
 
     stage = "worldstate"
 
@@ -29,8 +28,7 @@ class PerfectWorldModel(Component):
     clock: Clock
     rng: np.random.Generator
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
-    role: Reads[role_t]
-    kicker_state: Reads[kicker_state_t]
+    role: ReadsEach[role_t] = channel("*/role")
     world_model: Writes[world_model_t]
 
     def loop(self) -> None:
@@ -55,7 +53,7 @@ class PerfectWorldModel(Component):
         model.opponents = [_estimate(each) for each in others if team_of(each.name) != team_of(robot)]
         for opponent in model.opponents:
             opponent.name = ""
-        model.mate_roles = [""] * len(model.mates)
+        model.mate_roles = [self.role[mate.name].value.role for mate in model.mates]
         self.world_model.value = model
         self.world_model.write()
 

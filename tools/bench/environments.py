@@ -15,8 +15,8 @@ _DEBIAN_LIBRARIES = "usr/lib/x86_64-linux-gnu"
 class Environment:
     """One environment.
 
-    `pip` packages go into a virtual environment of the Python that runs the benchmark; `debian` packages are unpacked, not
-    installed, and that Python finds them (they need Debian 12's Python 3.11); with neither it is the core environment.
+    `pip` packages go into a virtual environment of the Python that runs the benchmark; `debian` packages are unpacked,
+    not installed, and that Python finds them (they need Debian 12's Python 3.11); with neither it is the core one.
     """
 
     name: str

@@ -2,7 +2,9 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
+from tools.bench import ros_build
 from tools.bench.environments import CORE, ECAL, ICE, ROS, ZENOH, ZMQ, Environment
 from tools.bench.shape import Shape
 
@@ -27,6 +29,9 @@ class Peer:
     start: Commands | None = None
     """Command lines, where they are not one Python process for the supervisor and each component."""
 
+    program: Path | None = None
+    """A compiled program that it needs."""
+
     def commands(self, shape_file: str) -> list[list[str]]:
         """The command lines to start."""
         if self.start:
@@ -35,6 +40,8 @@ class Peer:
 
     def missing(self) -> str:
         """Why it cannot be measured here; empty if it can."""
+        if self.program and not self.program.exists():
+            return f"{self.program.name} not built; say: make bench-peers"
         return self.environment.missing()
 
 
@@ -45,10 +52,17 @@ def python_commands(python: str, module: str, shape_file: str) -> list[list[str]
     return [*made, [python, "-m", "tools.bench.supervise", module, shape_file]]
 
 
-def ros_commands(shape_file: str) -> list[list[str]]:
+_ROS_MASTER = [ROS.python, str(ROS.folder / "usr/bin/rosmaster"), "--core", "-p", "11311"]
+
+
+def rospy_commands(shape_file: str) -> list[list[str]]:
     """The master, then the nodes; they wait for it by themselves."""
-    master = [ROS.python, str(ROS.folder / "usr/bin/rosmaster"), "--core", "-p", "11311"]
-    return [master, *python_commands(ROS.python, "rospy", shape_file)]
+    return [_ROS_MASTER, *python_commands(ROS.python, "rospy", shape_file)]
+
+
+def roscpp_commands(shape_file: str) -> list[list[str]]:
+    """The master, then the nodes; they wait for it by themselves."""
+    return [_ROS_MASTER, *ros_build.commands(shape_file)]
 
 
 _ALL = (
@@ -62,6 +76,7 @@ _ALL = (
     Peer("zenoh", "Zenoh, tcp star", ZENOH, LCM_GEN),
     Peer("ecal", "eCAL, shared memory", ECAL, LCM_GEN),
     Peer("ice", "Ice, AMI", ICE, "Slice, Python"),
-    Peer("rospy", "ROS 1, rospy", ROS, "genpy, Python", start=ros_commands),
+    Peer("rospy", "ROS 1, rospy", ROS, "genpy, Python", start=rospy_commands),
+    Peer("roscpp", "ROS 1, roscpp (C++)", ROS, "gencpp, C++", start=roscpp_commands, program=ros_build.PROGRAM),
 )
 PEERS = {peer.name: peer for peer in _ALL}

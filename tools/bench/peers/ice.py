@@ -1,4 +1,4 @@
-"""Ice: the supervisor calls all components of a stage at once (AMI), their answers are the dones; data by oneway calls."""
+"""Ice: the supervisor calls all components of a stage at once (AMI), their answers are the dones; data goes oneway."""
 
 import os
 import sys

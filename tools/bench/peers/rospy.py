@@ -1,6 +1,7 @@
 """ROS 1 in Python: a topic a stage for ticks, one for dones, a topic a component for data; messages of genpy."""
 
 import os
+from pathlib import Path
 from typing import Any
 
 import genpy.dynamic
@@ -10,27 +11,18 @@ from tools.bench.peers.inbox import Answers, Inbox
 from tools.bench.shape import Shape
 from tools.bench.timing import sleep_s
 
-_TYPES = """int64 tick
-int32 component
-"""
-_SAMPLE = """Stamp header
-float64 x_m
-float64 y_m
-float64 heading_rad
-float64 confidence
-float64[16] covariance
-int32 n_padding
-uint8[] padding
-================================================================================
-MSG: bench/Stamp
-int64 tick
-int64 sequence
-int64 time_us
-int16 stage
-string writer
-"""
-Signal: Any = genpy.dynamic.generate_dynamic("bench/Signal", _TYPES)["bench/Signal"]
-Sample: Any = genpy.dynamic.generate_dynamic("bench/Sample", _SAMPLE)["bench/Sample"]
+_MESSAGES = Path(__file__).parent / "ros"
+
+
+def _generated(name: str, *parts: str) -> Any:
+    """The class of a .msg file and of those it is made of, in the form of a bag's type definition."""
+    texts = [(_MESSAGES / f"{name}.msg").read_text()]
+    texts += [f"{'=' * 80}\nMSG: bench/{part}\n{(_MESSAGES / f'{part}.msg').read_text()}" for part in parts]
+    return genpy.dynamic.generate_dynamic(f"bench/{name}", "".join(texts))[f"bench/{name}"]
+
+
+Signal = _generated("Signal")
+Sample = _generated("Sample", "Stamp")
 _QUEUE = 1000
 
 
