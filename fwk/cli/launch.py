@@ -1,0 +1,159 @@
+"""`fwk-launch FILE`: checks a launch file, runs it in the foreground, says how it went."""
+
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
+from fwk.cli.arguments import speed as parse_speed
+from fwk.cli.run_dir import make_run_dir
+from fwk.cli.summary import summary
+from fwk.plan.errors import PlanError
+from fwk.plan.load import LaunchOptions, load_plan
+from fwk.plan.model import Plan
+from fwk.record.log import LogError
+from fwk.supervisor import PortsInUse, RunOptions, run
+
+RUN_BROKEN = 1
+BAD_INPUT = 2
+INTERRUPTED_TWICE = 130
+RECORDING = "log.lcm"
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+@app.command(cls=SeveralNames)
+def launch(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="launch file, looked for as given, then in launch/")],
+    ticks: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after N ticks")] = None,
+    time: Annotated[
+        float | None, typer.Option(parser=seconds, metavar="SECONDS", help="stop after this much logical time")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(parser=parse_speed, metavar="F|max", help="pace of simulated time; max: as fast as it goes"),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="seed of the run")] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(parser=new_file, metavar="FILE", help="where the LCM log goes; default: in the run directory"),
+    ] = None,
+    no_record: Annotated[bool, typer.Option("--no-record", help="keep no LCM log")] = False,
+    sets: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
+    ] = None,
+    hosting: Annotated[
+        Hosting, typer.Option(help="one process a component, one a namespace, or one for all")
+    ] = Hosting.PROCESS,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="NAME...", help="only these components; several names or repeated")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(metavar="NAME...", help="all but these components; several names or repeated")
+    ] = None,
+    debug: Annotated[
+        str | None, typer.Option(metavar="NAME", help="run this component under pdb in this terminal")
+    ] = None,
+    bus_port: Annotated[
+        int | None, typer.Option(min=1024, max=65535, metavar="N", help="first port of the inner buses")
+    ] = None,
+    video: Annotated[
+        Path | None,
+        typer.Option(parser=video_file, metavar="FILE.mp4", help="draw the run into a video when it has ended"),
+    ] = None,
+    plain: Annotated[bool, typer.Option("--plain", help="lines of text instead of the live display")] = False,
+) -> None:
+    """Runs a launch file in the foreground; Ctrl-C stops everything.
+
+    Exit codes: 0 all went well, 1 a component failed or the run broke, 2 bad input, 130 interrupted twice.
+    """
+    if record and no_record:
+        raise typer.BadParameter("--record and --no-record exclude each other; keep one")
+    if video and no_record:
+        raise typer.BadParameter("--video is made from the recording; leave out --no-record")
+    wishes = LaunchOptions(
+        sets=tuple(sets or ()),
+        hosting=hosting.value,
+        only=tuple(only or ()),
+        without=tuple(without or ()),
+        seed=seed,
+        speed=speed,
+        bus_port=bus_port,
+    )
+    plan = _plan(file, wishes)
+    if video and not plan.video:
+        raise typer.BadParameter(f"--video: {plan.file} names no drawing; add a line 'video: module:function'")
+    if debug and debug not in (names := [component.name for component in plan.components]):
+        near = get_close_matches(debug, names, 1)
+        hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(sorted(names))}"
+        raise typer.BadParameter(f"--debug: no component '{debug}' in {plan.file}; {hint}")
+    run_dir = _run_dir(plan)
+    options = RunOptions(
+        run_dir,
+        ticks=ticks,
+        time_s=time,
+        speed=plan.speed,
+        record=None if no_record else record or run_dir / RECORDING,
+        video=video,
+        debug=debug,
+        plain=plain or debug is not None,
+    )
+    raise typer.Exit(_run(plan, options))
+
+
+def _plan(file: str, wishes: LaunchOptions) -> Plan:
+    try:
+        return load_plan(file, wishes)
+    except PlanError as error:
+        typer.echo(error, err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    except KeyboardInterrupt as interrupt:
+        typer.echo("interrupted before the start", err=True)
+        raise typer.Exit(0) from interrupt
+
+
+def _run_dir(plan: Plan) -> Path:
+    try:
+        return make_run_dir(plan.name)
+    except OSError as error:
+        typer.echo(f"{error.filename}: cannot create the run directory there: {error.strerror}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+
+
+def _run(plan: Plan, options: RunOptions) -> int:
+    try:
+        outcome = run(plan, options)
+    except PortsInUse as error:
+        typer.echo(error, err=True)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        typer.echo("interrupted twice; stopped at once", err=True)
+        return INTERRUPTED_TWICE
+    for line in summary(plan, options, outcome):
+        typer.echo(line)
+    drawn = _draw(plan, options.record, options.video) if options.record and options.video else True
+    return outcome.exit_code if drawn else RUN_BROKEN
+
+
+def _draw(plan: Plan, record: Path, video: Path) -> bool:
+    from fwk.record.video import VideoError, drawing, render_video  # OpenCV, for those who ask for it
+
+    try:
+        video.parent.mkdir(parents=True, exist_ok=True)
+        pictures = render_video(record, video, drawing(plan.video))
+    except (VideoError, LogError, OSError) as error:
+        typer.echo(f"no video: {error}", err=True)
+        return False
+    typer.echo(f"video: {video}, {pictures} pictures")
+    return True
+
+
+def main() -> None:
+    """Runs the command line."""
+    app(prog_name="fwk-launch")
+
+
+if __name__ == "__main__":
+    main()
