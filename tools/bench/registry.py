@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-from tools.bench import ros_build
-from tools.bench.environments import CORE, ECAL, ICE, ROS, ZENOH, ZMQ, Environment
+from tools.bench import dora_flow, ros_build
+from tools.bench.environments import CORE, DORA, ECAL, ICE, ROS, ZENOH, ZMQ, Environment
 from tools.bench.shape import Shape
 
 Commands = Callable[[str], list[list[str]]]
@@ -75,6 +75,7 @@ _ALL = (
     Peer("zmq", "ZeroMQ, ipc", ZMQ, LCM_GEN),
     Peer("zenoh", "Zenoh, tcp star", ZENOH, LCM_GEN),
     Peer("ecal", "eCAL, shared memory", ECAL, LCM_GEN),
+    Peer("dora", "dora", DORA, LCM_GEN, start=dora_flow.commands),
     Peer("ice", "Ice, AMI", ICE, "Slice, Python"),
     Peer("rospy", "ROS 1, rospy", ROS, "genpy, Python", start=rospy_commands),
     Peer("roscpp", "ROS 1, roscpp (C++)", ROS, "gencpp, C++", start=roscpp_commands, program=ros_build.PROGRAM),
