@@ -7,7 +7,7 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
-NAMES = ("compare", "log-info", "video", "spy", "doctor")
+NAMES = ("check", "compare", "log-info", "video", "spy", "doctor")
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""
 
 

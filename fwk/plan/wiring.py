@@ -126,7 +126,7 @@ class _Wiring:
             if pattern not in self._writers and self._may_lack_writer(pattern):
                 self._writers[pattern] = (NOBODY, port)
             elif pattern not in self._writers:
-                right = hint(pattern, self._writers)
+                right = hint(pattern, self._alike(port), "add a component that writes it, or name another channel")
                 text = f"nobody writes '{pattern}', which {wish.name} reads as '{port.attribute}'; {right}"
                 self._report(wish.name, port.attribute, text)
                 names = ()
@@ -136,6 +136,11 @@ class _Wiring:
             readers = self._readers.setdefault(name, [])
             if index not in readers:
                 readers.append(index)
+
+    def _alike(self, port: Port) -> list[str]:
+        """Written channels that a port could read."""
+        wanted = messages.fingerprint(port.message_type)
+        return [name for name, (_, each) in self._writers.items() if messages.fingerprint(each.message_type) == wanted]
 
     def _fits(self, wish: Wish, port: Port, name: str) -> None:
         index, written = self._writers[name]

@@ -1,0 +1,85 @@
+"""Mistakes in a launch file: collected, so that one run shows them all, and worded alike."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+
+_LISTED = 12
+
+
+@dataclass(frozen=True)
+class Problem:
+    """One mistake: `launch/soccer.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
+
+    place: str
+    """File and line, or the option that was typed."""
+    who: str
+    """The component concerned; empty where the mistake is nobody's own."""
+    text: str
+    """What is wrong, and what would be right."""
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in (self.place, self.who, self.text) if part)
+
+
+class PlanError(Exception):
+    """A launch file that cannot be run; its text is one line a mistake, in the order of files and lines."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("\n".join(map(str, self.problems)))
+
+
+class Problems:
+    """Collects mistakes.
+
+    A mistake in a template shows in every robot that uses it; it is then told once, with the number of the others.
+    """
+
+    def __init__(self) -> None:
+        self._found: dict[tuple[str, str], list[Problem]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self._found)
+
+    def add(self, place: str, who: str, text: str) -> None:
+        """Takes a mistake."""
+        namespace = who.rpartition("/")[0]
+        alike = text.replace(f"{namespace}/", "{namespace}/") if namespace else text
+        self._found.setdefault((place, alike), []).append(Problem(place, who, text))
+
+    def stop_if_any(self) -> None:
+        """Ends the check if there is a mistake.
+
+        Raises:
+            PlanError: all mistakes so far.
+        """
+        if self._found:
+            raise PlanError(sorted(map(_together, self._found.values()), key=_position))
+
+
+def _together(alike: list[Problem]) -> Problem:
+    first = alike[0]
+    more = len({problem.who for problem in alike} - {first.who})
+    return Problem(first.place, f"{first.who} (and {more} more)", first.text) if more else first
+
+
+def _position(problem: Problem) -> tuple[bool, str, int]:
+    file, _, line = problem.place.rpartition(":")
+    return (False, file, int(line)) if line.isdecimal() else (True, problem.place, 0)
+
+
+def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str = "") -> str:
+    """What would be right instead of `word`: the nearest known word, or else `otherwise`, or else what there is."""
+    names = sorted(known)
+    # Names share their namespace or package, which alone would make them alike.
+    own = [name for name in names if get_close_matches(_last_part(word), [_last_part(name)], 1)]
+    near = get_close_matches(word, own, 1)
+    if near:
+        return f"did you mean '{near[0]}'?"
+    more = ", ..." if len(names) > _LISTED else ""
+    return otherwise or (f"there is {', '.join(names[:_LISTED])}{more}" if names else "there is none")
+
+
+def _last_part(name: str) -> str:
+    return name.replace(".", "/").rpartition("/")[2]

@@ -1,0 +1,29 @@
+"""Shares components out to processes."""
+
+from collections.abc import Mapping, Sequence
+from typing import Literal
+
+from fwk.plan.model import HostPlan
+
+Hosting = Literal["process", "robot", "single"]
+ALL = "all"
+
+
+def share_out(names: Sequence[str], hosting: Hosting, groups: Mapping[str, str]) -> tuple[HostPlan, ...]:
+    """Hosts in the order of their first component.
+
+    `process`: one a component, unless `groups` (component to group) says otherwise; `robot`: one a namespace; `single`:
+    one for all.
+    """
+    members: dict[str, list[int]] = {}
+    for index, name in enumerate(names):
+        members.setdefault(_host(name, hosting, groups), []).append(index)
+    return tuple(HostPlan(index, host, tuple(inside)) for index, (host, inside) in enumerate(members.items()))
+
+
+def _host(name: str, hosting: Hosting, groups: Mapping[str, str]) -> str:
+    if hosting == "single":
+        return ALL
+    if hosting == "robot":
+        return name.rpartition("/")[0] or name
+    return groups.get(name, name)

@@ -1,0 +1,159 @@
+"""Loads a launch file: from its name and the options typed with it to a checked plan, or to all its mistakes."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from fwk.bus.ports import Ports
+from fwk.clock import US_PER_S
+from fwk.plan.errors import Problems
+from fwk.plan.expand import expand
+from fwk.plan.files import Files, find_launch_file, lay_over, read_files
+from fwk.plan.folders import folders_of, join
+from fwk.plan.hosting import Hosting, share_out
+from fwk.plan.model import ComponentPlan, Plan, RestartPolicy
+from fwk.plan.overrides import overrides
+from fwk.plan.resolve import Resolved, add_settings, needs_of, resolve
+from fwk.plan.selection import chosen, groups_of
+from fwk.plan.stages import stages_of
+from fwk.plan.surroundings import function_of, last, merged, outside_of, public_url_of
+from fwk.plan.wiring import Wiring, wire
+
+_PORTS_END = 65536
+
+
+@dataclass(frozen=True)
+class LaunchOptions:
+    """What was typed with the launch file; None: as the file says."""
+
+    sets: Sequence[str] = ()
+    """Settings as `PATH=VALUE`."""
+    hosting: Hosting = "process"
+    only: Sequence[str] = ()
+    """Patterns of the components to run; none: all."""
+    without: Sequence[str] = ()
+    """Patterns of the components to leave out."""
+    seed: int | None = None
+    speed: float | None = None
+    """Logical seconds per wall second; 0: as fast as it goes."""
+    bus_port: int | None = None
+
+
+def load_plan(file: str, options: LaunchOptions = LaunchOptions()) -> Plan:
+    """Finds, reads and checks a launch file, and imports everything it uses.
+
+    The whole file is checked, those components too that `only` and `without` leave out. Where they take a channel's
+    writer away, the channel has none and its readers never see a value.
+
+    Raises:
+        PlanError: with every mistake that was found.
+    """
+    problems = Problems()
+    path = find_launch_file(file, problems)
+    problems.stop_if_any()
+    assert path
+    files = read_files(path, problems)
+    typed = overrides(options.sets, problems)
+    if typed.value:
+        lay_over(files, path, typed, problems)
+    return _Loading(files, options, problems).plan()
+
+
+@dataclass
+class _Loading:
+    files: Files
+    options: LaunchOptions
+    problems: Problems
+    folders: tuple[str, ...] = field(init=False)
+
+    def plan(self) -> Plan:
+        files, problems, options = self.files, self.problems, self.options
+        self.folders = folders_of(files.folders)
+        join(self.folders, problems)
+        stages = stages_of(files, problems)
+        asked = expand(files, problems)
+        if not asked and not files.gaps:
+            problems.add(str(files.path), "", "there is no component in it; name one under 'components:'")
+        add_settings(files, asked, problems)
+        needs = needs_of(asked, files, problems)
+        components = resolve(files, asked, stages, self.folders, problems)
+        outside = outside_of(files, problems)
+        whole = self._wire(components, outside, files.may_hide)
+        names = [each.name for each in asked]
+        groups = groups_of(names, *merged(files, "hosts"), problems)
+        kept = set(chosen(names, options.only, options.without, problems))
+        shared = self._shared()
+        problems.stop_if_any()
+        if len(kept) < len(components):
+            components = [each for each in components if each.asked.name in kept]
+            known = {channel.name for channel in whole.channels}
+            whole = self._wire(components, outside, known.__contains__)
+        hosts = share_out([each.asked.name for each in components], options.hosting, groups)
+        host_of = {member: host.index for host in hosts for member in host.components}
+        made = Plan(
+            stages=stages,
+            components=_component_plans(components, whole, host_of, needs),
+            channels=whole.channels,
+            hosts=hosts,
+            outside={channel.name: channel.type_name for channel in whole.channels if channel.name in outside},
+            **shared,
+        )
+        self._check_ports(made)
+        problems.stop_if_any()
+        return made
+
+    def _wire(self, components: Sequence[Resolved], outside: Mapping[str, Any], may_lack_writer: Any) -> Wiring:
+        by_name = {each.asked.name: each for each in components}
+
+        def report(name: str, port: str | None, text: str) -> None:
+            self.problems.add(by_name[name].place(port), name, text)
+
+        return wire([each.wish for each in components], report, outside, may_lack_writer)
+
+    def _shared(self) -> dict[str, Any]:
+        files, options, problems = self.files, self.options, self.problems
+        bus_port = {} if options.bus_port is None else {"bus_port": options.bus_port}
+        return {
+            "name": last(files, "name", files.path.stem),
+            "file": str(files.path),
+            "folders": self.folders,
+            "period_us": round(last(files, "period_s", 0.05) * US_PER_S),
+            "clock": last(files, "clock", "simulated"),
+            "seed": last(files, "seed", 1) if options.seed is None else options.seed,
+            "speed": last(files, "speed", 1.0) if options.speed is None else options.speed,
+            "stage_time_us": round(last(files, "stage_time_s", 0.0) * US_PER_S),
+            "public_url": public_url_of(files, problems),
+            "scoreboard": function_of(files, "scoreboard", self.folders, problems),
+            "video": function_of(files, "video", self.folders, problems),
+            **bus_port,
+        }
+
+    def _check_ports(self, plan: Plan) -> None:
+        end = Ports.of(plan).end
+        if end > _PORTS_END:
+            highest = plan.bus_port - (end - _PORTS_END)
+            text = f"the run would need the ports {plan.bus_port} to {end - 1}; take --bus-port {highest} or less"
+            self.problems.add("--bus-port", "", text)
+
+
+def _component_plans(
+    components: Sequence[Resolved], wiring: Wiring, host_of: Mapping[int, int], needs: Mapping[str, Sequence[str]]
+) -> tuple[ComponentPlan, ...]:
+    index_of = {each.asked.name: index for index, each in enumerate(components)}
+    return tuple(
+        ComponentPlan(
+            index=index,
+            name=each.asked.name,
+            module=each.asked.entry.use.partition(":")[0],
+            class_name=each.declaration.component.__name__,
+            stages=each.stages,
+            config=each.config,
+            origins=each.origins,
+            channels=wiring.ports[index],
+            host=host_of[index],
+            restart=RestartPolicy(**each.asked.entry.restart.model_dump()),
+            ready_timeout_s=each.asked.entry.ready_timeout_s,
+            needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
+        )
+        for index, each in enumerate(components)
+    )

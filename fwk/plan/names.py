@@ -1,0 +1,31 @@
+"""Which names components and channels may have."""
+
+import re
+
+CHANNEL_BYTES = 63  # LCM_MAX_CHANNEL_NAME_LENGTH
+RESERVED = "fwk/"
+
+_NAME = re.compile(r"[A-Za-z_][\w-]*(/[A-Za-z_][\w-]*)*", re.ASCII)
+_PATTERN = re.compile(r"(?=.*\*)[\w*-]+(/[\w*-]+)*/[A-Za-z_][\w-]*", re.ASCII)
+
+
+def mistake_in(name: str) -> str:
+    """What is wrong with the name of a component or a channel; empty if nothing.
+
+    LCM takes a channel name as a regular expression when somebody subscribes, so only characters without a meaning
+    there are allowed.
+    """
+    if len(name.encode()) > CHANNEL_BYTES:
+        return f"'{name}' has {len(name.encode())} bytes, LCM carries {CHANNEL_BYTES}; shorten it"
+    if not _NAME.fullmatch(name):
+        return f"'{name}' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball"
+    if name.startswith(RESERVED):
+        return f"'{name}': names that begin with '{RESERVED}' are the framework's own; take another namespace"
+    return ""
+
+
+def mistake_in_pattern(pattern: str) -> str:
+    """What is wrong with the pattern of a port of many instances; empty if nothing."""
+    if not _PATTERN.fullmatch(pattern):
+        return f"'{pattern}' is no pattern; put '*' for the namespace and a name behind the last '/', such as */ball"
+    return ""

@@ -1,0 +1,125 @@
+"""Resolves the components of a launch file: their classes, stages, settings and needs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+from fwk.component import Declaration
+from fwk.plan.classes import UnusableError, find_class
+from fwk.plan.errors import Problems
+from fwk.plan.expand import Asked
+from fwk.plan.files import Files
+from fwk.plan.needs import ring
+from fwk.plan.selection import matches, nearest
+from fwk.plan.settings import effective
+from fwk.plan.stages import stages_in
+from fwk.plan.substitution import substitute
+from fwk.plan.wiring import Wish
+
+
+@dataclass(frozen=True)
+class Resolved:
+    """A component with everything that can be said without the others."""
+
+    asked: Asked
+    declaration: Declaration
+    stages: tuple[int, ...]
+    config: dict[str, Any]
+    origins: dict[str, str]
+
+    @property
+    def wish(self) -> Wish:
+        """What wiring needs to know."""
+        channels = self.asked.node.value.get("channels")
+        return Wish(self.asked.name, self.declaration, channels.plain() if channels else {})
+
+    def place(self, port: str | None) -> str:
+        """Where the channel of a port stands; where the component stands, if the file does not say it."""
+        return self.asked.node.at("channels", port).place if port and self._says(port) else self.asked.node.place
+
+    def _says(self, port: str) -> bool:
+        return self.asked.node.at("channels").child(port) is not None
+
+
+def add_settings(files: Files, components: Sequence[Asked], problems: Problems) -> None:
+    """Gives the components what the `config:` sections say of them by pattern."""
+    names = [asked.name for asked in components]
+    for number, layer in enumerate(files.layers):
+        for pattern in layer.content.config:
+            node = layer.node.at("config", pattern)
+            meant = [asked for asked in components if matches(asked.name, pattern)]
+            if not meant and not files.may_hide(pattern):
+                problems.add(node.place, "", f"no component '{pattern}'; {nearest(pattern, names)}")
+            for asked in meant:
+                asked.config.append((number, substitute(node, asked.values, partial(_report, problems, asked.name))))
+
+
+def _report(problems: Problems, who: str, place: str, text: str) -> None:
+    problems.add(place, who, text)
+
+
+def resolve(
+    files: Files, components: Sequence[Asked], stages: Sequence[str], folders: Sequence[str], problems: Problems
+) -> list[Resolved]:
+    """Finds the classes and lays the settings together; components without a usable class are left out and reported."""
+    classes: dict[str, Declaration | str] = {}
+    found = []
+    for asked in components:
+        use = asked.entry.use
+        if use not in classes:
+            classes[use] = _class_or_reason(use, folders)
+        declared = classes[use]
+        if isinstance(declared, str):
+            problems.add(asked.node.at("use").place, asked.name, declared)
+            files.gaps.add(asked.namespace)
+            continue
+        report = partial(_report, problems, asked.name)
+        config, origins = effective(declared.config, asked.settings(), asked.node.place, report)
+        _check_ports(asked, declared, problems)
+        found.append(Resolved(asked, declared, stages_in(asked, declared.stages, stages, problems), config, origins))
+    _check_time_sources(found, problems)
+    return found
+
+
+def needs_of(components: Sequence[Asked], files: Files, problems: Problems) -> dict[str, list[str]]:
+    """Component to the components it needs; a name without a slash is one of its own namespace."""
+    names = {asked.name: asked for asked in components}
+    needs: dict[str, list[str]] = {}
+    for asked in components:
+        node = asked.node.at("needs")
+        written = node.plain() if asked.entry.needs else []
+        for number, name in enumerate([written] if isinstance(written, str) else written):
+            full = name if "/" in name or not asked.namespace else f"{asked.namespace}/{name}"
+            if full in names:
+                needs.setdefault(asked.name, []).append(full)
+            elif not files.may_hide(full):
+                text = f"it needs '{full}', which is not there; {nearest(full, list(names))}"
+                problems.add(node.at(number).place, asked.name, text)
+    if around := ring(needs):
+        text = f"components need each other in a ring: {' -> '.join(around)}; leave one 'needs' out"
+        problems.add(names[around[0]].node.at("needs").place, around[0], text)
+    return needs
+
+
+def _class_or_reason(use: str, folders: Sequence[str]) -> Declaration | str:
+    try:
+        return find_class(use, folders)
+    except UnusableError as error:
+        return str(error)
+
+
+def _check_ports(asked: Asked, declared: Declaration, problems: Problems) -> None:
+    known = [port.attribute for port in declared.ports]
+    for port in asked.entry.channels:
+        if port not in known:
+            node = asked.node.at("channels", port)
+            problems.add(node.place, asked.name, f"no port '{port}'; {nearest(port, known)}")
+
+
+def _check_time_sources(found: Sequence[Resolved], problems: Problems) -> None:
+    owners = [each for each in found if "time_source" in each.declaration.aspects.values()]
+    for other in owners[1:]:
+        first = owners[0].asked
+        text = f"two time sources: {first.name} ({first.node.place}) and {other.asked.name}; keep one"
+        problems.add(other.asked.node.place, other.asked.name, text)

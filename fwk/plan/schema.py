@@ -1,0 +1,101 @@
+"""The shape of a launch file: which keys there are, and what may stand behind them."""
+
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+PACE_MAX = "max"
+
+
+def _as_list(value: Any) -> Any:
+    return [value] if isinstance(value, str) else value
+
+
+def _as_pace(value: Any) -> Any:
+    if value == PACE_MAX:
+        return 0.0
+    if isinstance(value, bool) or not isinstance(value, int | float) or value <= 0:
+        raise ValueError(f"Input should be a number above 0, or {PACE_MAX}")
+    return value
+
+
+def _as_scalar(value: Any) -> Any:
+    if value is None or isinstance(value, dict | list):
+        raise ValueError("Input should be a word or a number")
+    return value
+
+
+Words = Annotated[list[str], BeforeValidator(_as_list)]
+"""One word or a list of them."""
+Pace = Annotated[float, BeforeValidator(_as_pace)]
+"""Logical seconds per wall second; `max` is 0: as fast as it goes."""
+Scalar = Annotated[Any, BeforeValidator(_as_scalar)]
+SettingsByComponent = dict[str, dict[str, Any]]
+
+
+class _Entry(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class RestartEntry(_Entry):
+    """When a component that ended is started again."""
+
+    when: Literal["never", "on-failure", "always"] = "on-failure"
+    backoff_s: float = Field(0.1, ge=0.0)
+    limit: int = Field(5, ge=0)
+    window_s: float = Field(60.0, gt=0.0)
+
+
+class ComponentEntry(_Entry):
+    """A component."""
+
+    use: str
+    """Module with one component, or `module:Class`."""
+    config: dict[str, Any] = {}
+    channels: dict[str, str] = {}
+    """Port to channel or pattern, where it is other than the class says."""
+    stage: Words | None = None
+    """Stages, where they are other than the class says."""
+    needs: Words = []
+    """Components that have to be ready before this one starts."""
+    restart: RestartEntry = RestartEntry()
+    ready_timeout_s: float = Field(20.0, gt=0.0)
+
+
+class RobotEntry(_Entry):
+    """A namespace with all components of one or more templates."""
+
+    use: Words
+    values: dict[str, Scalar] = {}
+    """What `{key}` stands for in channels and settings of the templates."""
+    config: SettingsByComponent = {}
+
+
+class HostFile(_Entry):
+    """What differs from machine to machine; the file beside a launch file may say only this."""
+
+    period_s: float | None = Field(None, ge=0.001, le=10.0)
+    clock: Literal["simulated", "wall"] | None = None
+    speed: Pace | None = None
+    seed: int | None = Field(None, ge=0)
+    stage_time_s: float | None = Field(None, ge=0.0)
+    public_url: str | None = None
+    outside: dict[str, str] = {}
+    """Channels that other programs may write on the public bus: name to type."""
+    hosts: dict[str, Words] = {}
+    """Components that share a process: its name to patterns."""
+    scoreboard: str | None = None
+    video: str | None = None
+    config: SettingsByComponent = {}
+    """Settings by name pattern."""
+
+
+class LaunchFile(HostFile):
+    """A whole launch file."""
+
+    include: Words = []
+    name: str | None = None
+    stages: list[str] | None = None
+    templates: dict[str, dict[str, ComponentEntry]] = {}
+    components: dict[str, ComponentEntry] = {}
+    robots: dict[str, RobotEntry] = {}

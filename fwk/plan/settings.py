@@ -1,0 +1,60 @@
+"""Lays settings over each other and says of each effective value where it comes from."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from fwk.config import Config
+from fwk.plan.source import Node
+from fwk.plan.validation import Path, validated
+
+DEFAULT = "default"
+
+
+def effective(
+    config: type[Config] | None, layers: Sequence[Node], place: str, report: Callable[[str, str], None]
+) -> tuple[dict[str, Any], dict[str, str]]:
+    """Every setting of a component with its value, and every setting's dotted name with its origin.
+
+    `layers` win from left to right, key by key. Mistakes go to `report` as place and text; what is missing has no place
+    of its own and is told at the component's `place`.
+    """
+    given = Node({}, place)
+    for layer in layers:
+        given = over(given, layer)
+    if config is None:
+        if given.value:
+            first = next(iter(given.value.values()))
+            report(first.place, "it has no settings; leave 'config' out, or give the class a 'config: MyConfig'")
+        return {}, {}
+
+    def mistake(path: Path, where: str, text: str) -> None:
+        report(where if path else place, text)
+
+    made = validated(config, given, mistake, "setting")
+    if made is None:
+        return {}, {}
+    values = made.model_dump(mode="json")
+    return values, _origins(values, given, "")
+
+
+def over(below: Node, above: Node) -> Node:
+    """`above` laid over `below`: mappings key by key, everything else whole."""
+    if not isinstance(below.value, dict) or not isinstance(above.value, dict):
+        return above
+    merged = dict(below.value)
+    for key, node in above.value.items():
+        merged[key] = over(merged[key], node) if key in merged else node
+    return Node(merged, above.place)
+
+
+def _origins(values: dict[str, Any], given: Node | None, prefix: str) -> dict[str, str]:
+    found: dict[str, str] = {}
+    for key, value in values.items():
+        node = given
+        if given and isinstance(given.value, dict):
+            node = given.value.get(key)
+        if isinstance(value, dict) and value:
+            found |= _origins(value, node, f"{prefix}{key}.")
+        else:
+            found[prefix + key] = node.place if node else DEFAULT
+    return found

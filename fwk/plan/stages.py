@@ -1,0 +1,40 @@
+"""The stages of the main loop, and which of them a component takes part in."""
+
+import re
+from collections.abc import Sequence
+
+from fwk.bus.ports import STAGES_MAX
+from fwk.component import DEFAULT_STAGES
+from fwk.plan.errors import Problems, hint
+from fwk.plan.expand import Asked
+from fwk.plan.files import Files
+
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+
+
+def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
+    """The stages that the files ask for, or the default ones."""
+    layer = next((layer for layer in reversed(files.layers) if layer.content.stages is not None), None)
+    if layer is None:
+        return DEFAULT_STAGES
+    names, node = layer.content.stages or [], layer.node.at("stages")
+    if not 1 <= len(names) <= STAGES_MAX:
+        problems.add(node.place, "", f"there are {len(names)} stages; a main loop has 1 to {STAGES_MAX}")
+    for index, name in enumerate(names):
+        if not _NAME.fullmatch(name):
+            problems.add(node.at(index).place, "", f"'{name}' is no name of a stage; use letters, digits and '_'")
+        elif name in names[:index]:
+            problems.add(node.at(index).place, "", f"stage '{name}' stands here twice; keep one")
+    return tuple(names)
+
+
+def stages_in(asked: Asked, declared: Sequence[str], stages: Sequence[str], problems: Problems) -> tuple[int, ...]:
+    """Indices of a component's stages, in the order of the main loop."""
+    wanted = asked.entry.stage if asked.entry.stage is not None else declared
+    place = asked.node.at("stage").place
+    for name in wanted:
+        if name not in stages:
+            problems.add(place, asked.name, f"no stage '{name}'; {hint(name, stages)}")
+    if not wanted:
+        problems.add(place, asked.name, f"it takes part in no stage; {hint('', stages)}")
+    return tuple(index for index, name in enumerate(stages) if name in wanted)

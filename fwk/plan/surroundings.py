@@ -1,0 +1,91 @@
+"""What a launch file says of the run as a whole: time, buses, what programs outside may write, display."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import lcmtypes
+from fwk import messages
+from fwk.plan.classes import UnusableError, find_object
+from fwk.plan.errors import Problems, hint
+from fwk.plan.files import Files
+from fwk.plan.model import Plan
+from fwk.plan.names import mistake_in
+
+_URL = "udpm://"
+_BUFFER = "recv_buf_size"
+
+
+def last(files: Files, key: str, default: Any) -> Any:
+    """What the last layer that says something of a key says of it."""
+    return next(
+        (value for layer in reversed(files.layers) if (value := getattr(layer.content, key)) is not None), default
+    )
+
+
+def merged(files: Files, key: str) -> tuple[dict[str, Any], dict[str, str]]:
+    """A mapping that all layers add to, and where each of its keys stands; later layers win."""
+    values: dict[str, Any] = {}
+    places: dict[str, str] = {}
+    for layer in files.layers:
+        for name, value in getattr(layer.content, key).items():
+            values[name], places[name] = value, layer.node.at(key, name).place
+    return values, places
+
+
+def outside_of(files: Files, problems: Problems) -> dict[str, type[messages.Message]]:
+    """Channels that programs outside may write, with their types."""
+    names, places = merged(files, "outside")
+    found = {}
+    for channel, type_name in names.items():
+        if mistake := mistake_in(channel):
+            problems.add(places[channel], "", mistake)
+            continue
+        try:
+            kind = messages.type_named(type_name)
+        except messages.MessageError as error:
+            problems.add(places[channel], "", f"{channel}: {error}; {hint(type_name, _types())}")
+            files.gaps.add(channel.rpartition("/")[0])
+            continue
+        if messages.has_header(kind):
+            found[channel] = kind
+        else:
+            text = f"{channel}: {type_name} does not begin with 'core.header_t header;', so it is no interface"
+            problems.add(places[channel], "", text)
+    return found
+
+
+def _types() -> list[str]:
+    return [f"{file.parent.name}.{file.stem}" for entry in lcmtypes.__path__ for file in Path(entry).glob("*/*_t.py")]
+
+
+def public_url_of(files: Files, problems: Problems) -> str:
+    """The URL of the public bus; a receive buffer large enough for bursts is added where it is missing."""
+    url: str = last(files, "public_url", Plan.public_url)
+    if not url.startswith(_URL):
+        text = f"'{url}' is no public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
+        problems.add(_place(files, "public_url"), "", text)
+    if _BUFFER in url:
+        return url
+    return f"{url}{'&' if '?' in url else '?'}{Plan.public_url.rpartition('&')[2]}"
+
+
+def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Problems) -> str:
+    """The `module:function` behind a key, which is there and can be called; empty if the files do not name one."""
+    use: str = last(files, key, "")
+    if use:
+        _try(lambda: find_object(use, folders), lambda text: problems.add(_place(files, key), "", f"{key}: {text}"))
+    return use
+
+
+def _try(find: Callable[[], object], report: Callable[[str], None]) -> None:
+    try:
+        if not callable(found := find()):
+            report(f"{found!r} is no function")
+    except UnusableError as error:
+        report(str(error))
+
+
+def _place(files: Files, key: str) -> str:
+    layer = next(layer for layer in reversed(files.layers) if getattr(layer.content, key) is not None)
+    return layer.node.at(key).place
