@@ -7,7 +7,7 @@ from fwk.bus.inbox import Box, Complain, Inbox
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.plan.model import ChannelPlan, Plan
+from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from lcmtypes.core import fetch_t, gone_t, void_t
 
 FIRST_WAIT_MS = 2  # on one machine a message is there before the tick that names it, unless it was lost
@@ -32,7 +32,10 @@ class Inputs:
         self._ports = ports
         self._host = host
         self._run = run
-        self._writer_host = {channel.index: plan.components[channel.writer].host for channel in read}
+        self._writer_host = {
+            channel.index: ports.gateway if channel.writer == NOBODY else plan.components[channel.writer].host
+            for channel in read
+        }
         self.local = {channel.name: Box(channel) for channel in local}
         self._boxes: dict[int, Box] = {box.plan.index: box for box in self.local.values()}
         for channel in read:
