@@ -62,6 +62,11 @@ class PublicBus:
         """For waiting until something arrives."""
         return self._receiver.fileno()
 
+    def close(self) -> None:
+        """Gives both sockets back."""
+        self._sender.close()
+        self._receiver.close()
+
     def publish(self, channel: str, data: bytes) -> None:
         """Sends a message; on this bus loss is not repaired."""
         for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel.encode(), data):

@@ -19,17 +19,24 @@ class Recorder:
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         self._writer = LogWriter(path, report)
+        self._report = report
+        self._due_us = 0
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         """Adds a message."""
         self._writer.append(channel, data, time_us)
 
     def tick(self) -> None:
-        """Nothing to do: the log is written when its buffer is full."""
+        """Once a second what was recorded so far reaches the file, so that a killed run leaves a log."""
+        if monotonic_us() >= self._due_us:
+            self._due_us = monotonic_us() + US_PER_S
+            self._writer.flush()
 
     def close(self) -> None:
         """Finishes the log."""
         self._writer.close()
+        if self._writer.dropped:
+            self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
 
 
 class Mirror:

@@ -1,0 +1,143 @@
+"""A channel's inbox: order, loss, repetition, restart of the writer, and strangers."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from fwk.bus import wire
+from fwk.bus.inbox import Inbox
+from fwk.bus.sockets import Sender
+from fwk.plan.model import ChannelPlan
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+PLAN = ChannelPlan(0, "cyan1/pose", "soccer.pose_t", 0, ())
+PORT, WRITER, STRANGER = 19_900, 19_901, 19_902
+
+
+def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0) -> bytes:
+    made = pose_t()
+    made.header.sequence, made.header.writer, made.x_m = sequence, writer, x_m
+    return made.encode()
+
+
+class Wired:
+    def __init__(self) -> None:
+        self.complaints: list[str] = []
+        self.inbox = Inbox(PLAN, PORT, WRITER, lambda channel, text: self.complaints.append(f"{channel}: {text}"))
+        self.sender = Sender(WRITER)
+
+    def send(self, *sequences: int, writer: str = "cyan1/localization") -> None:
+        for sequence in sequences:
+            self.sender.publish(b"cyan1/pose", pose(sequence, writer), PORT)
+
+    def taken(self) -> list[int]:
+        return [pose_t.decode(data).header.sequence for data in self.inbox.take()]
+
+
+@pytest.fixture
+def wired() -> Iterator[Wired]:
+    made = Wired()
+    yield made
+    made.inbox.close()
+    made.sender.socket.close()
+
+
+def test_what_is_beyond_the_mark_waits(wired: Wired) -> None:
+    wired.send(1, 2, 3)
+    wired.inbox.mark = 2
+    assert wired.inbox.collect()
+    assert wired.taken() == [1, 2]
+    wired.inbox.mark = 3
+    assert wired.inbox.collect()
+    assert wired.taken() == [3]
+
+
+def test_a_gap_is_noticed_and_filled_by_what_is_sent_again(wired: Wired) -> None:
+    wired.send(1, 3)
+    wired.inbox.mark = 3
+    assert not wired.inbox.collect()
+    assert wired.inbox.missing() == [2]
+    wired.send(2, 3)
+    assert wired.inbox.collect()
+    assert wired.taken() == [1, 2, 3]
+
+
+def test_repeated_messages_count_once(wired: Wired) -> None:
+    wired.send(1, 1, 2, 1, 2)
+    wired.inbox.mark = 2
+    assert wired.inbox.collect()
+    assert wired.taken() == [1, 2]
+
+
+def test_what_cannot_be_had_is_given_up(wired: Wired) -> None:
+    wired.send(3)
+    wired.inbox.mark = 3
+    assert not wired.inbox.collect()
+    assert wired.inbox.give_up(1, 2) == 2
+    assert wired.inbox.collect()
+    assert wired.taken() == [3]
+
+
+def test_a_late_joiner_takes_the_newest_only(wired: Wired) -> None:
+    wired.send(56, 57)
+    wired.inbox.mark = 57
+    wired.inbox.skip_to(56)
+    assert wired.inbox.collect()
+    assert wired.taken() == [57]
+
+
+@pytest.mark.parametrize("new_first", [False, True])
+def test_what_a_dead_writer_sent_beyond_the_marks_is_void(wired: Wired, new_first: bool) -> None:
+    wired.send(1)
+    writers = ["cyan1/localization", "cyan1/localization#2"]
+    for writer in reversed(writers) if new_first else writers:
+        wired.send(2, writer=writer)
+    wired.inbox.mark = 2
+    wired.inbox.void(above=1, before_incarnation=2)
+    assert wired.inbox.collect()
+    assert [pose_t.decode(data).header.writer for data in wired.inbox.take()] == writers
+
+
+def test_a_dead_writers_message_alone_is_forgotten(wired: Wired) -> None:
+    wired.send(1, 2)
+    wired.inbox.void(above=1, before_incarnation=2)
+    wired.inbox.mark = 2
+    assert not wired.inbox.collect()
+    assert wired.inbox.missing() == [2]
+
+
+def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
+    return wire.datagrams(1, channel, data)[0]
+
+
+@pytest.mark.parametrize(
+    ("port", "datagram", "says"),
+    [
+        (STRANGER, stranger(pose(2)), "port 19902, which is not the writer's"),
+        (WRITER, b"rubbish", "no LCM message"),
+        (WRITER, stranger(pose(2))[:30], "no soccer.pose_t"),
+        (WRITER, stranger(imu_t().encode() + bytes(50)), "no soccer.pose_t"),
+        (WRITER, stranger(pose(2), b"cyan1/other"), "channel 'cyan1/other'"),
+    ],
+)
+def test_what_does_not_belong_here_is_refused_and_named(wired: Wired, port: int, datagram: bytes, says: str) -> None:
+    wired.send(1)
+    other = wired.sender if port == WRITER else Sender(port)
+    other.socket.sendto(datagram, ("239.255.76.67", PORT))
+    if other is not wired.sender:
+        other.socket.close()
+    wired.inbox.mark = 2
+    assert not wired.inbox.collect()
+    assert says in wired.complaints[0]
+    wired.send(2)
+    assert wired.inbox.collect()
+    assert wired.taken() == [1, 2]
+
+
+def test_large_messages_come_in_fragments(wired: Wired) -> None:
+    data = pose(1) + bytes(200_000)
+    wired.sender.publish(b"cyan1/pose", data, PORT)
+    wired.inbox.mark = 1
+    assert wired.inbox.collect()
+    assert wired.inbox.take() == [data]
