@@ -67,9 +67,9 @@ def new_file(text: str) -> Path:
         BadParameter: it names a folder, or lies where nothing may be written.
     """
     path = Path(text).absolute()
-    nearest = next(folder for folder in path.parents if folder.exists())
     if path.is_dir():
         raise typer.BadParameter(f"'{text}' is a folder; name a file in it")
+    nearest = next(folder for folder in path.parents if folder.exists())
     if not nearest.is_dir() or not os.access(path if path.exists() else nearest, os.W_OK):
         raise typer.BadParameter(f"'{text}' cannot be written: {nearest} is no folder that you may write to")
     return path

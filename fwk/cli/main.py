@@ -7,6 +7,8 @@ from typing import Any
 import typer
 from typer.core import TyperGroup
 
+from fwk.cli.arguments import SeveralNames
+
 NAMES = ("check", "compare", "log-info", "video", "spy", "doctor")
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""
 
@@ -48,7 +50,7 @@ def _command(name: str) -> Any:
     made = getattr(import_module(f"fwk.cli.{word}"), word)
     if not isinstance(made, typer.Typer):
         function, made = made, typer.Typer(add_completion=False)
-        made.command(name)(function)
+        made.command(name, cls=SeveralNames)(function)
     command = typer.main.get_command(made)
     command.name = name
     return command

@@ -1,0 +1,88 @@
+"""Runs the real commands as a user would: in a folder and with a home of their own, on ports that nobody uses."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from fwk.bus.ports import PortLock, Ports, PortsInUse
+
+BIN = Path(sys.executable).parent
+TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
+
+PROCS = {
+    "procs/counter.py": '''
+"""Counts; the tests' settings make it fail."""
+
+from fwk import Component, Config, Writes
+from lcmtypes.cards import count_t
+
+
+class CounterConfig(Config):
+    last: int = 1_000_000
+    """Fails above this."""
+
+
+class Counter(Component):
+    """Writes how often it has run."""
+
+    stage = "think"
+    config: CounterConfig
+    count: Writes[count_t]
+
+    def loop(self) -> None:
+        self.count.value.number += 1
+        if self.count.value.number > self.config.last:
+            raise RuntimeError("counted too far")
+        self.count.write()
+''',
+    "lcmtypes/cards.lcm": "package cards;\nstruct count_t {\n  core.header_t header;\n  int64_t number;\n}\n",
+    "launch/cards.yaml": (
+        "components:\n"
+        "  left/counter: { use: procs.counter }\n"
+        "  right/counter: { use: procs.counter, restart: { when: never } }\n"
+    ),
+}
+"""A user's folder: two components of one kind."""
+
+
+def write_files(folder: Path, files: dict[str, str]) -> None:
+    """Writes files below a folder."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content)
+
+
+def free_bus_port() -> str:
+    """A value for `--bus-port`."""
+    for base in range(10_240, 16_000, 128):
+        try:
+            PortLock(Ports(base, 8, 32), "test").release()
+        except PortsInUse:
+            continue
+        return str(base)
+    raise AssertionError("no free ports")
+
+
+def environment(home: Path) -> dict[str, str]:
+    """The commands of this environment first on the path, and a home that the test may fill."""
+    return {**os.environ, "HOME": str(home), "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
+
+
+def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
+    """Runs a command to its end in a folder, which is also its home; both outputs together in `stdout`."""
+    return subprocess.run(
+        command,
+        cwd=folder,
+        env=environment(folder),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
+    )
+
+
+def launch(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """`fwk-launch` on free ports."""
+    return run(folder, "fwk-launch", *arguments, "--bus-port", free_bus_port())

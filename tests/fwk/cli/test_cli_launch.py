@@ -1,0 +1,149 @@
+"""`fwk-launch`: what is typed is checked, what is run is reported, and the exit code tells."""
+
+import os
+import pty
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from fwk.bus.ports import PortLock, Ports
+from fwk.cli.launch import app
+from fwk.record.log import LogReader
+from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, free_bus_port, launch, write_files
+
+CARDS = "launch/cards.yaml"
+FAST = (CARDS, "--speed", "max")
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    write_files(tmp_path, PROCS)
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("typed", "answer"),
+    [
+        ("f.yaml --speed 0", "'0' is not a pace"),
+        ("f.yaml --time never", "'never' is not a duration"),
+        ("f.yaml --ticks 0", "--ticks"),
+        ("f.yaml --hosting thread", "'process', 'robot', 'single'"),
+        ("f.yaml --bus-port 80", "--bus-port"),
+        ("f.yaml --record /", "'/' is a folder"),
+        ("f.yaml --record /dev/null/log", "cannot be written"),
+        ("f.yaml --video film.avi", "film.mp4"),
+        ("f.yaml --record a --no-record", "exclude each other"),
+        ("f.yaml --video a.mp4 --no-record", "leave out --no-record"),
+        ("f.yaml --tiks 3", "--ticks"),
+        ("no-such-file.yaml", "no-such-file.yaml"),
+        ("", "FILE"),
+    ],
+)
+def test_bad_input_is_refused_with_what_would_be_right(typed: str, answer: str) -> None:
+    result = CliRunner().invoke(app, typed.split())
+    assert result.exit_code == 2
+    assert answer in " ".join(result.output.replace("│", " ").split())
+    assert "Traceback" not in result.output
+
+
+@pytest.mark.system
+def test_a_run_ends_by_itself_and_says_what_came_of_it(folder: Path) -> None:
+    result = launch(folder, *FAST, "--ticks", "30", "--record", "mine.log")
+    assert result.returncode == 0, result.stdout
+    assert "cards: 30 ticks done" in result.stdout
+    assert "30 ticks, 1.50 s of logical time" in result.stdout
+    assert f"recording: {folder / 'mine.log'}" in result.stdout
+    counts = [event for event in LogReader(folder / "mine.log") if event.channel == "left/count"]
+    assert len(counts) == 30
+
+
+@pytest.mark.system
+def test_the_run_directory_keeps_what_belongs_to_the_run(folder: Path) -> None:
+    launch(folder, *FAST, "--time", "0.5")
+    (run_dir,) = (folder / ".cache" / "fwk" / "runs").iterdir()
+    assert "-cards-" in run_dir.name
+    assert {"plan.json", "log.lcm", "fwk.log"} <= {path.name for path in run_dir.iterdir()}
+
+
+@pytest.mark.system
+def test_without_recording_there_is_none(folder: Path) -> None:
+    result = launch(folder, *FAST, "--ticks", "5", "--no-record")
+    assert "recording: " not in result.stdout
+    assert not list(folder.rglob("log.lcm"))
+
+
+@pytest.mark.system
+def test_names_in_a_row_choose_components(folder: Path) -> None:
+    result = launch(folder, *FAST, "--ticks", "5", "--without", "left/counter", "--record", "mine.log")
+    assert result.returncode == 0, result.stdout
+    channels = {event.channel for event in LogReader(folder / "mine.log")}
+    assert "right/count" in channels
+    assert "left/count" not in channels
+
+
+@pytest.mark.system
+def test_a_component_that_fails_for_good_makes_the_exit_code_1_and_is_named(folder: Path) -> None:
+    result = launch(folder, *FAST, "--ticks", "50", "--set", "right/counter.last=10")
+    assert result.returncode == 1, result.stdout
+    assert "right/counter" in result.stdout
+    assert "counted too far" in result.stdout
+
+
+@pytest.mark.system
+def test_all_mistakes_of_a_launch_file_are_told_with_their_lines(folder: Path) -> None:
+    (folder / CARDS).write_text(
+        "components:\n  a/counter: { use: procs.counter, config: { lost: 3 } }\n  b/counter: { use: procs.countess }\n"
+    )
+    result = launch(folder, CARDS)
+    assert result.returncode == 2
+    assert "launch/cards.yaml:2: a/counter: " in result.stdout
+    assert "launch/cards.yaml:3: b/counter: " in result.stdout
+
+
+@pytest.mark.system
+def test_debugging_a_component_that_is_not_there_is_refused(folder: Path) -> None:
+    result = launch(folder, CARDS, "--debug", "left/countr")
+    assert result.returncode == 2
+    assert "did you mean 'left/counter'?" in " ".join(result.stdout.replace("│", " ").split())
+
+
+@pytest.mark.system
+def test_a_run_that_would_collide_says_so(folder: Path) -> None:
+    port = free_bus_port()
+    lock = PortLock(Ports(int(port), 1, 1), "test")
+    arguments = ["fwk-launch", *FAST, "--ticks", "1", "--bus-port", port]
+    result = subprocess.run(arguments, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False)
+    lock.release()
+    assert result.returncode == 2
+    assert "--bus-port" in result.stderr
+
+
+@pytest.mark.system
+def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path) -> None:
+    screen, terminal = pty.openpty()
+    arguments = ["fwk-launch", CARDS, "--bus-port", free_bus_port()]
+    process = subprocess.Popen(
+        arguments, cwd=folder, env=environment(folder), stdin=terminal, stdout=terminal, start_new_session=True
+    )
+    os.close(terminal)
+    shown = ""
+    interrupted = False
+    while chunk := _read(screen):
+        shown += chunk
+        if "tick " in shown and not interrupted:
+            os.killpg(process.pid, signal.SIGINT)  # as the terminal does: to everybody in the foreground
+            interrupted = True
+    os.close(screen)
+    assert process.wait(TIMEOUT_S) == 0
+    assert "cards: interrupted" in shown
+    assert shown.rindex("\x1b[?25h") > shown.rindex("\x1b[?25l")
+
+
+def _read(screen: int) -> str:
+    try:
+        return os.read(screen, 65536).decode(errors="replace")
+    except OSError:  # nobody holds the terminal's other side any more
+        return ""

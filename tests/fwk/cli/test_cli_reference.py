@@ -1,0 +1,20 @@
+"""docs/commands.md says what the commands say."""
+
+from pathlib import Path
+
+from fwk.cli.main import NAMES
+from fwk.cli.reference import reference
+
+PAGE = Path(__file__).parents[3] / "docs" / "commands.md"
+
+
+def test_the_page_is_what_the_commands_say() -> None:
+    assert PAGE.read_text() == reference(), "run: make docs"
+
+
+def test_every_command_has_a_section_with_its_options() -> None:
+    page = reference()
+    for name in NAMES:
+        assert f"## `fwk {name} " in page
+    assert "| `--hosting process\\|robot\\|single` | one process a component" in page
+    assert "| `--set PATH=VALUE` |" in page
