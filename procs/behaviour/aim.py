@@ -13,6 +13,8 @@ _REACTION_S = 0.25
 _STEP_ASIDE_M_S = 0.8
 _BALL_M_S = 9.0
 _TARGETS = 13
+_GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free way in rad
+_TURN_1_RAD = 0.1  # and a radian of turning costs this
 
 
 class Aim(NamedTuple):
@@ -60,19 +62,22 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
     return best
 
 
-def best_pass(start: Point, mates: Iterable[Robot], opponents: Iterable[Robot]) -> Aim | None:
-    """The team mate who is 2 to 9 m away with the freest way; of equally free ones the one further ahead.
+def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot], back_m: float = 1.0) -> Aim | None:
+    """The team mate to whom a pass is worth most: a free way, ground gained, little turning of the player.
 
     Returns:
-        Where that mate is, and the room beside the way; None if nobody is at a useful distance.
+        Where that mate is, and the room beside the way; None if nobody is 2 to 9 m away and not more than `back_m`
+        behind the player.
     """
     others = list(opponents)
     best: tuple[float, Aim] | None = None
     for mate in mates:
-        if not 2.0 <= math.dist(start, mate.place) <= 9.0:
+        gain_m = mate.place.x_m - player.place.x_m
+        if not 2.0 <= math.dist(player.place, mate.place) <= 9.0 or gain_m < -back_m:
             continue
-        free_rad = lane_rad(start, mate.place, others, ball_m_s=4.0)
-        worth = min(free_rad, 0.5) + 0.05 * (mate.place.x_m - start.x_m)
+        free_rad = lane_rad(player.place, mate.place, others, ball_m_s=4.0)
+        turn_rad = abs(wrap_rad(bearing_rad(player.place, mate.place) - player.heading_rad))
+        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad
         if best is None or worth > best[0]:
             best = worth, Aim(mate.place, free_rad)
     return best[1] if best else None

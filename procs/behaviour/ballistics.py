@@ -13,6 +13,9 @@ ROLLING_SHARE = 0.6
 
 _STEP_S = 0.1
 _HORIZON_S = 4.0
+_RESTING_M_S = 0.2
+_SPEED_M_S = 2.5
+_ACCELERATION_M_S2 = 2.5
 
 
 class Meeting(NamedTuple):
@@ -42,25 +45,50 @@ def kick_speed_m_s(distance_m: float, arrival_m_s: float) -> float:
     return math.sqrt(max(squared, arrival_m_s**2))
 
 
-def reach_s(distance_m: float, speed_m_s: float = 2.5, acceleration_m_s2: float = 2.5) -> float:
-    """Time to drive a distance from rest to rest."""
-    if distance_m < speed_m_s**2 / acceleration_m_s2:
-        return 2 * math.sqrt(max(0.0, distance_m) / acceleration_m_s2)
-    return distance_m / speed_m_s + speed_m_s / acceleration_m_s2
+def reach_s(distance_m: float) -> float:
+    """Time in which a robot drives a distance from rest to rest."""
+    if distance_m < _SPEED_M_S**2 / _ACCELERATION_M_S2:
+        return 2 * math.sqrt(max(0.0, distance_m) / _ACCELERATION_M_S2)
+    return distance_m / _SPEED_M_S + _SPEED_M_S / _ACCELERATION_M_S2
 
 
-def meet(ball: Ball, place: Point, contact_m: float = 0.33) -> Meeting:
-    """The earliest meeting of the ball with a robot that is now at `place`.
+def way_m(time_s: float) -> float:
+    """How far a robot drives in that time from rest to rest: the inverse of `reach_s`."""
+    if time_s < 2 * _SPEED_M_S / _ACCELERATION_M_S2:
+        return _ACCELERATION_M_S2 * time_s**2 / 4
+    return _SPEED_M_S * time_s - _SPEED_M_S**2 / _ACCELERATION_M_S2
 
-    `contact_m` is the distance of their middles when they touch. If the ball outruns the robot, the meeting is where
-    the ball will be at the end of the horizon of four seconds.
-    """
-    if ball.speed_m_s < 0.2:
-        return Meeting(ball.place, reach_s(math.dist(place, ball.place) - contact_m))
-    for step in range(round(_HORIZON_S / _STEP_S)):
-        time_s = step * _STEP_S
-        there = ball_after(ball, time_s)
-        if reach_s(math.dist(place, there) - contact_m) <= time_s:
-            return Meeting(there, time_s)
-    there = ball_after(ball, _HORIZON_S)
-    return Meeting(there, max(_HORIZON_S, reach_s(math.dist(place, there) - contact_m)))
+
+_WAYS = [(step * _STEP_S, way_m(step * _STEP_S)) for step in range(round(_HORIZON_S / _STEP_S) + 1)]
+
+
+class Course:
+    """The ball's way during the next four seconds, and how far a robot can get meanwhile."""
+
+    def __init__(self, ball: Ball, contact_m: float = 0.33) -> None:
+        """`contact_m` is the distance of the middles of ball and robot when they touch."""
+        self._ball = ball
+        self._contact_m = contact_m
+        self._resting = ball.speed_m_s < _RESTING_M_S
+        self._stations = (
+            [] if self._resting else [(*ball_after(ball, time_s), time_s, way_m) for time_s, way_m in _WAYS]
+        )
+
+    def meet(self, place: Point) -> Meeting:
+        """The earliest meeting with a robot that is now at `place`.
+
+        If the ball outruns the robot, the meeting is where the ball will be at the end of the four seconds.
+        """
+        if self._resting:
+            return Meeting(self._ball.place, reach_s(math.dist(place, self._ball.place) - self._contact_m))
+        for x_m, y_m, time_s, way_m in self._stations:
+            if math.hypot(place.x_m - x_m, place.y_m - y_m) - self._contact_m <= way_m:
+                return Meeting(Point(x_m, y_m), time_s)
+        x_m, y_m, time_s, _ = self._stations[-1]
+        needed_s = reach_s(math.hypot(place.x_m - x_m, place.y_m - y_m) - self._contact_m)
+        return Meeting(Point(x_m, y_m), max(time_s, needed_s))
+
+
+def meet(ball: Ball, place: Point) -> Meeting:
+    """The earliest meeting of the ball with one robot."""
+    return Course(ball).meet(place)

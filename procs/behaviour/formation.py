@@ -14,21 +14,21 @@ _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
 
 
-def places(ball: Point, ours: bool, field: Field) -> list[Point]:
+def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     """Places of supporter, first and second defender, and of one more robot, in the order of their importance.
 
-    `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball.
+    `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball,
+    on its flank: -1 or 1.
     """
     goal = field.goal_centre(-1.0)
-    other_flank = -1.0 if ball.y_m > 0 else 1.0
     if ours:
-        supporter = Point(clamp(ball.x_m + 1.5, -6.0, 8.0), clamp(ball.y_m + other_flank * 3.5, -5.0, 5.0))
+        supporter = Point(clamp(ball.x_m + 3.0, -5.0, 8.0), clamp(ball.y_m + flank * 3.5, -5.0, 5.0))
     else:
-        supporter = Point(clamp(ball.x_m - 2.0, -7.5, 6.0), clamp(ball.y_m * 0.5 + other_flank, -5.0, 5.0))
+        supporter = Point(clamp(ball.x_m - 2.0, -7.5, 6.0), clamp(ball.y_m * 0.5 + flank, -5.0, 5.0))
     far_m = math.dist(goal, ball)
     stopper = between(goal, ball, clamp(0.5 * far_m, 3.2, 8.0) / far_m) if far_m > 3.2 else Point(-8.0, ball.y_m * 0.5)
-    sweeper = Point(clamp(ball.x_m - 4.0, -8.0, 1.0), clamp(stopper.y_m + other_flank * 2.5, -4.5, 4.5))
-    spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - other_flank * 2.0, -6.0, 6.0))
+    sweeper = Point(clamp(ball.x_m - 4.0, -8.0, 1.0), clamp(stopper.y_m + flank * 2.5, -4.5, 4.5))
+    spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - flank * 2.0, -6.0, 6.0))
     return [supporter, stopper, sweeper, spare]
 
 

@@ -14,6 +14,7 @@ from procs.physics.teams import number_of
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
+_MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless changing saves so much way
 
 
@@ -39,16 +40,24 @@ def assign(view: View, field: Field) -> dict[str, Job]:
         team.remove(keeper)
     if not team:
         return jobs
-    times_s = {robot.name: ballistics.meet(view.ball, robot.place).time_s for robot in team}
+    course = ballistics.Course(view.ball)
+    times_s = {robot.name: course.meet(robot.place).time_s for robot in team}
     attacker = min(team, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
-    theirs_s = min((ballistics.meet(view.ball, other.place).time_s for other in view.opponents), default=math.inf)
+    theirs_s = min((course.meet(other.place).time_s for other in view.opponents), default=math.inf)
     ours = times_s[attacker.name] <= theirs_s
     roles = [SUPPORTER, DEFENDER, DEFENDER, DEFENDER]
-    posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, field), strict=True)]
+    posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, _flank(view, team), field), strict=True)]
     jobs.update(_fill(team, posts))
     return jobs
+
+
+def _flank(view: View, team: Sequence[Robot]) -> float:
+    """Side of the field, -1 or 1, on which the supporter stands: away from the ball, or where it is if that is open."""
+    supporter = next((robot for robot in team if robot.role == SUPPORTER), None)
+    aside_m = supporter.place.y_m if supporter and abs(view.ball.place.y_m) < _MIDDLE_M else -view.ball.place.y_m
+    return math.copysign(1.0, aside_m)
 
 
 def _fill(team: Sequence[Robot], posts: Sequence[Job]) -> dict[str, Job]:

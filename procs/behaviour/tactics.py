@@ -11,9 +11,14 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
 from procs.field import Field, Point
 
-_SHOT_RANGE_M = 8.0
+_SHOT_RANGE_M = 9.0
+_OWN_HALF_M = 0.3  # a goal counts only if it is shot from beyond the halfway line
+_ROOM_M = 0.3  # beside a shot's way at the goal ...
+_ROOM_PRESSED_M = 0.1  # ... or less before the ball is lost
+_LANE_RAD = 0.12  # beside a pass's way
+_BACK_M = 1.0  # a pass may lose so much ground
 _PRESSED_M = 1.3
-_PATIENCE_S = 4.0  # with the ball, before any shot or pass is better than none
+_PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 0.8
 
@@ -75,7 +80,8 @@ class Tactics:
             return self._stand(view, formation.allowed(job.place, game, self.field), "take position")
         if game.whose is not Whose.OURS:
             return self._stand(view, formation.first_opponent_place(game, self.field), "keep distance")
-        receiver = aim.best_pass(game.spot, _field_players(view), view.opponents)
+        taker = Robot(view.own.name, game.spot, view.own.heading_rad)
+        receiver = aim.best_pass(taker, _field_players(view), view.opponents, back_m=math.inf)
         target = receiver.place if receiver else self.field.goal_centre(1.0)
         way_rad = bearing_rad(game.spot, target)
         if game.state is State.KICK_OFF:  # from the own half
@@ -87,41 +93,39 @@ class Tactics:
         return Order("get_ball", game.spot, way_rad, "take set piece")
 
     def _play_ball(self, view: View) -> Order:
-        ball = view.ball.place
-        if self._taking:
-            passed = self._pass_on(view)
-            if passed:
-                return passed
-        shot = self._shot(view)
-        if shot:
-            return shot
         pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
-        if pressed or self._held_s > _PATIENCE_S:
-            passed = self._pass_on(view)
-            if passed:
-                return passed
-        goal = self.field.goal_centre(1.0)
+        impatient = self._held_s > _PATIENCE_S
+        if self._taking:
+            order = self._pass_on(view, back_m=math.inf) or self._shot(view, _ROOM_M)
+        elif pressed or impatient:
+            order = self._shot(view, _ROOM_PRESSED_M) or self._pass_on(view, back_m=_BACK_M)
+        else:
+            order = self._shot(view, _ROOM_M)
+        if order is None and self._held_s > 2 * _PATIENCE_S:
+            order = Order("shoot", aim.best_shot(view.ball.place, _others(view), self.field).place, intention="clear")
+        return order or self._dribble(view)
+
+    def _dribble(self, view: View) -> Order:
+        ball, goal = view.ball.place, self.field.goal_centre(1.0)
         target = Point(min(ball.x_m + 3.0, self.field.half_length_m - 2.5), clamp(0.6 * ball.y_m, -3.0, 3.0))
         return Order("dribble", target, bearing_rad(target, goal), "dribble")
 
-    def _shot(self, view: View) -> Order | None:
+    def _shot(self, view: View, room_m: float) -> Order | None:
         start = view.ball.place
-        best = aim.best_shot(start, view.opponents, self.field)
-        distance_m = math.dist(start, best.place)
-        if start.x_m < 0.3 or distance_m > _SHOT_RANGE_M:
+        if start.x_m < _OWN_HALF_M or math.dist(start, self.field.goal_centre(1.0)) > _SHOT_RANGE_M:
             return None
-        needed_m = 0.3 if self._held_s < _PATIENCE_S / 2 else 0.12 if self._held_s < _PATIENCE_S else -math.inf
+        best = aim.best_shot(start, _others(view), self.field)
         if self._last.skill == "shoot":
-            kept_rad = aim.lane_rad(start, self._last.place, view.opponents)
+            kept_rad = aim.lane_rad(start, self._last.place, _others(view))
             if kept_rad > max(0.0, best.free_rad - 0.1):
                 return self._last
-        if best.free_rad * distance_m > needed_m:
-            return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
-        return None
+        if best.free_rad * math.dist(start, best.place) < room_m:
+            return None
+        return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
 
-    def _pass_on(self, view: View) -> Order | None:
-        best = aim.best_pass(view.own.place, _field_players(view), view.opponents)
-        if best is None or best.free_rad < 0.12:
+    def _pass_on(self, view: View, back_m: float) -> Order | None:
+        best = aim.best_pass(view.own, _field_players(view), view.opponents, back_m)
+        if best is None or best.free_rad < _LANE_RAD:
             return None
         return Order("pass", best.place, bearing_rad(view.own.place, best.place), "pass")
 
@@ -156,8 +160,13 @@ def keeper_takes(view: View, field: Field) -> bool:
     if not keepers:
         return False
     others = [*view.opponents, *(robot for robot in (view.own, *view.mates) if robot.role != GOALKEEPER)]
-    keeper_s = ballistics.meet(ball, keepers[0].place).time_s
-    return all(keeper_s < ballistics.meet(ball, other.place).time_s + 0.3 for other in others)
+    course = ballistics.Course(ball)
+    keeper_s = course.meet(keepers[0].place).time_s
+    return all(keeper_s < course.meet(other.place).time_s + 0.3 for other in others)
+
+
+def _others(view: View) -> tuple[Robot, ...]:
+    return (*view.opponents, *view.mates)
 
 
 def _field_players(view: View) -> list[Robot]:
