@@ -1,0 +1,66 @@
+"""Verdicts on the goals, each made to pass and to fail."""
+
+from collections.abc import Mapping
+
+import pytest
+
+from tools.bench.environments import CORE
+from tools.bench.figures import Run, Runs
+from tools.bench.goals import Verdict, judge
+from tools.bench.registry import Peer
+
+PEERS = [
+    Peer("lcm", "bare LCM", CORE, "", bare=True),
+    Peer("zmq", "ZeroMQ", CORE, ""),
+    Peer("fwk", "fwk", CORE, ""),
+    Peer("fwk_recorded", "fwk, recorded", CORE, ""),
+]
+SIZES = (20, 160)
+GOOD = {
+    ("fwk", "N=20"): 1100,
+    ("fwk", "N=160"): 9000,
+    ("lcm", "N=20"): 1000,
+    ("lcm", "N=160"): 8000,
+    ("zmq", "N=20"): 2000,
+    ("zmq", "N=160"): 9500,
+    ("fwk_recorded", "N=20"): 1200,
+    ("fwk_recorded", "N=160"): 10000,
+    ("fwk", "N=20, loss 1 %"): 1300,
+    ("fwk", "N=160, loss 1 %"): 10000,
+}
+CONTRACT, AHEAD, FLAT, RECORDER, LOSS = range(5)
+
+
+def verdicts(ticks_us: Mapping[tuple[str, str], float]) -> list[Verdict]:
+    runs = [Run(0, peer, scenario, {"tick_us": [tick]}) for (peer, scenario), tick in ticks_us.items()]
+    return judge(Runs(runs), PEERS, SIZES)
+
+
+def test_all_goals_met() -> None:
+    assert [verdict.word for verdict in verdicts(GOOD)] == ["met"] * 5
+
+
+@pytest.mark.parametrize(
+    ("goal", "change"),
+    [
+        (CONTRACT, {("lcm", "N=160"): 7100}),
+        (AHEAD, {("zmq", "N=160"): 8900}),
+        (FLAT, {("fwk", "N=160"): 11500, ("lcm", "N=160"): 11000}),
+        (RECORDER, {("fwk_recorded", "N=20"): 1300}),
+        (LOSS, {("fwk", "N=20, loss 1 %"): 1330}),
+    ],
+)
+def test_one_figure_misses_one_goal(goal: int, change: dict[tuple[str, str], float]) -> None:
+    assert verdicts({**GOOD, **change})[goal].met is False
+
+
+def test_what_was_not_measured_is_neither_met_nor_missed() -> None:
+    assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 5
+
+
+def test_who_is_ahead_of_us_is_named() -> None:
+    assert "ZeroMQ N=160" in verdicts({**GOOD, ("zmq", "N=160"): 8900})[AHEAD].figures
+
+
+def test_bare_transports_are_no_rivals() -> None:
+    assert "bare LCM" not in verdicts({**GOOD, ("lcm", "N=20"): 10})[AHEAD].figures

@@ -1,0 +1,102 @@
+"""Tables, JSON and the generated part of the page."""
+
+from pathlib import Path
+
+import pytest
+
+from tools.bench import report, tables
+from tools.bench.environments import CORE
+from tools.bench.figures import Run, Runs, Spread
+from tools.bench.registry import Peer
+from tools.bench.scenarios import growth, variations
+
+PEERS = [Peer("lcm", "bare LCM", CORE, "lcm-gen", udp=True, bare=True), Peer("unix", "Unix", CORE, "lcm-gen")]
+
+
+def result(*tick_us: float) -> dict[str, object]:
+    return {
+        "tick_us": list(tick_us),
+        "cpu_us": 700.0,
+        "switches": 36.4,
+        "for_nothing": -0.01,
+        "stale": 3,
+        "repeated": 0,
+        "threads": 17,
+        "pss_mb": 59.3,
+        "first_tick_s": 0.2,
+    }
+
+
+def runs() -> list[Run]:
+    made = []
+    for number in range(3):
+        made.append(Run(number, "lcm", "N=5", result(1000 + number)))
+        made.append(Run(number, "unix", "N=5", result(500 + number)))
+        made.append(Run(number, "lcm", "N=5, loss 1 %", result(*[1000.0] * 9, 11000.0)))
+    made.append(Run(0, "unix", "N=5, 64 KiB", {"error": "no first tick"}))
+    return made
+
+
+def test_markdown_keeps_its_columns() -> None:
+    lines = tables.markdown(["a", "b"], [["x|y", "1"], ["z", "2"]]).splitlines()
+    assert lines == ["| a | b |", "| --- | ---: |", "| x\\|y | 1 |", "| z | 2 |"]
+
+
+def test_milliseconds_have_three_digits_and_the_spread() -> None:
+    assert tables.milliseconds(Spread(1520, 480, 17_100, 3)) == "1.52 (0.48-17.1)"
+    assert tables.milliseconds(Spread(112_000, 99_900, 250_000, 3)) == "112 (99.9-250)"
+    assert tables.milliseconds(None) == "-"
+
+
+def test_tick_table_gives_the_ratio_to_bare_lcm() -> None:
+    table = tables.tick_table(Runs(runs()), PEERS, growth((5,)))
+    assert "| bare LCM | 1.00 (1.00-1.00) x1.00 |" in table
+    assert "| Unix | 0.50 (0.50-0.50) x0.50 |" in table
+
+
+def test_under_loss_the_mean_is_quoted_and_failures_are_marked() -> None:
+    table = tables.tick_table(Runs(runs()), PEERS, variations((5,)))
+    assert "| bare LCM | - | - | 2.00 (2.00-2.00) | - |" in table
+    assert "| Unix | - | failed | - | - |" in table
+
+
+def test_cost_table_shows_only_who_was_measured() -> None:
+    table = tables.cost_table(Runs(runs()), PEERS, growth((5,))[0])
+    assert (
+        "| bare LCM | 1.00 (1.00-1.00) | 1.00 (1.00-1.00) | 0.70 (0.70-0.70) | 36 | 0 | 3 | 0 | 17 | 59 | 0.20 |"
+        in table
+    )
+    assert len(table.splitlines()) == 4
+    assert len(tables.cost_table(Runs(runs()), PEERS, growth((80,))[0]).splitlines()) == 2
+
+
+def test_page_names_what_is_missing_and_what_failed() -> None:
+    page = report.text(
+        {"command": "bench"}, PEERS, {"Zenoh": "not installed"}, [*growth((5,)), *variations((5,))], runs()
+    )
+    assert "- command: bench" in page
+    assert "- Zenoh: not installed" in page
+    assert "- Unix, N=5, 64 KiB: no first tick" in page
+
+
+def test_insert_replaces_the_generated_part_only(tmp_path: Path) -> None:
+    page = tmp_path / "numbers.md"
+    page.write_text(f"before\n{report.BEGIN}\nold\n{report.END}\nafter\n")
+    report.insert(page, "new")
+    report.insert(page, "newer")
+    assert page.read_text() == f"before\n{report.BEGIN}\n\nnewer\n\n{report.END}\nafter\n"
+
+
+@pytest.mark.parametrize("text", ["", f"{report.BEGIN}\n", f"{report.END}\n{report.BEGIN}\n"])
+def test_insert_refuses_a_page_without_its_place(tmp_path: Path, text: str) -> None:
+    page = tmp_path / "numbers.md"
+    page.write_text(text)
+    with pytest.raises(ValueError, match=r"numbers\.md: needs one line"):
+        report.insert(page, "new")
+    assert page.read_text() == text
+
+
+def test_runs_survive_the_json_file(tmp_path: Path) -> None:
+    path = tmp_path / "deep" / "numbers.json"
+    report.write_json(path, {"machine": "this"}, runs())
+    assert report.read_runs(path) == runs()

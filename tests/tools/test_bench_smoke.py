@@ -1,0 +1,44 @@
+"""Two components of the peers that need nothing installed, in real processes."""
+
+from pathlib import Path
+
+import pytest
+
+from fwk.typegen import generate
+from tools.bench import rotation
+from tools.bench.registry import PEERS
+from tools.bench.scenarios import Scenario
+from tools.bench.shape import Shape
+
+pytestmark = pytest.mark.system
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _types() -> None:
+    generate(Path(rotation.__file__).parent / "messages" / "lcmtypes")
+
+
+@pytest.mark.parametrize("name", ["unix", "lcm", "lcm_wire"])
+@pytest.mark.parametrize("padding_bytes", [0, 100_000])
+def test_a_peer_does_the_work(name: str, padding_bytes: int) -> None:
+    scenario = Scenario("two", Shape(2, padding_bytes=padding_bytes))
+    runs = rotation.rotate([PEERS[name]], [scenario], 1, 0.2, lambda _: None)
+    result = runs[0].result
+    assert "error" not in result
+    assert len(result["tick_us"]) >= 1
+    assert all(tick > 0 for tick in result["tick_us"])
+    assert result["stale"] is not None  # both components ended by themselves and left their count
+    assert result["cpu_us"] > 0
+    assert result["switches"] > 0
+    assert result["pss_mb"] > 5
+    assert 0 < result["first_tick_s"] < 50
+
+
+def test_plain_sockets_read_exactly_what_they_want() -> None:
+    if not rotation.isolation():
+        pytest.skip("needs a network namespace, so that nobody else's datagrams are counted: run as root")
+    runs = rotation.rotate([PEERS["lcm_wire"]], [Scenario("five", Shape(5))], 1, 0.2, lambda _: None)
+    result = runs[0].result
+    repeated = result["repeated"] / len(result["tick_us"])  # on a busy machine: a tick and a done each
+    assert -0.2 < result["for_nothing"] < 2 * repeated + 0.2
+    assert result["stale"] == 0
