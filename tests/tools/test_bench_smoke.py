@@ -28,6 +28,8 @@ def test_a_peer_does_the_work(name: str, padding_bytes: int) -> None:
     assert len(result["tick_us"]) >= 1
     assert all(tick > 0 for tick in result["tick_us"])
     assert result["stale"] is not None  # both components ended by themselves and left their count
+    if name != "lcm":  # liblcm hands messages over in a thread; elsewhere what was sent before the tick is there
+        assert result["stale"] == 0
     assert result["cpu_us"] > 0
     assert result["switches"] > 0
     assert result["pss_mb"] > 5
