@@ -8,9 +8,9 @@ from fwk.aspects.vision import Image
 from fwk.component import Component
 from fwk.config import Config
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
+from procs.vision.algebra import Floats
 from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
 from procs.vision.lines import LineFinder
-from procs.vision.mirror import Floats
 from procs.vision.obstacles import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 from procs.vision.settings import MirrorConfig

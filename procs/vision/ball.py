@@ -6,8 +6,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from procs.vision.algebra import Floats, weighted_mean
 from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
-from procs.vision.mirror import Floats, Mirror
+from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance
 
 _STEP_PX = 2  # the first search looks at every second pixel of every second row
@@ -27,6 +28,16 @@ class BallSighting:
     """2 x 2: one standard deviation is what the measured errors are at that distance."""
     confidence: float
     """0..1: how well the blob's size fits a ball that lies there."""
+
+
+@dataclass(frozen=True)
+class _Blob:
+    """Something of the ball's colour: centre, area, and mean square distance of its pixels from the centre."""
+
+    column: float
+    row: float
+    area_px: float
+    spread_px2: float
 
 
 @dataclass(frozen=True)
@@ -52,10 +63,11 @@ class BallFinder:
         _, _, boxes, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
         blobs = boxes[1:]
         largest = np.argsort(-blobs[:, cv2.CC_STAT_AREA], kind="stable")[:_CANDIDATES]
-        sightings = [self._sighting(pixels, blobs[i]) for i in largest]
+        sightings = [self._sighting(self._blob(pixels, blobs[i])) for i in largest]
         return max((s for s in sightings if s is not None), key=lambda s: s.confidence, default=None)
 
-    def _sighting(self, pixels: Picture, box: cv2.typing.MatLike) -> BallSighting | None:
+    def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> _Blob | None:
+        """Measures a blob of the coarse picture in the full one."""
         left, top, width, height = (int(edge) * _STEP_PX for edge in box[: cv2.CC_STAT_AREA])
         left, top, right, bottom = max(left - 2, 0), max(top - 2, 0), left + width + 2, top + height + 2
         window = pixels[top:bottom, left:right]
@@ -64,20 +76,22 @@ class BallFinder:
         area_px = float(cover.sum())
         if solid.sum() < _LEAST_SOLID * area_px:
             return None
-        columns, rows = np.arange(left, left + cover.shape[1]), np.arange(top, top + cover.shape[0])
-        column = float(cover.sum(axis=0) @ columns) / area_px
-        row = float(cover.sum(axis=1) @ rows) / area_px
-        spread_px2 = (
-            float(cover.sum(axis=0) @ (columns - column) ** 2 + cover.sum(axis=1) @ (rows - row) ** 2) / area_px
-        )
-        place = self._locate(column, row)
-        if place is None or math.hypot(*place[:2]) > self.farthest_m:
+        in_column, in_row = cover.sum(axis=0), cover.sum(axis=1)
+        columns = np.arange(left, left + len(in_column), dtype=np.float64)
+        rows = np.arange(top, top + len(in_row), dtype=np.float64)
+        column, row = weighted_mean(columns, in_column), weighted_mean(rows, in_row)
+        spread_px2 = weighted_mean((columns - column) ** 2, in_column) + weighted_mean((rows - row) ** 2, in_row)
+        return _Blob(column, row, area_px, spread_px2)
+
+    def _sighting(self, blob: _Blob | None) -> BallSighting | None:
+        """The ball that a blob would be, unless it has not its size and shape."""
+        place = None if blob is None else self._locate(blob.column, blob.row)
+        if blob is None or place is None or math.hypot(*place[:2]) > self.farthest_m:
             return None
         x_m, y_m, expected_px = place
-        fit = area_px / (math.pi * expected_px**2)
-        scattered = spread_px2 > _MOST_SPREAD * expected_px**2 / 2
+        fit = blob.area_px / (math.pi * expected_px**2)
         confidence = min(fit, 1 / fit)
-        if confidence < self.least_fit or scattered:
+        if confidence < self.least_fit or blob.spread_px2 > _MOST_SPREAD * expected_px**2 / 2:
             return None
         # What is hidden shifts the centre by up to as much of the radius.
         deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2

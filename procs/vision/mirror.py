@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from procs.vision.algebra import Floats, product
 
 
 @dataclass(frozen=True)
@@ -50,18 +49,18 @@ class Mirror:
         cr, sr, cp, sp = (f(a) for a in (self.roll_rad, self.pitch_rad) for f in (math.cos, math.sin))
         about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
         about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-        return np.asarray(about_y @ about_x)
+        return product(about_y, about_x)
 
     def project(self, points_m: Floats) -> Floats:
         """Pixels (n, 2) at which points (n, 3) of the robot frame appear."""
-        rays = (points_m - (0.0, 0.0, self.height_m)) @ self._from_mirror
+        rays = product(points_m - (0.0, 0.0, self.height_m), self._from_mirror)
         spread = np.linalg.norm(rays, axis=1) - rays[:, 2]
         return self._pixels(rays[:, :2] / spread[:, None])
 
     def sphere(self, centre_m: tuple[float, float, float], radius_m: float) -> tuple[float, float, float]:
         """Column, row and radius in pixels of the circle as which a sphere appears."""
-        ray = (np.array(centre_m) - (0.0, 0.0, self.height_m)) @ self._from_mirror
-        distance_m = float(np.linalg.norm(ray))
+        ray = product(np.array([centre_m]) - (0.0, 0.0, self.height_m), self._from_mirror)[0]
+        distance_m = math.hypot(*ray)
         sine = min(radius_m / distance_m, 1.0)
         spread = math.sqrt(1.0 - sine * sine) - float(ray[2]) / distance_m
         column, row = self._pixels(ray[None, :2] / (distance_m * spread))[0]
@@ -75,7 +74,7 @@ class Mirror:
         offsets = (self.centre_px - pixels[:, ::-1]) / self.scale_px
         squares = np.sum(offsets * offsets, axis=1)
         mirror_rays = np.column_stack((2.0 * offsets, squares - 1.0))
-        rays = mirror_rays @ self._from_mirror.T
+        rays = product(mirror_rays, self._from_mirror.T)
         down = np.where(rays[:, 2] < -1e-9, -rays[:, 2], np.nan)
         return np.asarray(rays[:, :2] * ((self.height_m - plane_m) / down)[:, None])
 

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from procs.vision.algebra import Floats, product
 from procs.vision.colours import ColourRange, Mask, Picture
-from procs.vision.mirror import Floats, Mirror
+from procs.vision.mirror import Mirror
 from procs.vision.scan import Scan
 from procs.vision.uncertainty import ground_covariance
 
 _BODY_SAMPLES = 4  # so many black samples in a row are a body
+_COVERED = 0.75  # of all rays black from their beginning: not robots all around, but a covered camera
 _FEET_SAMPLES = 3  # carpet must be seen so close before it, or the near edge is hidden by something
 
 
@@ -55,6 +57,8 @@ class ObstacleFinder:
         body = np.logical_and.reduce([black[:, i : last + i] for i in range(_BODY_SAMPLES)])
         rays = np.flatnonzero(body.any(axis=1))
         starts = body[rays].argmax(axis=1)
+        if (starts == 0).sum() > _COVERED * len(body):
+            return np.empty((0, 2))
         seen = (starts == 0) | _any_before(standing, rays, starts)
         rays, starts = rays[seen], starts[seen]
         return np.asarray((self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2)
@@ -80,7 +84,7 @@ class ObstacleFinder:
     def _obstacle(self, edges_m: Floats) -> Obstacle:
         middle_rad = math.atan2(*edges_m[0, ::-1]) + _turn(edges_m[0], edges_m[-1]) / 2
         ahead = np.array([math.cos(middle_rad), math.sin(middle_rad)])
-        along_m, across_m = edges_m @ ahead, edges_m @ (-ahead[1], ahead[0])
+        along_m, across_m = product(edges_m, np.array([[ahead[0], -ahead[1]], [ahead[1], ahead[0]]])).T
         depth_m = np.sqrt((self.radius_m**2 - across_m**2).clip(0.0))
         x_m, y_m = float(np.median(along_m + depth_m)) * ahead
         return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, *self.deviation_px))

@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 
 from procs.field import SIDES, Field
+from procs.vision.algebra import Floats, product
 from procs.vision.carpet import lay_carpet
 from procs.vision.colours import BLACK, ORANGE, WHITE, Bgr, Picture
 from procs.vision.ground_view import MARGIN_PX, GroundView
-from procs.vision.mirror import Floats, Mirror
+from procs.vision.mirror import Mirror
 from procs.vision.shapes import Bodies, markers, pillars
 
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
@@ -110,4 +111,4 @@ class Renderer:
 def _seen_from(own: Pose, points_m: Floats) -> Floats:
     """Points (n, 2) of the world frame in the robot frame."""
     cosine, sine = math.cos(own.heading_rad), math.sin(own.heading_rad)
-    return np.asarray((points_m - (own.x_m, own.y_m)) @ np.array([[cosine, -sine], [sine, cosine]]))
+    return product(points_m - (own.x_m, own.y_m), np.array([[cosine, -sine], [sine, cosine]]))

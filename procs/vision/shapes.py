@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from procs.vision.mirror import Floats
+from procs.vision.algebra import Floats
 
 _MARKER_M = (0.34, 0.50)  # lower and upper edge of the team marker
 _CORNERS_RAD = np.linspace(0.0, 2 * math.pi, 20, endpoint=False)

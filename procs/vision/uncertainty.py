@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from procs.vision.mirror import Floats, Mirror
+from procs.vision.algebra import Floats
+from procs.vision.mirror import Mirror
 
 
 def ground_covariance(
@@ -20,5 +21,10 @@ def ground_covariance(
     along_m *= along_px
     across_m *= along_px if across_px is None else across_px
     ux, uy = (x_m / distance_m, y_m / distance_m) if distance_m > 0 else (1.0, 0.0)
-    turn = np.array([[ux, -uy], [uy, ux]])
-    return np.asarray(turn @ np.diag([along_m**2, across_m**2]) @ turn.T)
+    along_m2, across_m2 = along_m**2, across_m**2
+    xx, xy, yy = (
+        ux * ux * along_m2 + uy * uy * across_m2,
+        ux * uy * (along_m2 - across_m2),
+        uy * uy * along_m2 + ux * ux * across_m2,
+    )
+    return np.array([[xx, xy], [xy, yy]])

@@ -1,0 +1,16 @@
+"""Matrix products with the same last bits everywhere: BLAS, behind `@`, picks other kernels on other processors."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+
+def product(rows: Floats, matrix: Floats) -> Floats:
+    """`rows @ matrix` for rows (n, k) and a small matrix (k, m)."""
+    return np.asarray((rows[:, :, None] * matrix).sum(axis=1))
+
+
+def weighted_mean(values: Floats, weights: Floats) -> float:
+    """Mean of values (n) by weights (n) that do not sum up to zero."""
+    return float((values * weights).sum() / weights.sum())
