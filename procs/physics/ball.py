@@ -18,8 +18,6 @@ class Ball:
         self.radius_m = ball.radius_m
         self.mass_kg = ball.mass_kg
         self.friction = RollingFriction(ball, friction_scale)
-        self.carried = False
-        """Ball handling turns it in this step, so that it rolls along without sliding."""
         self.body = pymunk.Body(ball.mass_kg, ball.inertia * ball.mass_kg * ball.radius_m**2)
         shape = pymunk.Circle(self.body, ball.radius_m)
         shape.collision_type, shape.elasticity, shape.friction = BALL, 1.0, 1.0
@@ -34,12 +32,7 @@ class Ball:
     def rub(self, duration_s: float) -> None:
         """Lets the ground act on the ball for a while."""
         self.body.angular_velocity *= math.exp(-duration_s / _UPRIGHT_SPIN_S)
-        vx_m_s, vy_m_s = self.body.velocity
-        if self.carried:
-            self.friction.roll(vx_m_s, vy_m_s)
-        else:
-            self.body.velocity = self.friction.advance(vx_m_s, vy_m_s, duration_s)
-        self.carried = False
+        self.body.velocity = self.friction.advance(*self.body.velocity, duration_s)
 
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""

@@ -1,10 +1,10 @@
 """The kicker's hardware: takes commands after a delay, fires when it is charged, and charges again."""
 
 import math
-from enum import Enum
 from typing import NamedTuple
 
 import numpy as np
+import pymunk
 
 from procs.physics.delay import DelayLine
 from procs.physics.mouth import Mouth
@@ -22,12 +22,12 @@ class KickerCommand(NamedTuple):
     dribble: bool
 
 
-class Action(Enum):
-    """What a kicker did with the ball in a step."""
+class Push(NamedTuple):
+    """What a kicker does to the ball in a step."""
 
-    NONE = "none"
-    HANDLED = "handled"
-    KICKED = "kicked"
+    change_m_s: pymunk.Vec2d
+    """Of the ball's velocity, world frame."""
+    kicked: bool
 
 
 class Kicker:
@@ -53,26 +53,24 @@ class Kicker:
         """Whether a kick is possible."""
         return now_us >= self._charged_from_us
 
-    def act(self, now_us: int, duration_s: float) -> Action:
-        """Handles the ball or kicks it, for one step."""
-        action = Action.NONE
+    def act(self, now_us: int, duration_s: float) -> Push | None:
+        """Handles the ball or kicks it, for one step; None if it does not touch the ball."""
+        push = None
         for command in self._line.due(now_us):
             self._dribble = command.dribble
             if command.speed_m_s > 0 and command.kick_id != self.kick_id and self.charged(now_us):
                 self.kick_id = command.kick_id
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + _RELEASE_US
-                if self._fire(command.speed_m_s):
-                    action = Action.KICKED
+                push = self._fire(command.speed_m_s)
         if self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
-            self.mouth.handle(duration_s)
-            action = Action.HANDLED
-        return action
+            push = Push(self.mouth.pull(duration_s), kicked=False)
+        return push
 
-    def _fire(self, speed_m_s: float) -> bool:
+    def _fire(self, speed_m_s: float) -> Push | None:
         speed_error, direction_error = self._rng.standard_normal(2).tolist()
         if not self.mouth.holds_ball:
-            return False
+            return None
         speed_m_s = min(speed_m_s, self._settings.limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
-        self.mouth.kick(speed_m_s, math.radians(self._noise.kick_direction_sd_deg) * direction_error)
-        return True
+        error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
+        return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True)

@@ -23,7 +23,7 @@ class RollingFriction:
         self.spin_y_m_s = 0.0
 
     def roll(self, vx_m_s: float, vy_m_s: float) -> None:
-        """Something outside makes the ball roll at this velocity: ball handling, or the hands that place it."""
+        """Something outside makes the ball roll at this velocity, such as the hands that place it."""
         self.spin_x_m_s, self.spin_y_m_s = vx_m_s, vy_m_s
 
     def advance(self, vx_m_s: float, vy_m_s: float, duration_s: float) -> tuple[float, float]:

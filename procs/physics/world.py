@@ -13,7 +13,7 @@ from procs.physics.contacts import Contacts
 from procs.physics.drive import Drive
 from procs.physics.events import Event, Kind, LineJudge
 from procs.physics.formation import Pose, free_place, starting_pose
-from procs.physics.kicker import Action, Kicker
+from procs.physics.kicker import Kicker, Push
 from procs.physics.mouth import Mouth
 from procs.physics.noise import Noise
 from procs.physics.robot import Robot
@@ -54,8 +54,6 @@ class World:
             robot.put(*((starts or {}).get(name) or starting_pose(name, self._field)))
             mouth = Mouth(robot, self.ball, self._physics.handling)
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
-        forwards = list(self.robots)
-        self._turns = (forwards, forwards[::-1])
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
 
@@ -84,23 +82,25 @@ class World:
         events = []
         for step in range(steps):
             self.time_us = start_us + duration_us * step // steps
-            # Where two robots pull at the ball the later one has the better end, so they take turns.
-            events += self._step(self._turns[step % 2], duration_us / steps / 1e6, touched)
+            events += self._step(duration_us / steps / 1e6, touched)
         self.time_us = start_us + duration_us
         events += [self._ball_event(Kind.TOUCH, robot) for robot in touched]
         return sorted(events + self._contacts.take_collisions())
 
-    def _step(self, order: Sequence[str], duration_s: float, touched: set[str]) -> list[Event]:
-        events = []
-        actions = {}
-        for name in order:
-            self.robots[name].move(self.time_us, duration_s)
-            actions[name] = self.kickers[name].act(self.time_us, duration_s)
-            if actions[name] is Action.KICKED:
-                events.append(self._ball_event(Kind.KICK, name))
+    def _step(self, duration_s: float, touched: set[str]) -> list[Event]:
+        pushes: dict[str, Push] = {}
+        for name, robot in self.robots.items():
+            robot.move(self.time_us, duration_s)
+            push = self.kickers[name].act(self.time_us, duration_s)
+            if push is not None:
+                pushes[name] = push
+        # All push the ball as it was before the step, so that none of two rivals has the last word.
+        for push in pushes.values():
+            self.ball.body.velocity += push.change_m_s
+        events = [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
         self.ball.rub(duration_s)
         self._space.step(duration_s)
-        touching = self._contacts.take_touches() | {name for name in actions if actions[name] is not Action.NONE}
+        touching = self._contacts.take_touches() | pushes.keys()
         if touching:
             self.last_touch = min(touching, key=self._distance_to_ball)
             touched |= touching

@@ -52,6 +52,12 @@ def test_speed_zero_takes_a_waiting_kick_back(kicker: Bench) -> None:
     assert act(kicker, {"kick_id": 1, "speed_m_s": 0.0}, READY).speed_m_s == 0.0
 
 
+@pytest.mark.parametrize("speed_m_s", [0.0, -3.0, float("nan")])
+def test_what_is_no_speed_is_no_kick(kicker: Bench, speed_m_s: float) -> None:
+    drive = act(kicker, {"kick_id": 1, "speed_m_s": speed_m_s}, READY)
+    assert (drive.kick_id, drive.speed_m_s) == (0, 0.0)
+
+
 def test_an_old_command_is_forgotten(kicker: Bench) -> None:
     act(kicker, {"kick_id": 1, "speed_m_s": 8.0, "dribble": True}, {"charged": True})
     for _ in range(6):

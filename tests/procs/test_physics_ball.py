@@ -95,6 +95,13 @@ def test_a_kick_without_a_ball_is_spent_on_the_air() -> None:
     assert world.kickers["cyan1"].kick_id == 1
 
 
+def test_a_delayed_kick_happens_within_the_tick() -> None:
+    world = ball_in_mouth(Noise(kick_delay_s=0.04))
+    kick(world, "cyan1", 10.0)
+    assert run(world, 1)[-1].kind == Kind.KICK
+    assert world.ball.body.position.x == pytest.approx(IN_MOUTH_M + 10.0 * 0.01, abs=0.002)
+
+
 def test_noise_turns_kicks_and_changes_their_speed() -> None:
     noise = Noise(kick_direction_sd_deg=2.0, kick_speed_sd=0.05)
     angles, speeds = [], []
@@ -122,6 +129,17 @@ def test_a_fast_turn_loses_the_ball() -> None:
     world = ball_in_mouth()
     dribble(world, Velocity(0.0, 0.0, 8.0))
     assert not world.kickers["cyan1"].mouth.holds_ball
+
+
+@pytest.mark.parametrize("speed_m_s", [-0.3, -1.0])
+def test_two_rivals_pull_at_the_ball_equally(speed_m_s: float) -> None:
+    world = world_with(cyan1=Pose(-IN_MOUTH_M, 0.0, 0.0), magenta1=Pose(IN_MOUTH_M, 0.0, math.pi))
+    for _ in range(20):
+        for name, robot in world.robots.items():
+            robot.drive.command(wheels_of(Velocity(speed_m_s, 0.0, 0.0), 0.2), world.time_us)
+            world.kickers[name].command(KickerCommand(0, 0.0, dribble=True), world.time_us)
+        world.advance(TICK_US)
+        assert world.ball.body.position == pytest.approx((0.0, 0.0), abs=1e-9)
 
 
 def test_without_ball_handling_driving_backwards_leaves_the_ball() -> None:
@@ -223,6 +241,13 @@ def test_robots_in_a_scrum_hardly_overlap() -> None:
         places = [robot.body.position for robot in world.robots.values()]
         closest_m = min(closest_m, *(one.get_distance(two) for one in places for two in places if one is not two))
     assert 0.49 < closest_m < 0.505
+
+
+def test_robots_that_overlap_are_pushed_apart() -> None:
+    world = world_with(cyan1=Pose(0.0, 0.0, 0.0), magenta1=Pose(0.44, 0.0, 0.0))
+    run(world, 40)
+    one, two = (robot.body.position for robot in world.robots.values())
+    assert one.get_distance(two) > 0.495
 
 
 def test_left_alone_the_world_loses_energy_until_it_rests() -> None:
