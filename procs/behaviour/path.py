@@ -69,7 +69,7 @@ def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: flo
 
 
 def _shrink(disc: Disc, start: Point, target: Point) -> Disc:
-    room_m = min(math.dist(disc.middle, start), math.dist(disc.middle, target)) - _CROWD_M
+    room_m = min(math.dist(disc.middle, start), math.dist(disc.middle, target) - _CROWD_M)
     return disc if disc.radius_m <= room_m else Disc(disc.middle, max(0.0, room_m))
 
 
