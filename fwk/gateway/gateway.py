@@ -5,7 +5,7 @@ import socket
 from typing import Protocol
 
 from fwk.aspects.logging import Logger
-from fwk.bus import wire
+from fwk.bus import sync, wire
 from fwk.bus.ports import Ports
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver
@@ -117,7 +117,7 @@ class Gateway:
             -1,
             -1,
         )
-        self._sender.publish(b"fwk/done", done.encode(), self._ports.sync)
+        self._sender.publish(sync.DONE, sync.encode_done(done), self._ports.sync)
 
     def _ask_for_records(self) -> None:
         fetch = fetch_t()

@@ -1,15 +1,16 @@
 """The host process: answers each tick with one iteration of each of its components and one done."""
 
 import select
+import socket
+import struct
 import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
-from typing import Any
 
 from fwk.aspects.logging import Logger
 from fwk.aspects.vision import Ring
-from fwk.bus import wire
+from fwk.bus import sync, wire
 from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender, multicast_receiver
@@ -64,12 +65,12 @@ class Host:
         local = [channel for channel in read if channel.name in written]
         self.inputs = Inputs(plan, read, local, assignment.host, assignment.run, self._sender, self._complaints)
         self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local)
-        self._stages = sorted({stage for component in self._own for stage in component.stages})
-        self._sockets = {stage: multicast_receiver(self._ports.stage(stage)) for stage in self._stages}
+        stages = sorted({stage for component in self._own for stage in component.stages})
+        listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
+        self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
         self._poller = select.poll()
-        for source in (*self._sockets.values(), self._sender.socket):
-            self._poller.register(source, select.POLLIN)
-        self._poller.register(wakeup, select.POLLIN)
+        for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
+            self._poller.register(descriptor, select.POLLIN)
         self._runners: dict[str, Runner] = {}
         self._waiting: dict[str, dict[str, list[bytes]]] = {}  # what each component has not seen yet, by channel
         self._readers: dict[int, list[str]] = {
@@ -89,12 +90,13 @@ class Host:
         try:
             self._init()
             while not self._stopping():
-                self._poller.poll(READY_REPORT_MS if self._answered[0] == 0 else REPORT_US // 1000)
-                self._handle_own()
-                for stage, source in self._sockets.items():
-                    tick = self._newest_tick(source)
-                    if tick is not None:
-                        self._answer(tick, stage)
+                for descriptor, _ in self._poller.poll(READY_REPORT_MS if self._answered[0] == 0 else 1000):
+                    source = self._sockets.get(descriptor)
+                    tick = self._receive_tick(source[1]) if source else None
+                    if source and tick:
+                        self._answer(tick, source[0])
+                    elif not source:
+                        self._handle_own()
                 if monotonic_us() >= self._report_us:
                     self._report()
             self._finalize()
@@ -129,30 +131,26 @@ class Host:
                 runner.component.finalize()
             self.figures[name].state = "stopped"
 
-    def _newest_tick(self, source: Any) -> tick_t | None:
-        newest = None
-        while True:
-            try:
-                datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
-            except BlockingIOError:
-                return newest
-            try:
-                if address[1] != self._ports.supervisor:
-                    raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
-                message = wire.Assembler().feed(datagram, address[1])
-                tick = tick_t.decode(message[1] if message else b"")
-            except (MessageError, ValueError) as error:
-                self._complaints("fwk/tick", f"{error}; refused")
-                continue
-            if tick.run == self._assignment.run:
-                newest = tick
+    def _receive_tick(self, source: socket.socket) -> tick_t | None:
+        try:
+            datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
+        except BlockingIOError:
+            return None
+        try:
+            if address[1] != self._ports.supervisor:
+                raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
+            tick = sync.decode_tick(wire.short(datagram)[1])
+        except MessageError as error:
+            self._complaints("fwk/tick", f"{error}; refused")
+            return None
+        return tick if tick.run == self._assignment.run else None
 
     def _answer(self, tick: tick_t, stage: int) -> None:
         if self._assignment.host in tick.absent:
             return
         if (tick.tick, stage) <= self._answered:
             if (tick.tick, stage) == self._answered:
-                self._sender.publish(b"fwk/done", self._done, self._ports.sync)
+                self._sender.publish(sync.DONE, self._done, self._ports.sync)
             return
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
         if self._answered[0] == 0 and tick.tick > 1:
@@ -188,29 +186,29 @@ class Host:
         done.tick, done.stage, done.next_time_us = tick.tick, stage, next_us
         done.busy_us = monotonic_us() - began_us
         done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
-        self._done = done.encode()
-        self._sender.publish(b"fwk/done", self._done, self._ports.sync)
+        self._done = sync.encode_done(done)
+        self._sender.publish(sync.DONE, self._done, self._ports.sync)
 
     def _handle_own(self) -> bool:
         """Handles what was sent to this host's own port; false when it is time to stop."""
         while True:
             try:
-                datagram, address = self._sender.socket.recvfrom(wire.DATAGRAM_MAX)
+                datagram = self._sender.socket.recv(wire.DATAGRAM_MAX)
             except (BlockingIOError, ConnectionRefusedError):
                 return not self._stopping()
             try:
-                message = wire.Assembler().feed(datagram, address[1])
-                if message and message[0] == b"fwk/fetch":
-                    fetch = fetch_t.decode(message[1])
+                channel, data = wire.short(datagram)
+                if channel == b"fwk/fetch":
+                    fetch = fetch_t.decode(data)
                     if fetch.run == self._assignment.run:
                         self._outputs.answer(fetch)
-                elif message and message[0] == b"fwk/gone":
-                    gone = gone_t.decode(message[1])
+                elif channel == b"fwk/gone":
+                    gone = gone_t.decode(data)
                     if gone.run == self._assignment.run:
                         self._give_up(gone)
                 else:
                     raise MessageError("neither fetch nor gone")
-            except (MessageError, ValueError) as error:
+            except (MessageError, ValueError, struct.error) as error:
                 self._complaints("fwk/fetch", f"{error}; refused")
 
     def _give_up(self, gone: gone_t) -> None:

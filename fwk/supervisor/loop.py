@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Callable
 
 from fwk.aspects.logging import Logger
+from fwk.bus import sync
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
@@ -50,6 +51,7 @@ class MainLoop:
         self._log = log
         self._interrupted = interrupted
         self._ports = Ports.of(plan)
+        self._gateway = self._ports.gateway
         self._lockstep = plan.clock == "simulated"
         self._stage_time_us = plan.stage_time_us or plan.period_us
         self._by_stage = [
@@ -141,7 +143,7 @@ class MainLoop:
         tick.n_voids = len(tick.voids)
         tick.absent = [entry.index for entry in members if entry not in told]
         tick.n_absent = len(tick.absent)
-        self._sender.publish(b"fwk/tick", tick.encode(), self._ports.stage(self._stage))
+        self._sender.publish(sync.TICK, sync.encode_tick(tick), self._ports.stage(self._stage))
 
     def _voids(self, since: int) -> list[void_t]:
         made = []
@@ -153,7 +155,7 @@ class MainLoop:
         return made
 
     def _on_done(self, done: done_t) -> None:
-        if done.host == self._ports.gateway:
+        if done.host == self._gateway:
             self.recorded = max(self.recorded, done.tick)
             return
         entry = self._hosts.table[done.host]

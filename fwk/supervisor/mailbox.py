@@ -3,9 +3,10 @@
 import os
 import select
 import signal
+import struct
 from collections.abc import Callable
 
-from fwk.bus import wire
+from fwk.bus import sync, wire
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import multicast_receiver
 from fwk.clock import US_PER_S, sleep_s
@@ -24,7 +25,8 @@ class Mailbox:
         self.on_done: Callable[[done_t], None] = lambda _: None
         self.on_actual: Callable[[actual_t], None] = lambda _: None
         self.signals: list[int] = []
-        self._ports = ports
+        self._first_host = ports.host(0)
+        self._assembler = wire.Assembler()
         self._run = run
         self._complain = complain
         self._socket = multicast_receiver(ports.sync)
@@ -67,33 +69,30 @@ class Mailbox:
         os.read(self._wakeup, 1024)
 
     def _receive(self) -> None:
-        while True:
-            try:
-                datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
-            except BlockingIOError:
-                return
-            try:
-                self._dispatch(datagram, address[1])
-            except (MessageError, ValueError) as error:
-                self._complain("fwk/sync", f"{error}; refused")
+        try:
+            datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
+        except BlockingIOError:
+            return
+        try:
+            self._dispatch(datagram, address[1])
+        except (MessageError, ValueError, struct.error) as error:
+            self._complain("fwk/sync", f"{error}; refused")
 
     def _dispatch(self, datagram: bytes, source: int) -> None:
-        message = wire.Assembler().feed(datagram, source)
-        if message is None:
-            return
-        if message[0] == b"fwk/done":
-            done = done_t.decode(message[1])
+        channel, data = self._assembler.feed(datagram, source) or (b"", b"")
+        if channel == sync.DONE:
+            done = sync.decode_done(data)
             self._check(done, source)
             if done.run == self._run:
                 self.on_done(done)
-        elif message[0] == b"fwk/actual":
-            actual = actual_t.decode(message[1])
+        elif channel == b"fwk/actual":
+            actual = actual_t.decode(data)
             self._check(actual, source)
             if actual.run == self._run:
                 self.on_actual(actual)
-        else:
-            raise MessageError(f"channel {message[0]!r} does not belong on the sync bus")
+        elif channel:
+            raise MessageError(f"channel {channel!r} does not belong on the sync bus")
 
     def _check(self, message: done_t | actual_t, source: int) -> None:
-        if not 0 <= message.host <= self._ports.gateway or source != self._ports.host(message.host):
+        if source - self._first_host != message.host:
             raise MessageError(f"datagram from port {source}, which is not host {message.host}'s")

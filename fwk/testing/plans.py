@@ -16,7 +16,7 @@ def plan_of(
     groups: Sequence[Sequence[str]] | None = None,
     period_s: float = 0.05,
     stages: tuple[str, ...] = DEFAULT_STAGES,
-    restart: RestartPolicy = RestartPolicy(),
+    restart: RestartPolicy | None = None,
     **fields: Any,
 ) -> Plan:
     """The plan of some components; `groups` names those that share a process, otherwise each has its own.
@@ -49,7 +49,7 @@ def plan_of(
                 origins={},
                 channels=ports,
                 host=host_of[wish.name],
-                restart=restart,
+                restart=restart or RestartPolicy(),
             )
         )
     hosts = [
