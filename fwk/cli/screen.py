@@ -22,8 +22,9 @@ _LEAST_LOG_ROWS = 3
 
 def screen(view: View, rows: int) -> RenderableType:
     """The whole picture for a terminal of `rows` lines; `Text` lines are cut at its right edge, never wrapped."""
-    headline = Text(view.headline or view.plan.file, justify="center", style="bold", no_wrap=True)
-    parts: list[RenderableType] = [Panel(headline, title=view.plan.name)]
+    headline = view.headline
+    words = Text(headline or view.plan.name, justify="center", style="bold", no_wrap=True)
+    parts: list[RenderableType] = [Panel(words, title=view.plan.name if headline else None)]
     status = view.status
     if status is None:
         parts.append(Text("starting ...", style="dim"))
