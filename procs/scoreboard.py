@@ -58,6 +58,7 @@ def summary(newest: Newest) -> list[str]:
     state = newest(GAME_STATE)
     if state is None:
         return []
-    difference = state.score_cyan - state.score_magenta
-    verdict = "a draw" if not difference else f"{'cyan' if difference > 0 else 'magenta'} leads"
+    leader = "cyan" if state.score_cyan > state.score_magenta else "magenta"
+    over = state.state == game_state_t.FROZEN and state.half > 1
+    verdict = "a draw" if state.score_cyan == state.score_magenta else f"{leader} {'wins' if over else 'leads'}"
     return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}"]

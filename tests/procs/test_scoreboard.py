@@ -54,5 +54,10 @@ def test_the_summary_names_who_leads(cyan: int, magenta: int, words: str) -> Non
     assert summary(lambda _: now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
 
 
+def test_after_the_final_whistle_somebody_has_won() -> None:
+    now = state(score_cyan=2, score_magenta=1, half=2, state=game_state_t.FROZEN, time_in_half_s=900.0)
+    assert summary(lambda _: now)[1] == "cyan wins after 15:00 of half 2"
+
+
 def test_long_halves_keep_counting_minutes() -> None:
     assert play_time(6000.0) == "100:00"
