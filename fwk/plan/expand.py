@@ -120,4 +120,8 @@ class _Maker:
             self.made[name] = asked
 
     def _filled(self, node: Node, asked: Asked) -> Node:
-        return substitute(node, asked.values, lambda place, text: self._problems.add(place, asked.name, text))
+        def report(place: str, text: str) -> None:
+            self._problems.add(place, asked.name, text)
+            self._files.gaps.add("*")
+
+        return substitute(node, asked.values, report) or Node({}, node.place)

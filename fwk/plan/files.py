@@ -145,6 +145,8 @@ def _gap(path: NodePath) -> set[str]:
     """Namespaces that lack a component when the value at a path is left out."""
     if not path:
         return {"*"}
+    if path[-1] == "use":
+        return _gap(path[:-1])
     if path[0] in ("components", "robots") and len(path) == 2:
         return {str(path[1]).rpartition("/")[0] if path[0] == "components" else str(path[1])}
     return (

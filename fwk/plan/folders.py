@@ -7,26 +7,27 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fwk.plan.errors import Problems
-from fwk.plan.files import INSTALLED, shown
+from fwk.plan.files import FOLDER, INSTALLED, shown
 from fwk.typegen import TypeGenerationError, generate
 
 PARTS = ("lcmtypes", "procs")
 _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
+_LINE = re.compile(r" : (\d+)$", re.M)
 
 
 def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
     """Where the modules and .lcm files of launch files are looked for, besides the installed ones.
 
-    That is the folder of each launch file, if there is Python in it, and the folder above, if `lcmtypes/` or `procs/`
-    lie there.
+    That is the folder of each launch file, and the folder above, if the one below is called `launch` or if `lcmtypes/`
+    or `procs/` lie there.
     """
     found = [
         folder
         for beside in launch_folders
         for folder in (beside, beside.parent)
-        if any((folder / part).is_dir() for part in PARTS) or (folder == beside and any(folder.glob("*.py")))
+        if folder == beside or beside.name == FOLDER or any((folder / part).is_dir() for part in PARTS)
     ]
-    return tuple(str(folder) for folder in dict.fromkeys(found) if folder != INSTALLED)
+    return tuple(str(folder) for folder in dict.fromkeys(found) if folder not in (INSTALLED, INSTALLED / FOLDER))
 
 
 def join(folders: Sequence[str], problems: Problems) -> None:
@@ -41,10 +42,17 @@ def join(folders: Sequence[str], problems: Problems) -> None:
         try:
             generate(types)
         except TypeGenerationError as error:
-            problems.add(shown(types), "", str(error))
+            _tell(str(error), problems)
         except OSError as error:
             problems.add(shown(types), "", f"cannot write Python classes there: {error.strerror}")
     importlib.invalidate_caches()
+
+
+def _tell(refusal: str, problems: Problems) -> None:
+    """What lcm-gen said: `FILE: REASON`, then `FILE : LINE`, then the line itself."""
+    file, _, reason = refusal.splitlines()[0].partition(": ")
+    line = _LINE.search(refusal)
+    problems.add(f"{shown(Path(file))}:{line[1]}" if line else shown(Path(file)), "", reason)
 
 
 def _check_package(source: Path, problems: Problems) -> None:

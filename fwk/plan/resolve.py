@@ -52,7 +52,9 @@ def add_settings(files: Files, components: Sequence[Asked], problems: Problems) 
             if not meant and not files.may_hide(pattern):
                 problems.add(node.place, "", f"no component '{pattern}'; {nearest(pattern, names)}")
             for asked in meant:
-                asked.config.append((number, substitute(node, asked.values, partial(_report, problems, asked.name))))
+                filled = substitute(node, asked.values, partial(_report, problems, asked.name))
+                if filled:
+                    asked.config.append((number, filled))
 
 
 def _report(problems: Problems, who: str, place: str, text: str) -> None:

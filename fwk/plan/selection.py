@@ -19,9 +19,11 @@ def nearest(pattern: str, names: Sequence[str]) -> str:
 
 def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], problems: Problems) -> list[str]:
     """The names that `--only` and `--without` leave."""
+    idle = False
     for option, patterns in (("--only", only), ("--without", without)):
         for pattern in patterns:
             if not any(matches(name, pattern) for name in names):
+                idle = True
                 problems.add(option, "", f"'{pattern}' means no component; {nearest(pattern, names)}")
     kept = [
         name
@@ -29,7 +31,7 @@ def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], pr
         if (not only or any(matches(name, pattern) for pattern in only))
         and not any(matches(name, pattern) for pattern in without)
     ]
-    if names and not kept:
+    if names and not kept and not idle:
         problems.add("--without" if without else "--only", "", "no component is left; leave a pattern out")
     return kept
 

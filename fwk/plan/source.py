@@ -99,11 +99,12 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
         return _Converter(shown, problems).convert(root, 1) if root else Node({}, f"{shown}:1")
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
-        reason = " ".join(str(part) for part in (error.context, error.problem) if part)
+        start = f"{error.context} that begins in line {error.context_mark.line + 1}, " if error.context_mark else ""
+        reason = f"{start}{error.problem}"
         problems.add(f"{shown}:{mark.line + 1 if mark else 1}", "", f"this is no YAML: {reason}")
     except yaml.reader.ReaderError as error:
         line = text[: error.position].count("\n") + 1
-        problems.add(f"{shown}:{line}", "", f"this is no YAML: character {error.character!r} is not allowed")
+        problems.add(f"{shown}:{line}", "", f"this is no YAML: character {chr(error.character)!r} is not allowed")
     finally:
         if loader:
             loader.dispose()

@@ -36,5 +36,5 @@ def stages_in(asked: Asked, declared: Sequence[str], stages: Sequence[str], prob
         if name not in stages:
             problems.add(place, asked.name, f"no stage '{name}'; {hint(name, stages)}")
     if not wanted:
-        problems.add(place, asked.name, f"it takes part in no stage; {hint('', stages)}")
+        problems.add(place, asked.name, "it takes part in no stage; name at least one")
     return tuple(index for index, name in enumerate(stages) if name in wanted)

@@ -10,22 +10,24 @@ from fwk.plan.source import Node
 _MARK = re.compile(r"\{([A-Za-z_]\w*)\}")
 
 
-def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str], None]) -> Node:
+def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str], None]) -> Node | None:
     """The same tree with every `{key}` in its texts replaced.
 
-    A text that is nothing but `{key}` takes the value as it is, so that numbers stay numbers. An unknown key goes to
-    `report` as place and text.
+    A text that is nothing but `{key}` takes the value as it is, so that numbers stay numbers. A text with an unknown
+    key goes to `report` as place and message, and is left out.
     """
     if isinstance(node.value, dict):
-        return Node({key: substitute(below, values, report) for key, below in node.value.items()}, node.place)
+        found = {key: substitute(below, values, report) for key, below in node.value.items()}
+        return Node({key: below for key, below in found.items() if below}, node.place)
     if isinstance(node.value, list):
-        return Node([substitute(below, values, report) for below in node.value], node.place)
+        items = [substitute(below, values, report) for below in node.value]
+        return Node([below for below in items if below], node.place)
     if not isinstance(node.value, str) or "{" not in node.value:
         return node
     for key in _MARK.findall(node.value):
         if key not in values:
             report(node.place, f"nothing says what '{{{key}}}' in '{node.value}' stands for; {hint(key, values)}")
-            return node
+            return None
     whole = _MARK.fullmatch(node.value)
     if whole:
         return Node(values[whole[1]], node.place)

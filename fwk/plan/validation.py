@@ -1,6 +1,7 @@
 """Checks values from a file against a pydantic model and words what does not fit, with the line it stands in."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from types import NoneType, UnionType
 from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
 
@@ -15,31 +16,48 @@ Path = tuple[str | int, ...]
 Report = Callable[[Path, str, str], None]
 """Takes a mistake: path of the value, its place, text."""
 
+_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type")
+_MAPPING = "it should be a mapping with keys such as 'name: value'"
+
+
+@dataclass(frozen=True)
+class _Mistake:
+    path: Path
+    text: str
+    missing: bool
+
 
 def validated(model: type[M], node: Node, report: Report, what: str) -> M | None:
     """The values as an instance of the model; every mistake goes to `report`. `what` is the word for a key.
 
     What does not fit is left out of the result, so that the rest can be looked at too. None if nothing is left.
     """
+    first = True
     while True:
         made, mistakes = _tried(model, node, what)
-        for path, text in mistakes:
-            report(path, node.at(*path).place, text)
+        for mistake in mistakes:
+            if first or not mistake.missing:  # later on, what is missing was left out here
+                report(mistake.path, node.at(*mistake.path).place, mistake.text)
         if not mistakes:
             return made
-        if any(path == () for path, _ in mistakes):
+        if any(mistake.path == () for mistake in mistakes):
             return None
-        for path in reversed(dict.fromkeys(path for path, _ in mistakes)):  # lists stay in order before their end
+        for path in reversed(
+            dict.fromkeys(mistake.path for mistake in mistakes)
+        ):  # lists stay in order before their end
             node = _without(node, path)
+        first = False
 
 
-def _tried(model: type[M], node: Node, what: str) -> tuple[M | None, list[tuple[Path, str]]]:
+def _tried(model: type[M], node: Node, what: str) -> tuple[M | None, list[_Mistake]]:
     try:
         made = model.model_validate(node.plain())
     except ValidationError as error:
-        found = error.errors(include_url=False)
-        return None, [(_path(node, details["loc"]), _text(model, node, details, what)) for details in found]
-    return made, _mixed_up(made.model_dump(), node, ())
+        return None, [
+            _Mistake(_path(node, found["loc"]), _text(model, node, found, what), found["type"] == "missing")
+            for found in error.errors(include_url=False)
+        ]
+    return made, [_Mistake(path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
 
 
 def _without(node: Node, path: Path) -> Node:
@@ -74,7 +92,11 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
         return f"'{_dotted(location[:-1])}' is {_short(node.at(*location[:-1]).plain())}; it should be longer"
     if kind == "missing":
         return f"the {what} '{_dotted(location)}' is missing; it has no default"
-    message = details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    message = (
+        _MAPPING
+        if kind in _NO_MAPPING
+        else details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    )
     path = _path(node, location)
     if not path:
         return message

@@ -1,0 +1,35 @@
+"""A folder of one's own for launch files, components and types, from which nothing stays behind."""
+
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from fwk.plan.load import LaunchOptions, load_plan
+from fwk.plan.model import Plan
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """An empty folder that is the current one."""
+    monkeypatch.chdir(tmp_path)
+    path, modules = list(sys.path), set(sys.modules)
+    yield tmp_path
+    sys.path[:] = path
+    for name in set(sys.modules) - modules:
+        module = sys.modules[name]
+        where = [getattr(module, "__file__", None) or "", *getattr(module, "__path__", [])]
+        if any(each.startswith(str(tmp_path)) for each in where):
+            del sys.modules[name]
+
+
+@pytest.fixture
+def load(folder: Path) -> Callable[..., Plan]:
+    """`load("components: ...", sets=["..."])`: the plan of a launch file `it.yaml` with this text."""
+
+    def loaded(text: str, **options: object) -> Plan:
+        (folder / "it.yaml").write_text(text)
+        return load_plan("it.yaml", LaunchOptions(**options))  # type: ignore[arg-type]
+
+    return loaded

@@ -1,0 +1,138 @@
+"""Small components for launch files under test."""
+
+from typing import Literal
+
+from pydantic import Field as Setting
+
+from fwk import Component, Config, Image, Reads, ReadsEach, TimeSource, VisionMaster, Writes, WritesEach, channel
+from lcmtypes.robot import frame_t, motor_command_t, odometry_t
+
+
+class Limits(Config):
+    speed_m_s: float = 2.0
+    """Fastest."""
+    turns: tuple[float, float] = (-1.0, 1.0)
+    """Least and greatest."""
+
+
+class WheelsConfig(Config):
+    gain: float = Setting(0.5, ge=0.0, le=1.0)
+    """Of the loop."""
+    count: int = 3
+    """Of wheels."""
+    brake: bool = True
+    """On when idle."""
+    mode: Literal["soft", "hard"] = "soft"
+    """Of braking."""
+    label: str = ""
+    """For people."""
+    limits: Limits = Limits()
+    """What it may do."""
+
+
+class Wheels(Component):
+    """Drives by `motor_command`, tells `odometry`."""
+
+    stage = ("sensor_acquire", "act_exec")
+    config: WheelsConfig
+    motor_command: Reads[motor_command_t]
+    odometry: Writes[odometry_t]
+
+
+class Pilot(Component):
+    """The other side of Wheels."""
+
+    stage = "act"
+    odometry: Reads[odometry_t]
+    motor_command: Writes[motor_command_t]
+
+
+class KeyedConfig(Config):
+    key: str
+    """Has to be said."""
+
+
+class Keyed(Component):
+    """Has a setting without a default."""
+
+    stage = "act"
+    config: KeyedConfig
+
+
+class Odometer(Component):
+    """Writes odometry, reads nothing."""
+
+    stage = "sensor_acquire"
+    odometry: Writes[odometry_t]
+
+
+class Watcher(Component):
+    """Reads every odometry."""
+
+    stage = "post_loop"
+    odometries: ReadsEach[odometry_t] = channel("*/odometry")
+
+
+class Feeder(Component):
+    """Writes the odometry of everybody who reads one."""
+
+    stage = "pre_loop"
+    feeds: WritesEach[odometry_t] = channel("*/odometry")
+
+
+class Reader(Component):
+    """Reads one odometry."""
+
+    stage = "think"
+    odometry: Reads[odometry_t]
+
+
+class Mistaken(Component):
+    """Reads `odometry` as another type."""
+
+    stage = "think"
+    odometry: Reads[motor_command_t]
+
+
+class Camera(Component):
+    """Gives out frames."""
+
+    stage = "sensor_acquire"
+    image: VisionMaster
+
+
+class Eye(Component):
+    """Looks at frames."""
+
+    stage = "sensor_prepare"
+    image: Image
+
+
+class Announcer(Component):
+    """Writes what looks like a camera's announcements, without frames."""
+
+    stage = "sensor_acquire"
+    image: Writes[frame_t]
+
+
+class Sun(Component):
+    """Owns time."""
+
+    stage = "pre_loop"
+    time_source: TimeSource
+
+
+class Stageless(Component):
+    """Forgot its stage."""
+
+
+class NotAComponent:
+    """Just a class."""
+
+
+def greet() -> str:
+    """Just a function."""
+    return "hello"
+
+
+answer = 42

@@ -1,0 +1,294 @@
+"""What the check says of components: modules, classes, settings, templates, needs."""
+
+from pathlib import Path
+
+from plan_mistakes import Broken, expected, rows, said
+
+
+@rows(
+    Broken(
+        "it.yaml:1: it/a: no module 'trakcer'; did you mean 'tracker'?",
+        """
+        components: {it/a: {use: trakcer}}
+        --- tracker.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'mine.trakcer'; did you mean 'mine.tracker'?",
+        """
+        components: {it/a: {use: mine.trakcer}}
+        --- mine/tracker.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'mine.tracker.inner'; there is mine.tracker, mine.tracker_inner",
+        """
+        components: {it/a: {use: mine.tracker.inner}}
+        --- mine/tracker.py
+        --- mine/tracker_inner.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: 'procs/omni_ball.py' is no module; write it as in Python: procs.omni_ball, or "
+        "procs.omni_ball:OmniBall",
+        "components: {it/a: {use: procs/omni_ball.py}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'without' defines no component; derive a class from fwk.Component",
+        """
+        components: {it/a: {use: without}}
+        --- without.py
+        from fwk import Component
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'several' defines several components; say which: several:One or several:Two",
+        """
+        components: {it/a: {use: several}}
+        --- several.py
+        from fwk import Component
+        class One(Component):
+            stage = "think"
+        class Two(One): ...
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'plan_parts' has no component 'Odmeter'; did you mean 'Odometer'?",
+        "components: {it/a: {use: plan_parts:Odmeter}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: plan_parts:NotAComponent is no component; derive it from fwk.Component",
+        "components: {it/a: {use: plan_parts:NotAComponent}}",
+    ),
+    Broken(
+        'it.yaml:1: it/a: plan_parts.Stageless: no stage; say for example: stage = "think"',
+        "components: {it/a: {use: plan_parts:Stageless}}",
+    ),
+)
+def test_modules_and_classes(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:1: it/a: cannot import 'typing_error': invalid syntax (typing_error.py:3)",
+        """
+        components: {it/a: {use: typing_error}}
+        --- typing_error.py
+
+        x = 1
+        if x ==
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'outer': NameError: name 'undefined' is not defined (inner.py:1)",
+        """
+        components: {it/a: {use: outer}}
+        --- outer.py
+        import inner
+        --- inner.py
+        def f(): return undefined
+        f()
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'hungry': ModuleNotFoundError: No module named 'pancakes' (hungry.py:1)",
+        """
+        components: {it/a: {use: hungry}}
+        --- hungry.py
+        import pancakes
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'leaving': SystemExit: 3 (leaving.py:1)",
+        """
+        components: {it/a: {use: leaving}}
+        --- leaving.py
+        raise SystemExit(3)
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'decoding': ValueError: '0.1' is no channel (decoding.py:3)",
+        """
+        components: {it/a: {use: decoding}}
+        --- decoding.py
+        import json
+        def hook(text):
+            raise ValueError(f"{text!r} is no channel")
+        json.loads("0.1", parse_float=hook)
+        """,
+    ),
+)
+def test_imports(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        """
+        it.yaml:4: it/wheels: no setting 'gian'; did you mean 'gain'?
+        it.yaml:5: it/wheels: 'count' is 'three'; it should be a valid integer, unable to parse string as an integer
+        it.yaml:6: it/wheels: 'brake' is 1; it should be true or false
+        it.yaml:7: it/wheels: 'mode' is 'sfot'; it should be 'soft' or 'hard'
+        it.yaml:8: it/wheels: 'label' is 5; it should be a valid string
+        it.yaml:10: it/wheels: 'limits.speed_m_s' is true; it should be a number
+        it.yaml:11: it/wheels: no setting 'limits.trns'; did you mean 'turns'?
+        it.yaml:14: it/wheels2: 'gain' is 1.5; it should be less than or equal to 1
+        it.yaml:14: it/wheels2: 'limits.turns' is [1]; it should be longer
+        """,
+        """
+        components:
+          it/pilot: {use: plan_parts:Pilot}
+          it/wheels: {use: plan_parts:Wheels, config: {
+            gian: 0.3,
+            count: three,
+            brake: 1,
+            mode: sfot,
+            label: 5,
+            limits: {
+              speed_m_s: true,
+              trns: [1, 2]
+              }
+            }}
+          it/wheels2: {use: plan_parts:Wheels, channels: {odometry: two}, config: {gain: 1.5, limits: {turns: [1]}}}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: the setting 'key' is missing; it has no default",
+        "components: {it/a: {use: plan_parts:Keyed}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: it has no settings; leave 'config' out, or give the class a 'config: MyConfig'",
+        "components: {it/a: {use: plan_parts:Odometer, config: {gain: 1}}}",
+    ),
+    Broken(
+        """
+        it.yaml:3: it/a: no setting 'gain'; there is key
+        it.yaml:5: no component 'it/c'; there is it/a, it/b
+        it.yaml:6: no component 'itt'; did you mean 'it'?
+        """,
+        """
+        components: {it/a: {use: plan_parts:Keyed, config: {key: x}}, it/b: {use: plan_parts:Odometer}}
+        config:
+          it/a: {gain: 1}
+          "*/a": {key: y}
+          it/c: {gain: 1}
+          itt: {}
+        """,
+    ),
+    Broken(
+        """
+        --set: 'it/a.key' is no PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
+        --set: no setting 'seeed'; did you mean 'seed'?
+        --set: no setting 'it/a'; write NAME.SETTING=VALUE
+        --set: '[1' is no YAML value; write a number, true, false, text, [a, b] or {a: 1}
+        --set: no component 'it/b'; there is it/a
+        --set: it/a: 'key' is 5; it should be a valid string
+        --set: it/a: no setting 'kye'; did you mean 'key'?
+        """,
+        "components: {it/a: {use: plan_parts:Keyed, config: {key: x}}}",
+        {"sets": ["it/a.key", "seeed=1", "it/a=1", "it/b.key=2", "it/a.x=[1", "it/a.kye=1", "it/a.key=5"]},
+    ),
+)
+def test_settings(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:3: cyan1: no template 'bto'; did you mean 'bot'?",
+        """
+        templates: {bot: {a: {use: plan_parts:Odometer}}}
+        robots:
+          cyan1: {use: bto, config: {a: {x: 1}}}
+          cyan2: {use: bot}
+        """,
+    ),
+    Broken(
+        "it.yaml:3: cyan1: robot 'cyan1' has no component 'odo'; did you mean 'odom'?",
+        """
+        templates: {bot: {odom: {use: plan_parts:Odometer}}}
+        robots: {cyan1: {use: bot, config: {
+          odo: {x: 1}}}}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: cyan1/a (and 2 more): no module 'is_mine'; did you mean 'it_is_mine'?",
+        """
+        templates: {bot: {
+          a: {use: is_mine}}}
+        robots: {cyan1: {use: bot}, cyan2: {use: bot}, cyan3: {use: bot}}
+        --- it_is_mine.py
+        """,
+    ),
+    Broken(
+        "it.yaml:2: cyan1/a: nothing says what '{temm}' in '{temm}*/odometry' stands for; did you mean 'team'?",
+        """
+        templates: {bot: {
+          a: {use: plan_parts:Watcher, channels: {odometries: "{temm}*/odometry"}}}}
+        robots: {cyan1: {use: bot, values: {team: cyan}}}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:2: there is a template 'bot' at part.yaml:1 already; rename one
+        it.yaml:3: cyan1/a: there is a component of this name at part.yaml:2 already; rename one
+        it.yaml:4: there is a robot 'cyan1' at part.yaml:3 already; rename one
+        """,
+        """
+        include: part.yaml
+        templates: {bot: {b: {use: plan_parts:Camera}}}
+        components: {cyan1/a: {use: plan_parts:Odometer}}
+        robots: {cyan1: {use: bot}}
+        --- part.yaml
+        templates: {bot: {b: {use: plan_parts:Camera}}}
+        components: {cyan1/a: {use: plan_parts:Odometer}}
+        robots: {cyan1: {use: bot}}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: '1/a' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball",
+        """
+        components:
+          1/a: {use: plan_parts:Odometer}
+        """,
+    ),
+)
+def test_templates_and_names(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:3: it/b: it needs 'it/aa', which is not there; did you mean 'it/a'?",
+        """
+        components:
+          it/a: {use: plan_parts:Odometer}
+          it/b: {use: plan_parts:Watcher, needs: [aa]}
+        """,
+    ),
+    Broken(
+        "it.yaml:3: it/b: components need each other in a ring: it/b -> it/c -> it/d -> it/b; leave one 'needs' out",
+        """
+        components:
+          it/a: {use: plan_parts:Odometer, needs: it/b}
+          it/b: {use: plan_parts:Watcher, needs: [c]}
+          it/c: {use: plan_parts:Watcher, needs: [it/d]}
+          it/d: {use: plan_parts:Watcher, needs: b}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: components need each other in a ring: it/a -> it/a; leave one 'needs' out",
+        "components: {it/a: {use: plan_parts:Odometer, needs: a}}",
+    ),
+    Broken(
+        "it.yaml:3: b/sun: two time sources: a/sun (it.yaml:2) and b/sun; keep one",
+        """
+        components:
+          a/sun: {use: plan_parts:Sun}
+          b/sun: {use: plan_parts:Sun}
+        """,
+    ),
+)
+def test_needs_and_time(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)

@@ -1,0 +1,255 @@
+"""What the check says of YAML, keys, includes and the run's own values."""
+
+from pathlib import Path
+
+from plan_mistakes import Broken, expected, rows, said
+
+
+@rows(
+    Broken(
+        "it.yaml:4: this is no YAML: while parsing a flow sequence that begins in line 3, "
+        "expected ',' or ']', but got '<stream end>'",
+        """
+        components:
+          it/a: {use: plan_parts:Odometer}
+        stages: [sense,
+        name: x
+        """,
+    ),
+    Broken("it.yaml:2: this is no YAML: character '\\x07' is not allowed", "name: x\n# \x07"),
+    Broken(
+        "it.yaml:4: 'it/a' stands here a second time, first in line 2; keep one",
+        """
+        components:
+          it/a: {use: plan_parts:Odometer}
+          it/b: {use: plan_parts:Camera}
+          it/a: {use: plan_parts:Watcher}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: a key is one word, not a list or a mapping",
+        """
+        components: {it/a: {use: plan_parts:Odometer}}
+        [a, b]: 1
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:2: this value contains itself; write it out
+        it.yaml:2: 'outside.x' is empty; it should be a valid string
+        """,
+        """
+        components: {it/a: {use: plan_parts:Odometer}}
+        outside: &all {x: *all}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: the tag '!secret' is not known here; leave it out",
+        "seed: !secret 5\ncomponents: {it/a: {use: plan_parts:Odometer}}",
+    ),
+    Broken(
+        "it.yaml:1: 'six' is no int",
+        "seed: !!int six\ncomponents: {it/a: {use: plan_parts:Odometer}}",
+    ),
+    Broken("it.yaml:1: it should be a mapping with keys such as 'name: value'", "[a, b]"),
+    Broken("it.yaml: there is no component in it; name one under 'components:'", "name: empty"),
+)
+def test_yaml(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:1: no key 'componets'; did you mean 'components'?",
+        """
+        componets:
+          it/a: {use: plan_parts:Odometer}
+        components:
+          it/b: {use: plan_parts:Odometer}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: no key 'components.it/a.confg'; did you mean 'config'?",
+        """
+        components:
+          it/a: {use: plan_parts:Odometer, confg: {gain: 1}}
+        """,
+    ),
+    Broken(
+        "it.yaml:4: no key 'components.it/a.restart.limits'; did you mean 'limit'?",
+        """
+        components:
+          it/a:
+            use: plan_parts:Odometer
+            restart: {limits: 3}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: no key 'robots.cyan1.template'; there is config, use, values",
+        """
+        robots: {cyan1: {use: bot, template: bot}}
+        templates: {bot: {a: {use: plan_parts:Odometer}}}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: the key 'components.it/a.use' is missing; it has no default",
+        """
+        components:
+          it/a: {ready_timeout_s: 3}
+          it/b: {use: plan_parts:Odometer}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: 'components.it/a' is empty; it should be a mapping with keys such as 'name: value'",
+        """
+        components:
+          it/a:
+          it/b: {use: plan_parts:Odometer}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: 'robots.cyan1.values.team' is [1]; it should be a word or a number",
+        """
+        robots: {cyan1: {use: bot, values: {team: [1]}}}
+        templates: {bot: {a: {use: plan_parts:Odometer}}}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:1: 'period_s' is 0; it should be greater than or equal to 0.001
+        it.yaml:2: 'clock' is 'real'; it should be 'simulated' or 'wall'
+        it.yaml:3: 'speed' is -1; it should be a number above 0, or max
+        it.yaml:4: 'seed' is true; it should be a number
+        it.yaml:5: 'stage_time_s' is 'long'; it should be a valid number, unable to parse string as a number
+        """,
+        """
+        period_s: 0
+        clock: real
+        speed: -1
+        seed: true
+        stage_time_s: long
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: 'tcpq://' is no public bus; lcm-spy and Java read only udpm://ADDRESS:PORT, such as "
+        "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304",
+        """
+        public_url: tcpq://
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:1: scoreboard: module 'plan_parts' has no 'gret'; did you mean 'greet'?
+        it.yaml:2: video: 42 is no function
+        """,
+        """
+        scoreboard: plan_parts:gret
+        video: plan_parts:answer
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: scoreboard: 'plan_parts' is no function; write module:function",
+        """
+        scoreboard: plan_parts
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+)
+def test_keys_and_values(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:1: there is no 'otter.yaml' to include; did you mean 'other.yaml'?",
+        """
+        include: otter.yaml
+        --- other.yaml
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "b.yaml:2: files include each other in a ring: it.yaml -> a.yaml -> b.yaml -> it.yaml; leave one out",
+        """
+        include: [a.yaml]
+        components: {it/a: {use: plan_parts:Odometer}}
+        --- a.yaml
+        include: b.yaml
+        --- b.yaml
+        name: b
+        include: it.yaml
+        """,
+    ),
+    Broken(
+        "parts/a.yaml:1: no key 'nam'; did you mean 'name'?",
+        """
+        include: [parts/a.yaml]
+        components: {it/a: {use: plan_parts:Odometer}}
+        --- parts/a.yaml
+        nam: a
+        """,
+    ),
+    Broken(
+        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, outside, period_s, public_url, "
+        "scoreboard, seed, speed, stage_time_s, video",
+        """
+        components: {it/a: {use: plan_parts:Odometer}}
+        --- it.host.yaml
+        components: {it/b: {use: plan_parts:Odometer}}
+        """,
+    ),
+)
+def test_several_files(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:1: 'no-name' is no name of a stage; use letters, digits and '_'",
+        """
+        stages: [sensor_acquire, no-name]
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "it.yaml:3: stage 'sensor_acquire' stands here twice; keep one",
+        """
+        stages:
+          - sensor_acquire
+          - sensor_acquire
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: there are 31 stages; a main loop has 1 to 30",
+        f"""
+        stages: [sensor_acquire, {", ".join(f"s{n}" for n in range(30))}]
+        components: {{it/a: {{use: plan_parts:Odometer}}}}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: it/a: no stage 'sensor_acquire'; did you mean 'sensor_aquire'?",
+        """
+        stages: [sensor_aquire]
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        "it.yaml:4: it/a: no stage 'thinking'; did you mean 'think'?",
+        """
+        components:
+          it/a:
+            use: plan_parts:Odometer
+            stage: [worldstate, thinking]
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: it takes part in no stage; name at least one",
+        "components: {it/a: {use: plan_parts:Odometer, stage: []}}",
+    ),
+)
+def test_stages(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
