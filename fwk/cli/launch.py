@@ -1,6 +1,8 @@
 """`fwk-launch FILE`: checks a launch file, runs it in the foreground, says how it went."""
 
-from difflib import get_close_matches
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated
 
@@ -8,9 +10,9 @@ import typer
 
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
-from fwk.cli.run_dir import make_run_dir
+from fwk.cli.run_dir import RunDirError, make_run_dir
 from fwk.cli.summary import summary
-from fwk.plan.errors import PlanError
+from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
@@ -18,7 +20,6 @@ from fwk.supervisor import PortsInUse, RunOptions, run
 
 RUN_BROKEN = 1
 BAD_INPUT = 2
-INTERRUPTED_TWICE = 130
 RECORDING = "log.lcm"
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
@@ -67,7 +68,7 @@ def launch(
 ) -> None:
     """Runs a launch file in the foreground; Ctrl-C stops everything.
 
-    Exit codes: 0 all went well, 1 a component failed or the run broke, 2 bad input, 130 interrupted twice.
+    Exit codes: 0 all went well, 1 a component failed or the run broke, 2 bad input. Ctrl-C is no failure.
     """
     if record and no_record:
         raise typer.BadParameter("--record and --no-record exclude each other; keep one")
@@ -82,31 +83,35 @@ def launch(
         speed=speed,
         bus_port=bus_port,
     )
-    plan = _plan(file, wishes)
-    if video and not plan.video:
-        raise typer.BadParameter(f"--video: {plan.file} names no drawing; add a line 'video: module:function'")
-    if debug and debug not in (names := [component.name for component in plan.components]):
-        near = get_close_matches(debug, names, 1)
-        hint = f"did you mean '{near[0]}'?" if near else f"there are: {', '.join(sorted(names))}"
-        raise typer.BadParameter(f"--debug: no component '{debug}' in {plan.file}; {hint}")
-    run_dir = _run_dir(plan)
-    options = RunOptions(
-        run_dir,
-        ticks=ticks,
-        time_s=time,
-        speed=plan.speed,
-        record=None if no_record else record or run_dir / RECORDING,
-        video=video,
-        debug=debug,
-        plain=plain or debug is not None,
-    )
-    raise typer.Exit(_run(plan, options))
+    with _ending():
+        plan = load_plan(file, wishes)
+        _check(plan, debug, video)
+        run_dir = make_run_dir(plan.name)
+        options = RunOptions(
+            run_dir,
+            ticks=ticks,
+            time_s=time,
+            speed=plan.speed,
+            record=None if no_record else record or run_dir / RECORDING,
+            video=video,
+            debug=debug,
+            plain=plain or debug is not None,
+        )
+        outcome = run(plan, options)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
+    for line in summary(plan, options, outcome):
+        typer.echo(line)
+    if options.record and options.video:
+        _draw(plan, options.record, options.video)
+    raise typer.Exit(outcome.exit_code)
 
 
-def _plan(file: str, wishes: LaunchOptions) -> Plan:
+@contextmanager
+def _ending() -> Iterator[None]:
+    """Turns what keeps a run from starting into a sentence and an exit code."""
     try:
-        return load_plan(file, wishes)
-    except PlanError as error:
+        yield
+    except (PlanError, PortsInUse, RunDirError) as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error
     except KeyboardInterrupt as interrupt:
@@ -114,30 +119,15 @@ def _plan(file: str, wishes: LaunchOptions) -> Plan:
         raise typer.Exit(0) from interrupt
 
 
-def _run_dir(plan: Plan) -> Path:
-    try:
-        return make_run_dir(plan.name)
-    except OSError as error:
-        typer.echo(f"{error.filename}: cannot create the run directory there: {error.strerror}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
+def _check(plan: Plan, debug: str | None, video: Path | None) -> None:
+    if video and not plan.video:
+        raise typer.BadParameter(f"--video: {plan.file} names no drawing; add a line 'video: module:function'")
+    names = [component.name for component in plan.components]
+    if debug and debug not in names:
+        raise typer.BadParameter(f"--debug: no component '{debug}' in {plan.file}; {hint(debug, names)}")
 
 
-def _run(plan: Plan, options: RunOptions) -> int:
-    try:
-        outcome = run(plan, options)
-    except PortsInUse as error:
-        typer.echo(error, err=True)
-        return BAD_INPUT
-    except KeyboardInterrupt:
-        typer.echo("interrupted twice; stopped at once", err=True)
-        return INTERRUPTED_TWICE
-    for line in summary(plan, options, outcome):
-        typer.echo(line)
-    drawn = _draw(plan, options.record, options.video) if options.record and options.video else True
-    return outcome.exit_code if drawn else RUN_BROKEN
-
-
-def _draw(plan: Plan, record: Path, video: Path) -> bool:
+def _draw(plan: Plan, record: Path, video: Path) -> None:
     from fwk.record.video import VideoError, drawing, render_video  # OpenCV, for those who ask for it
 
     try:
@@ -145,9 +135,8 @@ def _draw(plan: Plan, record: Path, video: Path) -> bool:
         pictures = render_video(record, video, drawing(plan.video))
     except (VideoError, LogError, OSError) as error:
         typer.echo(f"no video: {error}", err=True)
-        return False
+        raise typer.Exit(RUN_BROKEN) from error
     typer.echo(f"video: {video}, {pictures} pictures")
-    return True
 
 
 def main() -> None:

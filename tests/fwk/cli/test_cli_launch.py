@@ -6,6 +6,7 @@ import signal
 import subprocess
 from pathlib import Path
 
+import cv2
 import pytest
 from typer.testing import CliRunner
 
@@ -15,6 +16,7 @@ from fwk.record.log import LogReader
 from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, free_bus_port, launch, write_files
 
 CARDS = "launch/cards.yaml"
+PICTURE = {"procs/picture.py": "import numpy as np\n\ndef draw(newest):\n    return np.zeros((48, 64, 3), np.uint8)\n"}
 FAST = (CARDS, "--speed", "max")
 
 
@@ -101,6 +103,31 @@ def test_all_mistakes_of_a_launch_file_are_told_with_their_lines(folder: Path) -
     assert result.returncode == 2
     assert "launch/cards.yaml:2: a/counter: " in result.stdout
     assert "launch/cards.yaml:3: b/counter: " in result.stdout
+
+
+@pytest.mark.system
+def test_a_video_is_drawn_when_the_run_has_ended(folder: Path) -> None:
+    write_files(folder, PICTURE)
+    (folder / CARDS).write_text(PROCS[CARDS] + "video: procs.picture:draw\n")
+    result = launch(folder, *FAST, "--ticks", "25", "--video", "films/cards.mp4")
+    assert result.returncode == 0, result.stdout
+    assert f"video: {folder / 'films' / 'cards.mp4'}, 25 pictures" in result.stdout
+    assert cv2.VideoCapture(str(folder / "films" / "cards.mp4")).get(cv2.CAP_PROP_FRAME_COUNT) == 25
+
+
+@pytest.mark.system
+def test_a_video_needs_a_drawing(folder: Path) -> None:
+    result = launch(folder, *FAST, "--ticks", "25", "--video", "cards.mp4")
+    assert result.returncode == 2
+    assert "names no drawing" in result.stdout
+
+
+@pytest.mark.system
+def test_a_home_that_takes_no_run_directory_is_named(folder: Path) -> None:
+    (folder / ".cache").write_text("a file in its place")
+    result = launch(folder, *FAST, "--ticks", "5")
+    assert result.returncode == 2
+    assert "cannot create the run directory there" in result.stdout
 
 
 @pytest.mark.system
