@@ -10,7 +10,7 @@ from procs.field import Field
 from procs.omni_ball import OmniBallConfig
 from procs.vision.algebra import Floats
 from procs.vision.ball import BallFinder
-from procs.vision.colours import BLACK, CYAN, MAGENTA, ORANGE, WHITE, Bgr, ColourRange, Picture
+from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, ORANGE, WHITE, Bgr, ColourRange, Picture
 from procs.vision.mirror import Mirror
 from procs.vision.noise import SensorNoise
 from procs.vision.rendering import Pose, Renderer, Scene
@@ -160,6 +160,19 @@ def test_pure_noise_shows_no_ball() -> None:
         assert FINDER.find(rng.integers(0, 256, (400, 400, 3), dtype=np.uint8)) is None
         grey = rng.integers(0, 256, (400, 400, 1), dtype=np.uint8)
         assert FINDER.find(np.repeat(grey, 3, axis=2)) is None
+
+
+def test_a_stripe_with_a_balls_area_is_no_ball() -> None:
+    _, row, radius_px = MIRROR.sphere((2.0, 0.0, 0.11), 0.11)
+    top, centre = round(row), round(MIRROR.centre_px)
+    half_px = round(math.pi * radius_px**2 / 8)
+    frame = np.full((400, 400, 3), GREEN, np.uint8)
+    frame[top - 2 : top + 2, centre - half_px : centre + half_px] = ORANGE
+    assert FINDER.find(frame) is None
+    frame[:] = GREEN
+    side_px = round(math.sqrt(math.pi) * radius_px / 2)
+    frame[top - side_px : top + side_px, centre - side_px : centre + side_px] = ORANGE
+    assert FINDER.find(frame) is not None  # so it was the shape
 
 
 def test_an_odd_picture_size_works_as_well() -> None:

@@ -132,6 +132,15 @@ def test_a_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
     assert on_halfway_line.sum() >= 10
 
 
+@pytest.mark.parametrize(("width_m", "rays"), [(0.013, 0), (0.125, DEFAULTS.rays), (0.3, DEFAULTS.rays), (0.6, 0)])
+def test_only_what_is_as_wide_as_a_line_is_one(width_m: float, rays: int) -> None:
+    """White rings around the robot, which every ray meets."""
+    radius_px = np.hypot(*(np.indices((400, 400)) - MIRROR.centre_px))
+    frame = np.full((400, 400, 3), GREEN, np.uint8)
+    frame[(radius_px >= MIRROR.radius_px(0.7)) & (radius_px < MIRROR.radius_px(0.7 + width_m))] = WHITE
+    assert len(LINES.find(to_hsv(STAR.look_up(frame)), STAR)) == pytest.approx(rays, abs=2)
+
+
 def test_robots_goals_and_surroundings_give_no_line_points() -> None:
     """A line point has green on both sides: a robot's marker, a goal post and the floor have not."""
     carpet_only = Field(line_width_m=0.021, mark_diameter_m=0.021)  # lines too thin to be drawn
@@ -165,6 +174,17 @@ def test_robots_are_found_with_small_errors_and_without_ghosts() -> None:
     assert found / visible >= 0.9  # some are hidden behind others
     for metres, most_m in ((0, 0.04), (1, 0.04), (2, 0.06), (3, 0.09), (4, 0.12)):
         assert math.sqrt(np.mean(np.square(errors[metres]))) < most_m
+
+
+def test_robots_seen_from_afar_are_on_average_where_they_are() -> None:
+    rng = np.random.default_rng(4)
+    errors_m = []
+    for _ in range(80):
+        angle, distance_m = rng.uniform(-math.pi, math.pi), rng.uniform(4.0, 5.0)
+        robot = (-4.0 + distance_m * math.cos(angle), 1.0 + distance_m * math.sin(angle), CYAN)
+        (found,) = obstacles(renderer().render(Scene(Pose(-4.0, 1.0, 0.0), [robot], NOWHERE)))
+        errors_m.append(math.hypot(found.x_m, found.y_m) - distance_m)
+    assert abs(np.mean(errors_m)) < 0.03  # half a pixel would be 0.08 m
 
 
 def test_obstacle_covariance_is_honest() -> None:
