@@ -33,9 +33,9 @@ class LocalizationConfig(Config):
     """Most white points of a frame that are used."""
     search_period: int = Setting(default=10, ge=1)
     """Frames from one look over the whole field to the next while the pose is known."""
-    lost_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
+    lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""
-    good_score: float = Setting(default=0.65, gt=0.0, lt=1.0)
+    good_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
     """A place is believed only if the points fit at least that well."""
 
 

@@ -61,9 +61,7 @@ class Matches:
     """(k): 1 if every point lies on a line, near 0 if none does."""
 
 
-def match(
-    lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 6, robust_m: float = 0.25
-) -> Matches:
+def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 6, robust_m: float = 0.25) -> Matches:
     """Moves each of k start poses (k, 3) to the nearest minimum of the robust error.
 
     `robust_m` is c: a point twice as far from every line hardly counts.

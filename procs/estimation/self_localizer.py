@@ -21,6 +21,7 @@ from procs.estimation.pose_filter import PoseFilter
 _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)
 _LEAST_COVARIANCE = np.diag((0.006**2, 0.006**2, 0.002**2))  # of a match: table and calibration
+_COMPASS_ERRORS_RAD = (0.0, -0.1, 0.1)  # tried one after the other while searching
 _COMPASS_MEMORY = 0.98  # of the compass' offset from frame to frame
 
 
@@ -34,12 +35,12 @@ class LocalizerSettings:
     search_points: int = 40
     search_period: int = 10
     """Frames from one look over the whole field to the next while localized."""
-    lost_score: float = 0.5
-    good_score: float = 0.65
+    lost_score: float = 0.4
+    good_score: float = 0.5
     rival_lead: float = 0.12
     rivals: int = 3
     compass_limit_rad: float = 0.6
-    correlation: float = 6.0
+    correlation: float = 4.0
     """Points that share one error; the match's covariance is that many times the one of independent points."""
 
 
@@ -119,7 +120,8 @@ class SelfLocalizer:
 
     def _seek(self, points: LinePoints, heading_rad: float) -> None:
         thin = points.thinned(self._settings.search_points)
-        others = self._search.best(thin, heading_rad + np.array((-0.1, 0.0, 0.1)), 4)
+        turn_rad = _COMPASS_ERRORS_RAD[self._frames % len(_COMPASS_ERRORS_RAD)]
+        others = self._search.best(thin, np.array([heading_rad + turn_rad]), 4)
         found = match(self._lines, thin, self._hypotheses.starts(others))
         turned_rad = np.remainder(found.poses[:, 2] - heading_rad + np.pi, 2 * np.pi) - np.pi
         scores = np.where(np.abs(turned_rad) < self._settings.compass_limit_rad, found.scores, 0.0)
@@ -132,9 +134,7 @@ class SelfLocalizer:
 
     def _match_covariance(self, found: Matches) -> Floats:
         weak = np.diag((1.0, 1.0, 1.0))  # so that a direction without lines has a finite, large variance
-        return np.asarray(
-            self._settings.correlation * np.linalg.inv(found.information[0] + weak) + _LEAST_COVARIANCE
-        )
+        return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + _LEAST_COVARIANCE)
 
     def _found(self, pose: Floats, deviations: tuple[float, float, float], score: float) -> None:
         self._filter = PoseFilter(pose, deviations)

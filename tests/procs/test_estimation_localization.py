@@ -154,7 +154,7 @@ def test_a_match_without_noise_finds_the_pose() -> None:
     robot.pose = np.array((3.0, -2.0, 0.7))
     seen = (paint_m() - robot.pose[:2]) @ rotation(0.7)
     near = seen[np.hypot(seen[:, 0], seen[:, 1]) < 5.0][::7]
-    found = match(line_map(FIELD), LinePoints(near[:, 0], near[:, 1]), (robot.pose + (0.15, -0.1, 0.05))[None])
+    found = match(line_map(FIELD), LinePoints(near[:, 0], near[:, 1]), np.add(robot.pose, (0.15, -0.1, 0.05))[None])
     assert found.poses[0] == pytest.approx(robot.pose, abs=2e-3)
     assert found.scores[0] > 0.999
 
@@ -257,7 +257,7 @@ def test_pushed_robot_is_followed_without_a_new_search() -> None:
     robot.pose = np.array((2.0, 1.0, 0.5))
     bench = Bench(Localization, start_x_m=2.0, start_y_m=1.0, start_heading_rad=0.5)
     frames(bench, robot, 20)
-    robot.pose = robot.pose + (0.15, 0.1, 0.1)
+    robot.pose = np.add(robot.pose, (0.15, 0.1, 0.1))
     assert all(frames(bench, robot, 20))
     assert np.hypot(*robot.error(bench)[:2]) < 0.05
 
