@@ -13,6 +13,8 @@ _REACTION_S = 0.25
 _STEP_ASIDE_M_S = 0.8
 _BALL_M_S = 9.0
 _TARGETS = 13
+LANE_RAD = 0.12
+"""Room beside a pass's way that is enough."""
 _GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free way in rad
 _TURN_1_RAD = 0.1  # and a radian of turning costs this
 
@@ -70,7 +72,7 @@ def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot],
         behind the player.
     """
     others = list(opponents)
-    best: tuple[float, Aim] | None = None
+    best: tuple[tuple[bool, float], Aim] | None = None
     for mate in mates:
         gain_m = mate.place.x_m - player.place.x_m
         if not 2.0 <= math.dist(player.place, mate.place) <= 9.0 or gain_m < -back_m:
@@ -78,6 +80,7 @@ def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot],
         free_rad = lane_rad(player.place, mate.place, others, ball_m_s=4.0)
         turn_rad = abs(wrap_rad(bearing_rad(player.place, mate.place) - player.heading_rad))
         worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad
-        if best is None or worth > best[0]:
-            best = worth, Aim(mate.place, free_rad)
+        rank = (free_rad >= LANE_RAD, worth)
+        if best is None or rank > best[0]:
+            best = rank, Aim(mate.place, free_rad)
     return best[1] if best else None

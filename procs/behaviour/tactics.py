@@ -13,9 +13,8 @@ from procs.field import Field, Point
 
 _SHOT_RANGE_M = 9.0
 _OWN_HALF_M = 0.3  # a goal counts only if it is shot from beyond the halfway line
-_ROOM_M = 0.3  # beside a shot's way at the goal ...
+_ROOM_M = 0.2  # beside a shot's way at the goal ...
 _ROOM_PRESSED_M = 0.1  # ... or less before the ball is lost
-_LANE_RAD = 0.12  # beside a pass's way
 _BACK_M = 1.0  # a pass may lose so much ground
 _PRESSED_M = 1.3
 _PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
@@ -68,9 +67,7 @@ class Tactics:
 
     def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
         if game.free_play and holds_ball:
-            return self._pass_on(view) or Order(
-                "shoot", aim.best_shot(view.ball.place, view.opponents, self.field).place
-            )
+            return self._pass_on(view, back_m=0.0) or self._clear(view)
         if game.free_play and view.ball.known and keeper_takes(view, self.field):
             return self._go_for_ball(view)
         return Order("keep_goal", intention="keep goal")
@@ -102,7 +99,7 @@ class Tactics:
         else:
             order = self._shot(view, _ROOM_M)
         if order is None and self._held_s > 2 * _PATIENCE_S:
-            order = Order("shoot", aim.best_shot(view.ball.place, _others(view), self.field).place, intention="clear")
+            order = self._clear(view)
         return order or self._dribble(view)
 
     def _dribble(self, view: View) -> Order:
@@ -123,9 +120,12 @@ class Tactics:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
 
+    def _clear(self, view: View) -> Order:
+        return Order("shoot", aim.best_shot(view.ball.place, _others(view), self.field).place, intention="clear")
+
     def _pass_on(self, view: View, back_m: float) -> Order | None:
         best = aim.best_pass(view.own, _field_players(view), view.opponents, back_m)
-        if best is None or best.free_rad < _LANE_RAD:
+        if best is None or best.free_rad < aim.LANE_RAD:
             return None
         return Order("pass", best.place, bearing_rad(view.own.place, best.place), "pass")
 

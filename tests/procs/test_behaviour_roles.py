@@ -1,0 +1,95 @@
+"""Roles and places: the same for every robot of the team, whatever the order of the mates."""
+
+import itertools
+import math
+
+import pytest
+
+from procs.behaviour import formation
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.restarts import State
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, assign
+from procs.behaviour.view import View
+from procs.field import Point
+from tests.procs.support_behaviour import FIELD, ball, robot, view
+
+TEAM = (
+    robot("cyan1", -10.5, 0.0),
+    robot("cyan2", -1.0, 0.5),
+    robot("cyan3", -4.0, -2.0),
+    robot("cyan4", -4.0, 2.0),
+    robot("cyan5", 1.0, 4.0),
+)
+
+
+def test_every_robot_computes_the_same_jobs_in_whatever_order_it_knows_its_mates() -> None:
+    jobs = None
+    for own in TEAM:
+        mates = tuple(mate for mate in TEAM if mate is not own)
+        for order in itertools.permutations(mates):
+            found = assign(view(own, ball(0.0, 0.0), order), FIELD)
+            jobs = jobs or found
+            assert found == jobs
+    assert jobs is not None
+    assert {name: job.role for name, job in jobs.items()} == {
+        "cyan1": GOALKEEPER,
+        "cyan2": ATTACKER,
+        "cyan3": DEFENDER,
+        "cyan4": DEFENDER,
+        "cyan5": SUPPORTER,
+    }
+
+
+def test_a_robot_alone_attacks_and_of_two_the_lower_number_keeps_the_goal() -> None:
+    alone = assign(view(TEAM[0], ball(0.0, 0.0)), FIELD)
+    assert alone["cyan1"].role == ATTACKER
+    two = assign(view(TEAM[2], ball(-4.0, -2.0), (TEAM[1],)), FIELD)
+    assert (two["cyan2"].role, two["cyan3"].role) == (GOALKEEPER, ATTACKER)
+
+
+def test_an_attacker_keeps_its_role_against_a_mate_that_is_hardly_faster() -> None:
+    new, old = robot("cyan2", -1.0, 0.0), robot("cyan3", -1.3, 0.0, role=ATTACKER)
+    keeper = TEAM[0]
+    assert assign(view(new, ball(0.0, 0.0), (old, keeper)), FIELD)["cyan3"].role == ATTACKER
+    far = robot("cyan3", -4.0, 0.0, role=ATTACKER)
+    assert assign(view(new, ball(0.0, 0.0), (far, keeper)), FIELD)["cyan2"].role == ATTACKER
+
+
+def test_who_meets_a_rolling_ball_first_attacks() -> None:
+    behind, ahead = robot("cyan2", -1.0, 0.0), robot("cyan3", 4.0, 0.5)
+    jobs = assign(view(behind, ball(0.0, 0.0, 3.0, 0.0), (ahead, TEAM[0])), FIELD)
+    assert jobs["cyan3"].role == ATTACKER
+
+
+def test_a_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
+    lost = View(localized=False, own=TEAM[1], ball=ball(0.0, 0.0), mates=(TEAM[0], TEAM[2]))
+    assert set(assign(lost, FIELD)) == {"cyan1", "cyan3"}
+
+
+def test_six_robots_all_have_jobs() -> None:
+    six = (*TEAM, robot("cyan6", 2.0, 2.0), robot("cyan7", 2.0, -2.0))
+    assert set(assign(view(six[0], ball(0.0, 0.0), six[1:]), FIELD)) == {mate.name for mate in six}
+
+
+@pytest.mark.parametrize("state", [State.KICK_OFF, State.THROW_IN, State.FREE_KICK, State.CORNER_KICK, State.DROP_BALL])
+@pytest.mark.parametrize("whose", Whose)
+@pytest.mark.parametrize("spot", [Point(0.0, 0.0), Point(10.8, 6.8), Point(-10.8, -6.8), Point(-3.0, 6.9)])
+def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot: Point) -> None:
+    if state is State.KICK_OFF and spot != (0.0, 0.0):
+        return
+    game = Game(state, stopped=True, whose=whose, spot=spot)
+    needed_m = 1.0 if state is State.DROP_BALL else 2.0 if whose is Whose.OURS else 3.0
+    wanted = [*formation.places(spot, True, 1.0, FIELD), *formation.places(spot, False, -1.0, FIELD), spot]
+    for place in [formation.allowed(one, game, FIELD) for one in wanted] + [
+        formation.first_opponent_place(game, FIELD)
+    ]:
+        assert math.dist(place, spot) >= needed_m
+        assert FIELD.in_field(*place, 0.0)
+        assert state is not State.KICK_OFF or place.x_m <= -0.25
+
+
+def test_defenders_stand_between_ball_and_goal_outside_the_penalty_area() -> None:
+    for where in (Point(4.0, 3.0), Point(-6.0, -3.0), Point(-10.0, 0.5)):
+        _, stopper, sweeper, _ = formation.places(where, ours=False, flank=1.0, field=FIELD)
+        assert not FIELD.in_penalty_area(*stopper, -1.0)
+        assert not FIELD.in_penalty_area(*sweeper, -1.0)
