@@ -1,6 +1,6 @@
 """The ledger of marks: which sequence number of each channel is visible, and what a stage has to be told of it."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from fwk.plan.model import Plan
 
@@ -15,19 +15,23 @@ class Void:
     since: int
 
 
-@dataclass
 class Ledger:
-    """Marks of all channels. `step` counts stages begun; who takes part is told what changed since it was told last."""
+    """Marks of all channels.
 
-    plan: Plan
-    step: int = 0
-    marks: list[int] = field(default_factory=list)
-    voids: list[Void] = field(default_factory=list)
+    `step` counts stages begun. What dones publish while a stage runs becomes visible when the next one begins, and not
+    before: a tick that is repeated says the same as the first time. Who takes part is told what changed since the step
+    of the last tick that it answered.
+    """
 
-    def __post_init__(self) -> None:
-        plan = self.plan
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.step = 0
         self.marks = [0] * len(plan.channels)
-        self._changed = [-1] * len(plan.channels)  # never
+        """Highest visible sequence number of each channel."""
+        self.voids: list[Void] = []
+        self._latest = [0] * len(plan.channels)  # published, visible from the next step on
+        self._dirty: list[int] = []
+        self._changed = [-1] * len(plan.channels)  # step at which the mark moved last; -1: never
         self._interest: list[list[int]] = []
         for stage in range(len(plan.stages)):
             members = {component.index for component in plan.components if stage in component.stages}
@@ -37,30 +41,34 @@ class Ledger:
         ]
 
     def begin(self) -> int:
-        """Begins a stage; returns its step."""
+        """Begins a stage; everything published so far is visible to it. Returns its step."""
         self.step += 1
+        for channel in self._dirty:
+            self.marks[channel] = self._latest[channel]
+            self._changed[channel] = self.step
+        self._dirty = []
         return self.step
 
     def publish(self, channel: int, sequence: int) -> None:
         """A writer's done makes its messages visible to the stages that begin from now on."""
-        if sequence > self.marks[channel]:
-            self.marks[channel] = sequence
-            self._changed[channel] = self.step
+        if sequence > self._latest[channel]:
+            self._latest[channel] = sequence
+            self._dirty.append(channel)
 
     def news(self, stage: int, since: int) -> tuple[list[int], list[int]]:
-        """Channels read in a stage that changed in or after step `since`, and their marks."""
+        """Channels read in a stage whose marks moved after step `since`, and the marks."""
         changed, marks = self._changed, self.marks
-        channels = [channel for channel in self._interest[stage] if changed[channel] >= since]
+        channels = [channel for channel in self._interest[stage] if changed[channel] > since]
         return channels, [marks[channel] for channel in channels]
 
     def void(self, host: int, incarnation: int) -> None:
         """A host died; its next start is `incarnation`."""
-        self.voids += [Void(channel, self.marks[channel], incarnation, self.step) for channel in self._written[host]]
+        self.voids += [Void(channel, self._latest[channel], incarnation, self.step) for channel in self._written[host]]
 
     def voids_since(self, since: int) -> list[Void]:
-        """Voids that somebody who saw step `since` last may not know."""
+        """Voids that somebody who was told at step `since` last may not know."""
         return [void for void in self.voids if void.since >= since]
 
     def sequences(self, host: int) -> dict[str, int]:
         """Where a restarted host's channels go on."""
-        return {self.plan.channels[channel].name: self.marks[channel] for channel in self._written[host]}
+        return {self.plan.channels[channel].name: self._latest[channel] for channel in self._written[host]}
