@@ -11,7 +11,7 @@ import typer
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.run_dir import RunDirError, make_run_dir
-from fwk.cli.summary import summary
+from fwk.cli.summary import introduction, summary
 from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import Plan
@@ -97,6 +97,8 @@ def launch(
             debug=debug,
             plain=plain or debug is not None,
         )
+        for line in introduction(plan):
+            typer.echo(line)
         outcome = run(plan, options)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
     for line in summary(plan, options, outcome):

@@ -1,12 +1,22 @@
-"""What is printed when a run has ended: result, pace, slowest components, what went wrong, where the recording lies."""
+"""What is printed before a run, and when it has ended: result, pace, what went wrong, where the recording lies."""
 
 from fwk.cli import figures
+from fwk.cli.check import summary as overview
 from fwk.cli.lines import losses
 from fwk.cli.scoreboard import Scoreboard
 from fwk.plan.model import Plan
 from fwk.supervisor.options import Outcome, RunOptions
 
 _SLOWEST = 3
+
+
+def introduction(plan: Plan) -> list[str]:
+    """The first lines of a run: what is started, and how to look at its messages."""
+    lines = overview(plan)
+    if plan.public_url:
+        url = "" if plan.public_url == Plan.public_url else f" --url '{plan.public_url}'"
+        lines.append(f'to see its messages: fwk spy{url}; for LCM programs in Java: CLASSPATH="$(fwk spy --jar)"')
+    return lines
 
 
 def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:

@@ -1,9 +1,10 @@
 """The closing lines of a run."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from fwk.cli.run_dir import make_run_dir
-from fwk.cli.summary import summary
+from fwk.cli.summary import introduction, summary
 from fwk.supervisor.options import Outcome, RunOptions
 from tests.fwk.cli.cli_runs import MATCH, component, game_state, plan, status
 
@@ -18,6 +19,18 @@ def lines(**changes: object) -> list[str]:
     last.hosts[0].restarts = 3
     outcome = Outcome(0, 1200, 60.0, 30.0, "1200 ticks done", last, {"world/game_state": game_state(3, 2)})
     return summary(plan("tests.fwk.cli.cli_runs:headline"), RunOptions(RUN_DIR, **changes), outcome)  # type: ignore[arg-type]
+
+
+def test_a_run_begins_by_saying_what_it_is_and_how_to_look_at_it() -> None:
+    first, second = introduction(plan())
+    assert first == "match: 0 components, 1 channel, 0 processes, 1 stage, 20 ticks/s"
+    assert "fwk spy;" in second
+
+
+def test_a_public_bus_elsewhere_is_named_and_none_is_not() -> None:
+    elsewhere = "udpm://239.255.76.67:7777?ttl=0"
+    assert f"fwk spy --url '{elsewhere}';" in introduction(replace(plan(), public_url=elsewhere))[1]
+    assert len(introduction(replace(plan(), public_url=""))) == 1
 
 
 def test_the_result_comes_first() -> None:
