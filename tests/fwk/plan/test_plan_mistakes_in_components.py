@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from plan_mistakes import Broken, expected, rows, said
+from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 
 
 @rows(

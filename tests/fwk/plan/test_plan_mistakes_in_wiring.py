@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
-from plan_mistakes import Broken, expected, rows, said
 
 from fwk.plan.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
+from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 
 LONG = "x" * 60
 

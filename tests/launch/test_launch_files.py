@@ -1,0 +1,49 @@
+"""The systems in launch/: each is without a mistake and is what its name says."""
+
+from pathlib import Path
+
+import pytest
+
+from fwk.plan.load import LaunchOptions, load_plan
+from fwk.plan.model import Plan
+
+FOLDER = Path(__file__).parents[2] / "launch"
+SYSTEMS = {"soccer.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
+PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml"}
+
+
+def plan_of(file: str) -> Plan:
+    return load_plan(str(FOLDER / file), LaunchOptions())
+
+
+def test_every_file_is_a_system_or_a_part_of_one() -> None:
+    assert {path.name for path in FOLDER.glob("*.yaml")} == set(SYSTEMS) | PARTS
+
+
+@pytest.mark.parametrize(("file", "robots"), SYSTEMS.items())
+def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int]) -> None:
+    plan = plan_of(file)
+    namespaces = {each.namespace for each in plan.components}
+    expected = {f"cyan{n + 1}" for n in range(robots[0])} | {f"magenta{n + 1}" for n in range(robots[1])}
+    assert {name for name in namespaces if name[-1].isdigit()} == expected
+    members = {
+        name: {each.name.rpartition("/")[2] for each in plan.components if each.namespace == name} for name in expected
+    }
+    assert len(members["cyan1"]) == 10
+    assert all(member == members["cyan1"] for member in members.values())
+    assert plan.period_us == 50_000
+
+
+def test_a_team_hears_only_itself() -> None:
+    plan = plan_of("soccer.yaml")
+    for team in ("cyan", "magenta"):
+        radio = next(each for each in plan.components if each.name == f"team_{team}/radio")
+        own = tuple(f"{team}{n}" for n in range(1, 6))
+        assert radio.channels["messages"] == tuple(f"{robot}/team_message" for robot in own)
+        assert radio.channels["inboxes"] == tuple(f"{robot}/team_inbox" for robot in own)
+
+
+def test_only_cameras_and_nobody_who_plays_sees_the_truth() -> None:
+    plan = plan_of("soccer.yaml")
+    truth = next(channel for channel in plan.channels if channel.name == "world/ground_truth")
+    assert {plan.components[index].name.rpartition("/")[2] for index in truth.readers} == {"camera"}
