@@ -75,6 +75,8 @@ def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
 
 def read_value(text: str, place: str, problems: Problems) -> Node | None:
     """Reads one value, as typed behind `--set PATH=`."""
+    if not text.strip():
+        return Node("", place)
     scratch = Problems()
     node = _parse(text, place, scratch)
     if scratch:

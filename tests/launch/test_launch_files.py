@@ -26,11 +26,11 @@ def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int
     namespaces = {each.namespace for each in plan.components}
     expected = {f"cyan{n + 1}" for n in range(robots[0])} | {f"magenta{n + 1}" for n in range(robots[1])}
     assert {name for name in namespaces if name[-1].isdigit()} == expected
-    members = {
-        name: {each.name.rpartition("/")[2] for each in plan.components if each.namespace == name} for name in expected
-    }
-    assert len(members["cyan1"]) == 10
-    assert all(member == members["cyan1"] for member in members.values())
+    for robot in expected:
+        members = [each.name.rpartition("/")[2] for each in plan.components if each.namespace == robot]
+        assert " ".join(members) == (
+            "base kicker camera omni_ball omni_field localization world_model agent skiller navigator"
+        )
     assert plan.period_us == 50_000
 
 
