@@ -26,3 +26,9 @@ def test_an_unknown_command_is_refused_with_the_nearest() -> None:
 def test_a_command_is_imported_only_when_it_is_needed() -> None:
     asked = "import sys, fwk.cli.main; print('fwk.cli.compare' in sys.modules)"
     assert subprocess.check_output([sys.executable, "-c", asked], text=True).strip() == "False"
+
+
+def test_names_in_a_row_are_understood_by_every_command_that_chooses_components() -> None:
+    result = CliRunner().invoke(app, ["check", "--only", "world/simulator", "world/referee", "one-robot.yaml"])
+    assert result.exit_code == 0, result.output
+    assert result.output.startswith("one-robot: 2 components")
