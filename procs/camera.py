@@ -19,6 +19,8 @@ from procs.vision.rendering import Pose, Renderer, Scene
 from procs.vision.settings import MirrorConfig
 from procs.vision.shapes import Bodies
 
+_OUT_OF_THIS_WORLD = 1e4  # metres, radians, metres a second
+
 
 class CameraConfig(Config):
     """Settings of the simulated camera."""
@@ -85,7 +87,7 @@ class Camera(Component):
         )
 
     def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
-        own = next((robot for robot in truth.robots if robot.name == self._robot), None)
+        own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
         if own is None and not self._missing:
             names = ", ".join(robot.name for robot in truth.robots) or "nobody"
             self.log.warning(f"no pictures: robot '{self._robot}' is not on the field; there is {names}")
@@ -96,13 +98,22 @@ class Camera(Component):
         others = [
             (robot.x_m, robot.y_m, CYAN if robot.name.startswith("cyan") else MAGENTA)
             for robot in truth.robots
-            if robot.name != self._robot
+            if robot.name != self._robot and _is_here(robot)
         ]
         ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self._settings.ball_radius_m)
-        return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m)
+        return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if _near(*ball_m) else None)
 
     def _shake_px(self, own: true_robot_t) -> tuple[float, float]:
         speed_m_s = math.hypot(own.vx_m_s, own.vy_m_s)
         deviation_px = self._settings.shake_px + self._settings.shake_px_per_m_s * speed_m_s
         right_px, down_px = deviation_px * self.rng.standard_normal(2)
         return float(right_px), float(down_px)
+
+
+def _is_here(robot: true_robot_t) -> bool:
+    return _near(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)
+
+
+def _near(*values: float) -> bool:
+    """Whether these are numbers that something on the field can have; NaN and infinity are none."""
+    return all(abs(value) < _OUT_OF_THIS_WORLD for value in values)

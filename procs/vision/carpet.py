@@ -10,7 +10,7 @@ import numpy as np
 from procs.field import Arc, Field, Point, Segment
 from procs.vision.colours import FLOOR, GREEN, WHITE, Bgr, Picture
 
-METRES_PER_PX = 0.02
+METRES_PER_PX = 0.125 / 6  # an even part of the line width, so that most lines are painted exactly
 _FLOOR_M = 1.5  # of floor painted beyond the border; farther away everything has the floor's mean colour
 _PATCHES: tuple[Bgr, ...] = ((124, 120, 112), (96, 88, 84), (88, 104, 136), (142, 136, 130), (118, 98, 88))
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates

@@ -34,8 +34,8 @@ class Scene:
     own: Pose
     others: Sequence[tuple[float, float, Bgr]]
     """The other robots: x, y in metres and the colour of the team marker."""
-    ball_m: tuple[float, float, float]
-    """The ball's middle: x, y, height above the ground."""
+    ball_m: tuple[float, float, float] | None
+    """The ball's middle: x, y, height above the ground; None: no ball."""
 
 
 class Renderer:
@@ -69,8 +69,10 @@ class Renderer:
     def _draw_upright(self, frame: Picture, scene: Scene, shift_px: Floats) -> None:
         own, bodies = scene.own, self._bodies
         robots = np.array([robot[:2] for robot in scene.others]).reshape(-1, 2)
-        at_m = _seen_from(own, np.vstack([self._posts_m, robots, [scene.ball_m[:2]]]))
-        posts_m, robots_m, ball_m = np.split(at_m, (len(self._posts_m), len(at_m) - 1))
+        balls = [] if scene.ball_m is None else [scene.ball_m]
+        balls_m = np.array([ball[:2] for ball in balls]).reshape(-1, 2)
+        at_m = _seen_from(own, np.vstack([self._posts_m, robots, balls_m]))
+        posts_m, robots_m, balls_m = np.split(at_m, (len(self._posts_m), len(self._posts_m) + len(robots)))
         pillars_px = [
             *self._in_picture(pillars(posts_m, *self._post_size_m), shift_px),
             *self._in_picture(pillars(robots_m, bodies.robot_radius_m, bodies.robot_height_m), shift_px),
@@ -78,8 +80,8 @@ class Renderer:
         markers_px = self._in_picture(markers(robots_m, bodies.robot_radius_m), shift_px)
         for i in np.argsort(-np.hypot(at_m[:, 0], at_m[:, 1]), kind="stable"):
             robot = i - len(posts_m)
-            if i == len(at_m) - 1:
-                self._draw_ball(frame, (ball_m[0, 0], ball_m[0, 1], scene.ball_m[2]), shift_px)
+            if robot >= len(robots_m):
+                self._draw_ball(frame, (balls_m[0, 0], balls_m[0, 1], balls[0][2]), shift_px)
             elif robot < 0:
                 cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), WHITE, shift=_SHIFT)
             else:

@@ -19,7 +19,6 @@ from procs.vision.shapes import Bodies
 DEFAULTS = OmniBallConfig()
 MIRROR = DEFAULTS.mirror.mirror()
 FINDER = BallFinder(MIRROR, ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high), deviation_px=DEFAULTS.deviation_px)
-NOWHERE = (50.0, 50.0, 0.11)
 SHAKE_PX = 0.5
 
 
@@ -97,7 +96,7 @@ def test_no_ball_is_seen_among_lines_robots_goals_and_surroundings() -> None:
     rng = np.random.default_rng(5)
     for _ in range(150):
         own = Pose(rng.uniform(-11.0, 11.0), rng.uniform(-7.0, 7.0), rng.uniform(-math.pi, math.pi))
-        assert FINDER.find(picture(Scene(own, crowd(rng, own), NOWHERE), rng)) is None
+        assert FINDER.find(picture(Scene(own, crowd(rng, own), None), rng)) is None
 
 
 def test_in_a_crowd_nearly_every_ball_is_found_and_the_found_one_is_the_ball() -> None:

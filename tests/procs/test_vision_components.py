@@ -122,6 +122,21 @@ def test_a_camera_without_its_robot_says_so_once_and_goes_on() -> None:
     assert [frame.frame for frame in bench.port("image").sent] == [1]
 
 
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e300, 1e4])
+def test_impossible_truth_is_not_drawn(value: float) -> None:
+    bench = Bench(Camera, name="cyan1/camera")
+    truth = ground_truth_t()
+    truth.robots = [robot("cyan1", 0.0, 0.0, 0.0), robot("cyan2", value, 0.0, 0.0)]
+    truth.ball_x_m = value
+    bench.port("ground_truth").put(truth)
+    bench.iterate()
+    assert len(bench.port("image").sent) == 1
+    truth.robots[0].heading_rad = value
+    bench.port("ground_truth").put(truth)
+    bench.iterate()
+    assert len(bench.port("image").sent) == 1  # as if the robot were not there
+
+
 def test_settings_changed_between_iterations_are_used() -> None:
     bench = Bench(OmniBall)
     frame = frame_of(system())

@@ -27,7 +27,6 @@ RINGS = Scan.rings(MIRROR, DEFAULTS.ring_distances_m)
 LINES = LineFinder(GREENS, WHITES)
 OBSTACLES = ObstacleFinder(MIRROR, STAR, BLACKS, (GREENS, WHITES), deviation_px=DEFAULTS.deviation_px)
 FIELD = Field()
-NOWHERE = (50.0, 50.0, 0.11)
 
 
 @cache
@@ -111,7 +110,7 @@ def test_line_points_lie_on_lines_wherever_the_robot_stands() -> None:
     distances, far, counts = [], [], []
     for _ in range(100):
         own = anywhere(rng)
-        points = line_points(picture(Scene(own, crowd(rng, own), NOWHERE), rng))
+        points = line_points(picture(Scene(own, crowd(rng, own), None), rng))
         counts.append(len(points))
         distances.append(distance_to_lines(to_world(points, own)))
         far.append(np.hypot(*points.T))
@@ -127,7 +126,7 @@ def test_line_points_lie_on_lines_wherever_the_robot_stands() -> None:
 
 def test_a_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
     own = Pose(0.0, 4.5, 0.0)  # on the halfway line, which no ray crosses
-    points = LINES.find(to_hsv(RINGS.look_up(renderer().render(Scene(own, [], NOWHERE)))), RINGS)
+    points = LINES.find(to_hsv(RINGS.look_up(renderer().render(Scene(own, [], None)))), RINGS)
     on_halfway_line = np.abs(points[:, 0]) < 0.06
     assert on_halfway_line.sum() >= 10
 
@@ -149,8 +148,8 @@ def test_robots_goals_and_surroundings_give_no_line_points() -> None:
     for _ in range(20):
         own = anywhere(rng)
         robots = crowd(rng, own)
-        with_robots = line_points(bare.render(Scene(own, robots, NOWHERE)))
-        without = line_points(bare.render(Scene(own, [], NOWHERE)))
+        with_robots = line_points(bare.render(Scene(own, robots, None)))
+        without = line_points(bare.render(Scene(own, [], None)))
         assert len(with_robots) <= len(without)
 
 
@@ -161,7 +160,7 @@ def test_robots_are_found_with_small_errors_and_without_ghosts() -> None:
     for _ in range(120):
         own = anywhere(rng)
         robots = crowd(rng, own)
-        seen = obstacles(picture(Scene(own, robots, NOWHERE), rng, shake_px=0.3))
+        seen = obstacles(picture(Scene(own, robots, None), rng, shake_px=0.3))
         left = np.array([robot[:2] for robot in robots])
         for place in to_world(np.array([[o.x_m, o.y_m] for o in seen]).reshape(-1, 2), own):
             nearest = int(np.argmin(np.linalg.norm(left - place, axis=1)))
@@ -182,7 +181,7 @@ def test_robots_seen_from_afar_are_on_average_where_they_are() -> None:
     for _ in range(80):
         angle, distance_m = rng.uniform(-math.pi, math.pi), rng.uniform(4.0, 5.0)
         robot = (-4.0 + distance_m * math.cos(angle), 1.0 + distance_m * math.sin(angle), CYAN)
-        (found,) = obstacles(renderer().render(Scene(Pose(-4.0, 1.0, 0.0), [robot], NOWHERE)))
+        (found,) = obstacles(renderer().render(Scene(Pose(-4.0, 1.0, 0.0), [robot], None)))
         errors_m.append(math.hypot(found.x_m, found.y_m) - distance_m)
     assert abs(np.mean(errors_m)) < 0.03  # half a pixel would be 0.08 m
 
@@ -194,7 +193,7 @@ def test_obstacle_covariance_is_honest() -> None:
         own, angle, distance_m = Pose(-4.0, 1.0, 0.0), rng.uniform(-math.pi, math.pi), rng.uniform(1.0, 5.0)
         truth = distance_m * np.array([math.cos(angle), math.sin(angle)])
         robot = (own.x_m + truth[0], own.y_m + truth[1], CYAN)
-        (found,) = obstacles(picture(Scene(own, [robot], NOWHERE), rng, shake_px=0.5))
+        (found,) = obstacles(picture(Scene(own, [robot], None), rng, shake_px=0.5))
         error = np.array([found.x_m, found.y_m]) - truth
         normed.append(error @ np.linalg.solve(found.covariance_m2, error))
     assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if it were exact
@@ -202,7 +201,7 @@ def test_obstacle_covariance_is_honest() -> None:
 
 def test_two_robots_side_by_side_are_two() -> None:
     robots = [(-1.0, 2.26, CYAN), (-1.0, 1.74, MAGENTA)]
-    found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), robots, NOWHERE)))
+    found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), robots, None)))
     places = sorted((o.y_m, o.x_m) for o in found)
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
 
@@ -218,12 +217,12 @@ def test_a_robot_straight_behind_is_one() -> None:
     for lateral_m in (-0.1, 0.0, 0.1):
         for heading_rad in (0.0, math.pi):
             robot = (-5.0 if heading_rad == 0.0 else -1.0, 2.0 + lateral_m, CYAN)
-            found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, heading_rad), [robot], NOWHERE)))
+            found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, heading_rad), [robot], None)))
             assert len(found) == 1
 
 
 def test_a_touching_robot_is_seen() -> None:
-    (found,) = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [(-2.5, 2.0, CYAN)], NOWHERE)))
+    (found,) = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [(-2.5, 2.0, CYAN)], None)))
     assert (found.x_m, found.y_m) == pytest.approx((0.5, 0.0), abs=0.05)
 
 

@@ -15,7 +15,6 @@ from procs.vision.rendering import Pose, Renderer, Scene
 from procs.vision.shapes import Bodies
 
 MIRROR = Mirror()
-NOWHERE = (50.0, 50.0, 0.11)
 
 
 @cache
@@ -47,14 +46,14 @@ def test_carpet_has_its_lines_where_the_field_says() -> None:
             radius = circle.radius_m + beside_m
             if abs(math.cos(angle)) * radius > 0.1:  # the halfway line crosses the circle
                 assert at(radius * math.cos(angle), radius * math.sin(angle)) == colour
-    for beside_m, colour in ((-0.085, GREEN), (-0.05, WHITE), (0.05, WHITE), (0.085, GREEN)):
-        assert at(beside_m, 5.0) == colour
+    for beside_m, colour in ((-0.075, GREEN), (-0.05, WHITE), (0.05, WHITE), (0.075, GREEN)):
+        assert at(beside_m, 5.0) == at(field.half_length_m - 0.0625 + beside_m, 5.0) == colour
 
 
 @pytest.mark.parametrize("heading_rad", [0.0, 1.0, -2.5])
 def test_lines_appear_where_they_are(heading_rad: float) -> None:
     own = Pose(2.0, 4.0, heading_rad)
-    picture = renderer().render(Scene(own, [], NOWHERE))
+    picture = renderer().render(Scene(own, [], None))
     for distance_m, colour in ((1.5, GREEN), (2.0, WHITE), (2.5, GREEN)):  # across the halfway line
         angle = math.pi - heading_rad
         assert colour_at(picture, distance_m * math.cos(angle), distance_m * math.sin(angle)) == colour
