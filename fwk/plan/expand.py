@@ -83,6 +83,10 @@ class _Maker:
                 self._problems.add(node.place, "", text)
                 continue
             self._robots[robot] = node.place
+            if mistake := mistake_in(robot):
+                self._problems.add(node.place, "", mistake)
+                self._files.gaps.add("*")
+                continue
             short = {short for name in entry.use if name in self._templates for short in self._templates[name].entries}
             for place, name in enumerate(entry.use):
                 if name in self._templates:

@@ -13,6 +13,7 @@ from fwk.plan.files import Files
 from fwk.plan.needs import ring
 from fwk.plan.selection import matches, nearest
 from fwk.plan.settings import effective
+from fwk.plan.source import Node
 from fwk.plan.stages import stages_in
 from fwk.plan.substitution import substitute
 from fwk.plan.wiring import Wish
@@ -31,8 +32,9 @@ class Resolved:
     @property
     def wish(self) -> Wish:
         """What wiring needs to know."""
-        channels = self.asked.node.value.get("channels")
-        return Wish(self.asked.name, self.declaration, channels.plain() if channels else {})
+        channels = self.asked.node.child("channels")
+        said = {port: str(name) for port, name in channels.plain().items()} if channels else {}
+        return Wish(self.asked.name, self.declaration, said)
 
     def place(self, port: str | None) -> str:
         """Where the channel of a port stands; where the component stands, if the file does not say it."""
@@ -89,9 +91,9 @@ def needs_of(components: Sequence[Asked], files: Files, problems: Problems) -> d
     names = {asked.name: asked for asked in components}
     needs: dict[str, list[str]] = {}
     for asked in components:
-        node = asked.node.at("needs")
-        written = node.plain() if asked.entry.needs else []
-        for number, name in enumerate([written] if isinstance(written, str) else written):
+        node = asked.node.child("needs") or Node([], asked.node.place)
+        for number, written in enumerate(node.plain() if isinstance(node.value, list) else [node.value]):
+            name = str(written)
             full = name if "/" in name or not asked.namespace else f"{asked.namespace}/{name}"
             if full in names:
                 needs.setdefault(asked.name, []).append(full)

@@ -30,10 +30,12 @@ def effective(
     def mistake(path: Path, where: str, text: str) -> None:
         report(where if path else place, text)
 
-    made = validated(config, given, mistake, "setting")
-    if made is None:
+    try:
+        made = validated(config, given, mistake, "setting")
+        values = made.model_dump(mode="json") if made else {}
+    except Exception as error:  # of a validator of the component's own
+        report(place, f"its settings cannot be checked: {type(error).__name__}: {error}")
         return {}, {}
-    values = made.model_dump(mode="json")
     return values, _origins(values, given, "")
 
 

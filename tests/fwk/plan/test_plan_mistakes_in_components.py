@@ -158,6 +158,30 @@ def test_imports(folder: Path, broken: Broken) -> None:
         "components: {it/a: {use: plan_parts:Keyed}}",
     ),
     Broken(
+        """
+        it.yaml:2: it/a: its settings cannot be checked: LookupError: no table
+        it.yaml:3: it/b: the class of 'strange:Numbered' cannot be read: 'int' object is not iterable
+        """,
+        """
+        components:
+          it/a: {use: strange:Strict, config: {parts: 0}}
+          it/b: {use: strange:Numbered}
+        --- strange.py
+        from fwk import Component, Config
+        from pydantic import field_validator
+        class Parts(Config):
+            parts: int = 1
+            @field_validator("parts")
+            def check(cls, parts):
+                raise LookupError('no table')
+        class Strict(Component):
+            stage = "think"
+            config: Parts
+        class Numbered(Component):
+            stage = 5
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: it has no settings; leave 'config' out, or give the class a 'config: MyConfig'",
         "components: {it/a: {use: plan_parts:Odometer, config: {gain: 1}}}",
     ),
@@ -244,6 +268,19 @@ def test_settings(folder: Path, broken: Broken) -> None:
         templates: {bot: {b: {use: plan_parts:Camera}}}
         components: {cyan1/a: {use: plan_parts:Odometer}}
         robots: {cyan1: {use: bot}}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:3: 'cyan 1' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
+        it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace
+        """,
+        """
+        templates: {bot: {b: {use: plan_parts:Odometer}}}
+        robots:
+          cyan 1: {use: bot}
+        components:
+          cyan2/a: {use: plan_parts:Odometer, needs: "{temm}"}
         """,
     ),
     Broken(
