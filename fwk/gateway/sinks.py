@@ -1,5 +1,6 @@
 """Where the gateway's messages go: LCM log, public bus, text log, display, and the newest of each for the summary."""
 
+import json
 import socket
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +10,7 @@ from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.plan.model import Plan
 from fwk.record.log import LogWriter
-from lcmtypes.core import log_t
+from lcmtypes.core import log_t, plan_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
 
@@ -17,8 +18,11 @@ DISPLAY_PERIOD_US = US_PER_S // 4
 class Recorder:
     """Writes the LCM log; its time stamps are logical time, so that equal runs give equal logs."""
 
-    def __init__(self, path: Path, report: Callable[[str], None]) -> None:
+    def __init__(self, plan: Plan, path: Path, report: Callable[[str], None]) -> None:
         self._writer = LogWriter(path, report)
+        first = plan_t()
+        first.json = json.dumps(plan.to_json())
+        self._writer.append("fwk/plan", first.encode(), 0)
         self._report = report
         self._due_us = 0
 

@@ -74,7 +74,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     public = PublicBus(plan.public_url) if plan.public_url else None
     gateway = Gateway(plan, run, control, public)
     if options.record:
-        gateway.sinks.append(sinks.Recorder(options.record, gateway.log.error))
+        gateway.sinks.append(sinks.Recorder(plan, options.record, gateway.log.error))
     if public:
         gateway.sinks.append(sinks.Mirror(public))
     gateway.sinks.append(sinks.TextLog(options.run_dir / "fwk.log"))

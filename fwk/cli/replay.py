@@ -1,0 +1,62 @@
+"""`fwk replay`: recorded inputs to real components, and whether they do the same again."""
+
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.cli.logs import failing, find_log
+from fwk.record.types import use_types_of
+from fwk.replay.recording import Recording, RecordingError
+from fwk.replay.replay import Replay
+
+DIFFERENT, UNUSABLE = 1, 2
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="a run directory or its log")],
+    verify: Annotated[bool, typer.Option("--verify", help="compare every output; exit 1 at a difference")] = False,
+    only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
+    from_tick: Annotated[int, typer.Option(min=1, metavar="N", help="report differences from this tick on")] = 1,
+    to_tick: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after this tick")] = None,
+) -> None:
+    """Feeds recorded inputs to real components at the recorded iterations.
+
+    Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one; 2 the recording cannot be
+    replayed.
+    """
+    with failing(UNUSABLE):
+        log = find_log(run)
+        try:
+            done = _replay(log, only or [], to_tick)
+        except RecordingError as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(UNUSABLE) from error
+    found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
+    typer.echo(f"{done.iterations} iterations replayed")
+    if not verify:
+        return
+    if not found:
+        typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")
+        return
+    first = min(found, key=lambda difference: difference.key)
+    typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
+    typer.echo(f"  {_component(done, first.channel)}: {first} (A: recorded, B: replayed)")
+    raise typer.Exit(DIFFERENT)
+
+
+def _replay(log: Path, only: list[str], to_tick: int | None) -> Replay:
+    recording = Recording(log)
+    for folder in recording.plan.folders:
+        use_types_of(Path(folder))
+        if folder not in sys.path:
+            sys.path.append(folder)
+    made = Replay(recording, only)
+    made.run(lambda tick: to_tick is None or tick <= to_tick)
+    return made
+
+
+def _component(done: Replay, channel: str) -> str:
+    plan = done.recording.plan
+    return next(plan.components[item.writer].name for item in plan.channels if item.name == channel)

@@ -1,0 +1,47 @@
+"""A component in a replay: built as in its host process, fed from the recording."""
+
+from collections.abc import Mapping
+from importlib import import_module
+
+from fwk.aspects.vision import Ring
+from fwk.component import declaration
+from fwk.plan.model import ComponentPlan, Plan
+from fwk.runner import Runner, Surroundings
+from lcmtypes.core import log_t
+
+
+class Actor:
+    """One life of a component, from its start to its end."""
+
+    def __init__(self, plan: Plan, component: ComponentPlan, incarnation: int, rings: Mapping[str, Ring]) -> None:
+        self.plan = component
+        self._stages = plan.stages
+        self._fresh_start = True
+        declared = declaration(getattr(import_module(component.module), component.class_name))
+        config = declared.config.model_validate(component.config) if declared.config else None
+        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings)
+        self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
+        self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}
+        self.runner.component.init()
+
+    def continue_at(self, channel: str, sequence: int) -> None:
+        """Where a written channel goes on after a restart."""
+        if channel in self.runner.writers:
+            self.runner.writers[channel].sequence = sequence
+
+    def see(self, channel: str, data: list[bytes]) -> None:
+        """Messages became visible; the next iteration has them."""
+        if channel in self._waiting:
+            self._waiting[channel] += data
+
+    def iterate(self, tick: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
+        """One iteration with everything that became visible since the last."""
+        waiting, self._waiting = self._waiting, {channel: [] for channel in self._waiting}
+        if self._fresh_start and tick > 1:  # a late joiner had only the newest of what was there before it
+            waiting = {channel: data[-1:] for channel, data in waiting.items()}
+        self._fresh_start = False
+        return self.runner.iterate(tick, stage, self._stages[stage], time_us, waiting)
+
+
+def _silent(line: log_t) -> None:
+    """The recorded run has logged it already."""

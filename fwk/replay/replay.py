@@ -1,0 +1,150 @@
+"""Replays a recording tick by tick and compares what the components write with what they wrote."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+from fnmatch import fnmatchcase
+from importlib import import_module
+
+from fwk.aspects.vision import Ring
+from fwk.component import declaration
+from fwk.messages import sequence_of
+from fwk.plan.model import ComponentPlan
+from fwk.record.difference import Difference, changed, missing
+from fwk.replay.actors import Actor
+from fwk.replay.recording import RecordedTick, Recording, RecordingError
+from lcmtypes.core import tick_event_t
+
+
+class Replay:
+    """Real components on recorded inputs.
+
+    `only` are names or patterns; nothing means all components. A camera whose frames a chosen component reads is
+    replayed with it, because frames are not in the recording.
+
+    Raises:
+        RecordingError: no component has such a name.
+    """
+
+    def __init__(self, recording: Recording, only: Sequence[str] = ()) -> None:
+        plan = recording.plan
+        self.recording = recording
+        self.iterations = 0
+        self.compared = 0
+        self.differences: list[Difference] = []
+        self._plan = plan
+        self._chosen = _chosen(plan.components, only, recording)
+        self._rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+        self._host_channels = [
+            [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
+        ]
+        self._actors: dict[int, list[Actor]] = {}
+        self._incarnations = [0] * len(plan.hosts)
+        self._newest: dict[str, bytes] = {}
+        self._sequences: dict[str, int] = {}
+        self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
+        self._revealed: list[tuple[str, list[bytes]]] = []  # visible from the next stage on
+        self._pending: dict[tuple[int, int, int], list[tuple[Actor, list[tuple[str, bytes]]]]] = {}
+
+    def run(self, keep_on: Callable[[int], bool] = lambda _: True) -> None:
+        """Replays all ticks as long as `keep_on(tick)` is true."""
+        for tick in self.recording.ticks():
+            if not keep_on(tick.record.tick):
+                return
+            self._tick(tick)
+
+    def _tick(self, tick: RecordedTick) -> None:
+        self._hidden.update(tick.messages)
+        record, stage = tick.record, -1
+        events = deque(record.events)
+        while events:
+            event = events.popleft()
+            if event.kind == tick_event_t.STAGE:
+                stage = event.index
+                self._show()
+            elif event.kind == tick_event_t.STARTED:
+                self._start(event.index)
+            elif event.kind == tick_event_t.LOST:
+                self._actors.pop(event.index, None)
+            elif event.kind == tick_event_t.LATE:
+                self._iterate(event.index, record.tick, stage, record.time_us)
+            elif event.kind == tick_event_t.DONE:
+                if (event.index, event.tick, event.stage) not in self._pending:
+                    self._iterate(event.index, event.tick, event.stage, record.time_us)
+                self._done(event.index, event.tick, event.stage)
+
+    def _start(self, host: int) -> None:
+        self._incarnations[host] += 1
+        self._actors[host] = []
+        for index in self._plan.hosts[host].components:
+            if index not in self._chosen:
+                continue
+            actor = Actor(self._plan, self._plan.components[index], self._incarnations[host], self._rings)
+            for channel, data in self._newest.items():
+                actor.see(channel, [data])
+            for channel, sequence in self._sequences.items():
+                actor.continue_at(channel, sequence)
+            self._actors[host].append(actor)
+
+    def _iterate(self, host: int, tick: int, stage: int, time_us: int) -> None:
+        made = []
+        for actor in self._actors.get(host, []):
+            if stage in actor.plan.stages:
+                made.append((actor, actor.iterate(tick, stage, time_us)))
+                self.iterations += 1
+        self._pending[host, tick, stage] = made
+
+    def _done(self, host: int, tick: int, stage: int) -> None:
+        recorded: dict[str, list[bytes]] = {}
+        for channel in self._host_channels[host]:
+            data = self._hidden.pop((channel, tick, stage), None)
+            if data:
+                recorded[channel] = data
+                self._revealed.append((channel, data))
+        for actor, written in self._pending.pop((host, tick, stage)):
+            for channel in actor.runner.writers:
+                ours = [data for name, data in written if name == channel]
+                self._compare(channel, recorded.get(channel, []), ours)
+
+    def _compare(self, channel: str, recorded: list[bytes], ours: list[bytes]) -> None:
+        for place in range(max(len(recorded), len(ours))):
+            self.compared += 1
+            if place >= len(ours):
+                self._differ(missing(channel, recorded[place], place + 1, 1))
+            elif place >= len(recorded):
+                self._differ(missing(channel, ours[place], place + 1, 0))
+            elif recorded[place] != ours[place]:
+                self._differ(changed(channel, recorded[place], ours[place], place + 1))
+
+    def _differ(self, difference: Difference) -> None:
+        self.differences.append(difference)
+
+    def _show(self) -> None:
+        for channel, data in self._revealed:
+            self._newest[channel] = data[-1]
+            self._sequences[channel] = sequence_of(data[-1])
+            for actors in self._actors.values():
+                for actor in actors:
+                    actor.see(channel, data)
+        self._revealed = []
+
+
+def _chosen(components: Sequence[ComponentPlan], only: Sequence[str], recording: Recording) -> set[int]:
+    if not only:
+        return {component.index for component in components}
+    chosen = set()
+    for pattern in only:
+        found = {component.index for component in components if fnmatchcase(component.name, pattern)}
+        if not found:
+            names = ", ".join(component.name for component in components)
+            raise RecordingError(f"{recording.path}: no component '{pattern}' in this run; there are: {names}")
+        chosen |= found
+    channels = {channel.name: channel for channel in recording.plan.channels}
+    for index in sorted(chosen):
+        for channel in _images_read(components[index]):
+            chosen.add(channels[channel].writer)
+    return chosen
+
+
+def _images_read(component: ComponentPlan) -> list[str]:
+    declared = declaration(getattr(import_module(component.module), component.class_name))
+    return [component.channels[port.attribute][0] for port in declared.ports if port.kind == "image"]
