@@ -51,7 +51,9 @@ class WorldModelConfig(Config):
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
     """A mate is forgotten when it has said nothing for longer."""
     mate_radius_m: float = Setting(default=0.5, gt=0.0)
-    """An obstacle this near to a mate is that mate."""
+    """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
+    obstacle_deviation_m: float = Setting(default=0.6, gt=0.0)
+    """Obstacles seen with a larger standard deviation are not used."""
     border_m: float = Setting(default=0.7, ge=0.0)
     """Obstacles further outside the field than that are no robots of the match."""
     use_team_sight: bool = True
@@ -110,7 +112,7 @@ class WorldModel(Component):
         obstacles = view.obstacles(
             self.obstacle_percepts.value if self.obstacle_percepts.refreshed else obstacle_percepts_t()
         )
-        obstacles = obstacles.only(self._strangers(obstacles.positions_m, mates, now_s))
+        obstacles = obstacles.only(self._strangers(obstacles.positions_m, obstacles.covariances_m2, mates, now_s))
         self._opponents.predict(passed_s, self.config.opponent_timeout_s)
         self._follow_opponents(view, obstacles, told, mates, now_s)
 
@@ -137,25 +139,28 @@ class WorldModel(Component):
         self, view: OwnView, own: Seen, told: list[team_message_t], mates: list[Mate], now_s: float
     ) -> None:
         config = self.config
+        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
         self._opponents.see(own.positions_m, own.spread_m2(config.sight_correlation, config.pose_correlation))
         for message in told:
             age_s = now_s - message.header.time_us / 1e6
             if not (config.use_team_sight and message.obstacles and age_s <= _STALE_S):
                 continue
             positions_m = np.array([(one.x_m, one.y_m) for one in message.obstacles])
-            others = self._strangers(positions_m, mates, now_s)
-            if view.localized:
-                others &= without_known(positions_m, view.pose[None, :2], config.mate_radius_m)
             covariances_m2 = np.array([one.covariance_m2 for one in message.obstacles]) * config.team_correlation
-            moved_m2 = np.eye(2) * (_ROBOT_SPEED_M_S * age_s) ** 2
-            self._opponents.see(positions_m[others], covariances_m2[others] + moved_m2)
+            covariances_m2 += np.eye(2) * (_ROBOT_SPEED_M_S * age_s) ** 2
+            others = self._strangers(positions_m, covariances_m2, team, now_s)
+            self._opponents.see(positions_m[others], covariances_m2[others])
 
-    def _strangers(self, positions_m: Floats, mates: list[Mate], now_s: float) -> Flags:
-        """Which obstacles (n, 2) are on the field and no mates."""
+    def _strangers(self, positions_m: Floats, covariances_m2: Floats, team: list[Mate], now_s: float) -> Flags:
+        """Which obstacles (n, 2) are on the field, seen well enough, and none of the team."""
         config = self.config
-        inside = np.array([config.field.in_field(x_m, y_m, config.border_m) for x_m, y_m in positions_m], dtype=bool)
-        mates_m = np.array([mate.position_at(now_s) for mate in mates]).reshape(-1, 2)
-        return inside & without_known(positions_m, mates_m, config.mate_radius_m)
+        half_m = np.array((config.field.half_length_m, config.field.half_width_m)) + config.border_m
+        use: Flags = (np.abs(positions_m) <= half_m).all(axis=1)
+        use &= np.trace(covariances_m2, axis1=1, axis2=2) <= config.obstacle_deviation_m**2
+        team_m = np.array([mate.position_at(now_s) for mate in team])
+        team_m2 = np.array([mate.covariance_at(now_s) for mate in team])
+        use &= without_known(positions_m, covariances_m2, team_m, team_m2, config.mate_radius_m)
+        return use
 
     def _tell_team(self, view: OwnView, ball: Seen, obstacles: Seen) -> None:
         message = self.team_message.value

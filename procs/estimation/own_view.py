@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_percept_t, obstacle_percepts_t, pose_t
 from procs.estimation.frames import Flags, Floats, covariance_to_world, rotation, to_world
+from procs.estimation.team import Mate
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,10 @@ class OwnView:
             [one.covariance_m2 for one in seen],
             [one.radius_m for one in seen],
         )
+
+    def as_mate(self, name: str, now_s: float) -> Mate:
+        """The robot itself, as its mates know it."""
+        return Mate(name, "", now_s, self.pose[:2], float(self.pose[2]), self.velocity_m_s, self.localized)
 
     def held_ball(self, mouth_m: float) -> Floats:
         """State (4) of a ball in the mouth: it moves and turns with the robot."""

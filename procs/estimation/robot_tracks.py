@@ -7,8 +7,8 @@ from procs.estimation.frames import Flags, Floats, Indices
 
 _ACCELERATION_M_S2 = 2.5
 _UNKNOWN_SPEED_M_S = 1.5
-_GATE = 13.8  # chi-square, 2 degrees of freedom, 99.9 %
-_FARTHEST_M = 1.0
+_GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
+_FARTHEST_M = 1.5
 _SAME_M = 0.3
 
 
@@ -90,14 +90,21 @@ class RobotTracks:
             self.ages_s, self.sightings = self.ages_s[which], self.sightings[which]
 
 
-def without_known(positions_m: Floats, known_m: Floats, within_m: float) -> Flags:
-    """Which (m) of the positions (m, 2) remain when each known robot (k, 2) takes away the one next to it.
+def without_known(
+    positions_m: Floats, covariances_m2: Floats, known_m: Floats, known_m2: Floats, within_m: float
+) -> Flags:
+    """Which (m) of the sightings remain when each known robot (k, 2) takes away the one that it is.
 
-    A robot takes away one at most, so that an opponent beside a team mate stays.
+    A robot takes away one at most, so that an opponent beside a team mate stays. It is the one that fits best by
+    the covariances of sightings (m, 2, 2) and known robots (k, 2, 2); two robots that are seen by their near sides only
+    and at different times count as the same up to `within_m`, whatever the covariances say.
     """
     remain = np.ones(len(positions_m), dtype=bool)
-    for known in known_m:
-        distance_m = np.where(remain, np.hypot(*(positions_m - known).T), np.inf)
-        if len(distance_m) and distance_m.min() <= within_m:
-            remain[distance_m.argmin()] = False
+    if len(positions_m) and len(known_m):
+        offsets_m = positions_m[None] - known_m[:, None]
+        spreads = covariances_m2[None] + known_m2[:, None] + np.eye(2) * (within_m / 3) ** 2
+        surprises = np.einsum("kmi,kmi->km", offsets_m, np.linalg.solve(spreads, offsets_m[..., None])[..., 0])
+        near = surprises <= _GATE
+        known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
+        remain[seen[near[known, seen]]] = False
     return remain
