@@ -34,7 +34,9 @@ class Ledger:
         self._changed = [-1] * len(plan.channels)  # step at which the mark moved last; -1: never
         self._interest: list[list[int]] = []
         for stage in range(len(plan.stages)):
-            members = {component.index for component in plan.components if stage in component.stages}
+            hosts = {component.host for component in plan.components if stage in component.stages}
+            # All components of these hosts, not only those of the stage: what a host was told last is one step for all.
+            members = {component.index for component in plan.components if component.host in hosts}
             self._interest.append([channel.index for channel in plan.channels if members & set(channel.readers)])
         self._written: list[list[int]] = [
             [channel.index for channel in plan.channels if channel.writer in host.components] for host in plan.hosts

@@ -52,6 +52,17 @@ def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_ti
     assert ledger.news(THINK, 0) == ([POSE], [1])
 
 
+def test_a_host_that_is_told_in_one_stage_knows_what_its_components_of_later_stages_read() -> None:
+    parts = {"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}
+    ledger = Ledger(plan_of(parts, groups=[["r/senses", "r/thinks"]]))
+    ledger.begin()
+    ledger.publish(POSE, 1)
+    seen = ledger.begin()
+    assert ledger.news(ACQUIRE, 0) == ([POSE], [1])
+    ledger.begin()
+    assert ledger.news(THINK, seen) == ([], [])
+
+
 def test_only_what_changed_since_the_last_time_is_told_again(ledger: Ledger) -> None:
     ledger.publish(IMU, 1)
     seen = ledger.begin()
