@@ -35,7 +35,7 @@ def test_the_page_does_what_it_says(tmp_path: Path) -> None:
     page = PAGE.read_text()
     files, commands = dict(_FILE.findall(page)), steps(page)
     assert len(files) == 5
-    assert len(commands) == 6
+    assert len(commands) == 7
     write_files(tmp_path, files)
     for command, lines in commands:
         words = shlex.split(command)
