@@ -7,7 +7,7 @@ import struct
 
 from fwk import messages
 from fwk.messages import MessageError
-from lcmtypes.core import done_t, tick_t, void_t
+from lcmtypes.core import change_t, done_t, tick_t, void_t
 
 TICK = b"fwk/tick"
 DONE = b"fwk/done"
@@ -15,6 +15,7 @@ DONE = b"fwk/done"
 _TICK_HEAD = struct.Struct(">8sqqhqi")
 _DONE_HEAD = struct.Struct(">8sqiiqhqqi")
 _VOID = struct.Struct(">iqi")
+_CHANGE = struct.Struct(">iqi")  # component, number, length of the text with its zero byte
 _COUNT = struct.Struct(">i")
 _TICK_FINGERPRINT = messages.fingerprint(tick_t)
 _DONE_FINGERPRINT = messages.fingerprint(done_t)
@@ -26,7 +27,12 @@ def encode_tick(tick: tick_t) -> bytes:
     head = _TICK_HEAD.pack(_TICK_FINGERPRINT, tick.run, tick.tick, tick.stage, tick.time_us, marks)
     body = struct.pack(f">{marks}i{marks}qi{absent}ii", *tick.channel, *tick.sequence, absent, *tick.absent, voids)
     packed = [_VOID.pack(void.channel, void.above_sequence, void.before_incarnation) for void in tick.voids]
-    return b"".join([head, body, *packed])
+    return b"".join([head, body, *packed, _COUNT.pack(len(tick.changes)), *map(_packed_change, tick.changes)])
+
+
+def _packed_change(change: change_t) -> bytes:
+    text = change.settings.encode()
+    return _CHANGE.pack(change.component, change.number, len(text) + 1) + text + b"\0"
 
 
 def decode_tick(data: bytes) -> tick_t:
@@ -52,6 +58,17 @@ def decode_tick(data: bytes) -> tick_t:
             void = void_t()
             void.channel, void.above_sequence, void.before_incarnation = _VOID.unpack_from(data, offset + 16 * index)
             tick.voids.append(void)
+        offset += 16 * tick.n_voids
+        (tick.n_changes,) = _COUNT.unpack_from(data, offset)
+        offset += 4
+        for _ in range(tick.n_changes):
+            change = change_t()
+            change.component, change.number, size = _CHANGE.unpack_from(data, offset)
+            offset += _CHANGE.size + size
+            if size < 1 or len(data) < offset:
+                raise struct.error
+            change.settings = data[offset - size : offset - 1].decode("utf-8", "replace")
+            tick.changes.append(change)
     except (struct.error, OverflowError, MemoryError) as error:
         raise MessageError(f"truncated core.tick_t of {len(data)} bytes") from error
     return tick

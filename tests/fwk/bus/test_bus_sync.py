@@ -6,7 +6,7 @@ from hypothesis import strategies as some
 
 from fwk.bus import sync
 from fwk.messages import MessageError, to_dict
-from lcmtypes.core import done_t, tick_t, void_t
+from lcmtypes.core import change_t, done_t, tick_t, void_t
 
 INT16, INT32, INT64 = (some.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (16, 32, 64))
 
@@ -24,6 +24,12 @@ def ticks(draw: some.DrawFn) -> tick_t:
         void.channel, void.above_sequence, void.before_incarnation = draw(INT32), draw(INT64), draw(INT32)
         tick.voids.append(void)
     tick.n_voids = len(tick.voids)
+    for _ in range(draw(some.integers(0, 2))):
+        change = change_t()
+        change.component, change.number = draw(INT32), draw(INT64)
+        change.settings = draw(some.text("a{:}\"é", max_size=20))
+        tick.changes.append(change)
+    tick.n_changes = len(tick.changes)
     return tick
 
 
