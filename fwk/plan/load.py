@@ -122,7 +122,7 @@ class _Loading:
             "seed": last(files, "seed", 1) if options.seed is None else options.seed,
             "speed": last(files, "speed", 1.0) if options.speed is None else options.speed,
             "stage_time_us": round(last(files, "stage_time_s", 0.0) * US_PER_S),
-            "public_url": public_url_of(files, problems),
+            "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": function_of(files, "video", self.folders, problems),
             **bus_port,

@@ -59,9 +59,13 @@ def _types() -> list[str]:
     return [f"{file.parent.name}.{file.stem}" for entry in lcmtypes.__path__ for file in Path(entry).glob("*/*_t.py")]
 
 
-def public_url_of(files: Files, problems: Problems) -> str:
-    """The URL of the public bus; a receive buffer large enough for bursts is added where it is missing."""
-    url: str = last(files, "public_url", Plan.public_url)
+def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str:
+    """The URL of the public bus; a receive buffer large enough for bursts is added where it is missing.
+
+    Where no file names one, the usual port moves by as much as the bus port does, so that two runs keep apart.
+    """
+    moved = 0 if bus_port is None else bus_port - Plan.bus_port
+    url: str = last(files, "public_url", Plan.public_url.replace(":7667", f":{7667 + moved}"))
     if not url.startswith(_URL):
         text = f"'{url}' is no public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
         problems.add(_place(files, "public_url"), "", text)

@@ -32,7 +32,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         PortsInUse: another run on this machine has the ports.
     """
     ports = Ports.of(plan)
-    lock = PortLock(ports, plan.file or plan.name)
+    lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
     (options.run_dir / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
     number = secrets.randbits(62)

@@ -27,7 +27,7 @@ def ticks(draw: some.DrawFn) -> tick_t:
     for _ in range(draw(some.integers(0, 2))):
         change = change_t()
         change.component, change.number = draw(INT32), draw(INT64)
-        change.settings = draw(some.text("a{:}\"é", max_size=20))
+        change.settings = draw(some.text('a{:}"é', max_size=20))
         tick.changes.append(change)
     tick.n_changes = len(tick.changes)
     return tick
