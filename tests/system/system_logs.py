@@ -1,0 +1,45 @@
+"""Looks into recordings of system tests."""
+
+from collections import defaultdict
+from pathlib import Path
+from typing import Any
+
+from fwk.messages import Header
+from fwk.record import types
+from fwk.record.compare import Comparison
+from fwk.record.log import LogReader
+from lcmtypes.core import tick_record_t
+
+
+class Recording:
+    """A log, taken apart."""
+
+    def __init__(self, path: Path) -> None:
+        self.messages: dict[str, list[bytes]] = defaultdict(list)
+        """By channel, without the framework's own."""
+        self.records: list[tick_record_t] = []
+        for event in LogReader(path):
+            if event.channel == "fwk/record":
+                self.records.append(tick_record_t.decode(event.data))
+            elif not event.channel.startswith("fwk/"):
+                self.messages[event.channel].append(event.data)
+
+    def headers(self, channel: str) -> list[Header]:
+        """The headers of a channel's messages."""
+        return [Header.of(data) for data in self.messages[channel]]
+
+    def decoded(self, channel: str) -> list[Any]:
+        """The messages of a channel."""
+        found: list[Any] = [types.types_of(data)[0].decode(data) for data in self.messages[channel]]
+        return found
+
+    def gaps(self) -> dict[str, list[int]]:
+        """Channels whose sequence numbers are not 1, 2, 3, ..."""
+        numbers = {channel: [header.sequence for header in self.headers(channel)] for channel in self.messages}
+        return {channel: found for channel, found in numbers.items() if found != list(range(1, len(found) + 1))}
+
+
+def difference(a: Path, b: Path) -> str:
+    """The first difference of two logs; empty if they are equal."""
+    found = Comparison(a, b).difference
+    return str(found) if found else ""

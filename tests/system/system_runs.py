@@ -1,0 +1,156 @@
+"""Runs `fwk-launch` as a user would, on ports of its own, and leaves no process behind whatever happens."""
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import uuid
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+
+BIN = Path(sys.executable).parent
+TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
+_MARK = "FWK_TEST_RUN"
+_BLOCK = 128
+_BASES = range(21_000, 32_000, _BLOCK)
+
+
+class PortBlock:
+    """A block of ports that no other test on this machine uses at the same time."""
+
+    def __init__(self) -> None:
+        for base in _BASES:
+            self._lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            try:
+                self._lock.bind(f"\0fwk-system-test-{base}")
+            except OSError:
+                self._lock.close()
+                continue
+            self.bus = base
+            self.public_url = f"udpm://239.255.76.67:{base + _BLOCK - 1}?ttl=0&recv_buf_size=4194304"
+            return
+        raise AssertionError("no free ports")
+
+    def release(self) -> None:
+        self._lock.close()
+
+
+class Launched:
+    """One `fwk-launch` process and all that come from it; `wrapper` is a command before it."""
+
+    def __init__(
+        self,
+        folder: Path,
+        ports: PortBlock,
+        arguments: tuple[str, ...],
+        env: dict[str, str],
+        wrapper: tuple[str, ...] = (),
+    ) -> None:
+        self.folder = folder
+        self._mark = uuid.uuid4().hex
+        self._output = folder / f"output-{self._mark}.txt"
+        command = [*wrapper, str(BIN / "fwk-launch"), *arguments, "--bus-port", str(ports.bus), "--plain"]
+        with open(self._output, "wb") as output:
+            self.process = subprocess.Popen(
+                command,
+                cwd=folder,
+                env={**os.environ, "HOME": str(folder), _MARK: self._mark, **env},
+                stdin=subprocess.DEVNULL,
+                stdout=output,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
+
+    @property
+    def text(self) -> str:
+        """What it has printed so far."""
+        return self._output.read_text(errors="replace")
+
+    @property
+    def run_dir(self) -> Path:
+        """The newest run directory."""
+        return max((self.folder / ".cache" / "fwk" / "runs").iterdir(), key=lambda path: path.stat().st_mtime_ns)
+
+    def wait(self, timeout_s: float = TIMEOUT_S) -> int:
+        """Waits for its end; returns the exit code."""
+        return self.process.wait(timeout_s)
+
+    def until(self, text: str) -> None:
+        """Waits until it has printed something."""
+        self.until_true(lambda: text in self.text, f"{text!r} in the output")
+
+    def until_true(self, condition: Callable[[], bool], what: str) -> None:
+        """Waits until something has come true while it runs."""
+        deadline = time.monotonic() + TIMEOUT_S  # noqa: TID251
+        while not condition():
+            assert time.monotonic() < deadline, f"{what}: not in {TIMEOUT_S} s\n{self.text}"  # noqa: TID251
+            assert self.process.poll() is None or condition(), (
+                f"{what}: ended before with {self.process.poll()}\n{self.text}"
+            )
+            pause()
+
+    def signal(self, number: int) -> None:
+        """Signals the process that was typed."""
+        self.process.send_signal(number)
+
+    def processes(self) -> list[psutil.Process]:
+        """All that came from it and still live, wherever in the tree: found by a mark in their environment."""
+        found = []
+        for process in psutil.process_iter():
+            try:
+                if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(_MARK) == self._mark:
+                    found.append(process)
+            except psutil.Error:
+                continue
+        return found
+
+    def gone_within(self, seconds: float) -> bool:
+        """Whether nothing of it is left after so long at the most."""
+        deadline = time.monotonic() + seconds  # noqa: TID251
+        while self.processes():
+            if time.monotonic() > deadline:  # noqa: TID251
+                return False
+            pause()
+        return True
+
+    def zygote(self) -> int:
+        """The process that forks the hosts."""
+        return next(child.pid for child in self._children() if child.children())
+
+    def gateway(self) -> int:
+        """The process that records: leader of a session, as the zygote, but childless."""
+        return next(
+            child.pid for child in self._children() if os.getsid(child.pid) == child.pid and not child.children()
+        )
+
+    def host(self, component: str) -> int:
+        """The process of a player, which has written its number into `pids/`."""
+        return int((self.folder / "pids" / component.replace("/", "_")).read_text())
+
+    def _children(self) -> list[psutil.Process]:
+        return psutil.Process(self.process.pid).children()
+
+    def end(self) -> None:
+        """Kills what is left."""
+        for process in self.processes():
+            try:
+                os.kill(process.pid, signal.SIGKILL)
+            except ProcessLookupError:
+                continue
+        self.process.wait()
+
+
+def pause(seconds: float = 0.02) -> None:
+    """A moment between two looks."""
+    time.sleep(seconds)  # noqa: TID251
+
+
+def write_files(folder: Path, files: dict[str, str]) -> None:
+    """Writes files below a folder."""
+    for name, content in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content)

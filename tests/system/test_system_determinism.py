@@ -1,0 +1,169 @@
+"""The same launch with the same seed gives the same messages: whatever the layout, the load and the losses."""
+
+import multiprocessing
+import subprocess
+import sys
+import zlib
+from collections.abc import Callable
+from itertools import pairwise
+from multiprocessing.synchronize import Event
+from pathlib import Path
+
+import pytest
+
+from tests.system.conftest import Launch
+from tests.system.system_logs import Recording, difference
+from tests.system.system_orchestra import GROUPS, PLAYERS, orchestra
+from tests.system.system_runs import BIN, Launched, PortBlock, write_files
+
+pytestmark = pytest.mark.system
+
+TICKS = 40
+RUN = ("launch/orchestra.yaml", "--ticks", str(TICKS), "--seed", "7")
+RECORD = ("--record", "log.lcm")
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of an undisturbed run, a process a component."""
+    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
+    write_files(folder, orchestra(ports.public_url))
+    run = Launched(folder, ports, (*RUN, *RECORD), {})
+    try:
+        assert run.wait() == 0, run.text
+    finally:
+        run.end()
+        ports.release()
+    return folder / "log.lcm"
+
+
+def test_everything_is_in_the_recording(reference: Path) -> None:
+    recording = Recording(reference)
+    assert recording.gaps() == {}
+    assert len(recording.records) == TICKS
+    counts = {channel: len(found) for channel, found in recording.messages.items()}
+    assert counts.keys() == {f"{player}/{kind}" for player in PLAYERS for kind in ("note", "burst")} | {
+        "a/image",
+        "a/look",
+    }
+    assert counts["a/note"] == 2 * TICKS  # two stages
+    assert counts["b/note"] == counts["a/look"] == TICKS
+    assert 0 < counts["b/burst"] < 3 * TICKS
+    steps = {after.time_us - before.time_us for before, after in pairwise(recording.records)}
+    assert len(steps) > TICKS // 2  # the conductor's time, not the period
+
+
+@pytest.mark.parametrize("hosting", ["robot", "single", "groups"])
+def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, reference: Path, hosting: str) -> None:
+    if hosting == "groups":
+        with open(folder / "launch/orchestra.yaml", "a") as file:
+            file.write(GROUPS)
+        run = launch(*RUN, *RECORD)
+    else:
+        run = launch(*RUN, *RECORD, "--hosting", hosting)
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+
+
+@pytest.mark.parametrize(
+    "weather",
+    [
+        pytest.param({"FWK_TEST_LOSS": "0.02"}, id="2 percent lost"),
+        pytest.param({"FWK_TEST_LOSS": "0.1"}, id="10 percent lost"),
+        pytest.param({"FWK_TEST_BUFFER_BYTES": "70000"}, id="small buffers"),
+    ],
+)
+def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, weather: dict[str, str]) -> None:
+    run = launch(*RUN, *RECORD, env=weather)
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "lost 0" in run.text
+    assert "fetched" in run.text
+
+
+def test_losses_in_the_network_change_nothing(
+    launch: Launch, folder: Path, reference: Path, needs: Callable[..., None]
+) -> None:
+    needs("unshare", "ip", "iptables")
+    drop = "iptables -A INPUT -i lo -p udp -m statistic --mode random --probability 0.1 -j DROP"
+    shell = ("unshare", "-rn", "sh", "-c", f'ip link set lo up && {drop} && exec "$0" "$@"')
+    if subprocess.run([*shell, "true"], capture_output=True, check=False).returncode:
+        pytest.skip("no network namespaces or no iptables statistic here")
+    run = launch(*RUN, *RECORD, wrapper=shell)
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "fetched" in run.text
+
+
+def test_a_busy_machine_changes_nothing(launch: Launch, folder: Path, reference: Path) -> None:
+    enough = multiprocessing.Event()
+    children = [multiprocessing.Process(target=_keep_busy, args=(enough,)) for _ in range(3)]
+    for child in children:
+        child.start()
+    try:
+        run = launch(*RUN, *RECORD)
+        assert run.wait() == 0, run.text
+    finally:
+        enough.set()
+        for child in children:
+            child.join()
+    assert difference(reference, folder / "log.lcm") == ""
+
+
+def _keep_busy(enough: Event) -> None:
+    for _ in range(20_000):  # bounded, whatever happens to the parent
+        if enough.is_set():
+            return
+        zlib.crc32(bytes(1_000_000))
+
+
+def test_a_system_in_memory_gives_the_same(folder: Path, reference: Path) -> None:
+    write_files(folder, {"memory.py": MEMORY})
+    command = [sys.executable, "memory.py", str(TICKS), "7"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert difference(reference, folder / "memory.lcm") == ""
+
+
+MEMORY = """
+import sys
+from importlib import import_module
+from pathlib import Path
+
+from fwk.plan.load import LaunchOptions, load_plan
+from fwk.record.log import LogWriter
+from fwk.testing import MemorySystem
+
+ticks, seed = map(int, sys.argv[1:])
+plan = load_plan("launch/orchestra.yaml", LaunchOptions(seed=seed))
+parts = {}
+for each in plan.components:
+    base = getattr(import_module(each.module), each.class_name)
+    parts[each.name] = type(base.__name__, (base,), {"stage": tuple(plan.stages[stage] for stage in each.stages)})
+system = MemorySystem(parts, {each.name: each.config for each in plan.components}, seed=seed, stages=plan.stages)
+system.tick(ticks)
+with LogWriter(Path("memory.lcm"), print) as log:
+    for channel, sent in system.sent.items():
+        for data in sent:
+            log.append(channel, data, 0)
+"""
+
+
+def test_another_seed_gives_something_else(launch: Launch, folder: Path, reference: Path) -> None:
+    run = launch(*RUN[:-1], "8", *RECORD)
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") != ""
+
+
+def test_a_changed_component_is_found_by_compare(launch: Launch, folder: Path, reference: Path) -> None:
+    run = launch(*RUN, *RECORD, "--set", "d/player.tone=1")
+    assert run.wait() == 0, run.text
+    compared = subprocess.run(
+        [BIN / "fwk", "compare", reference, folder / "log.lcm", "--types", folder],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert compared.returncode == 1, compared.stdout
+    assert "different: d/note: tick 1, stage 5, message 1 by d/player: digest is " in compared.stdout
