@@ -12,7 +12,8 @@ _ROBOT_M = 0.25
 _BALL_M = 0.11
 _MARGIN_M = 0.12
 _BALL_MARGIN_M = 0.1
-_FORESIGHT_S = 0.3
+_FORESIGHT_S = 0.8
+_MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
 _NEAR_M = 6.0  # what is further away can wait
 
 
@@ -23,7 +24,7 @@ def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bo
         Disc(post, _ROBOT_M + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)
     ]
     if avoid_robots:
-        found += _robots(model.mates) + _robots(model.opponents)
+        found += _robots(model.mates, own) + _robots(model.opponents, own)
     if avoid_ball and model.ball.known:
         ball = Point(model.ball.x_m, model.ball.y_m)
         found.append(Disc(ball, _ROBOT_M + _BALL_M + _BALL_MARGIN_M))
@@ -39,11 +40,10 @@ def reachable(place: Point, field: Field) -> Point:
     return Point(x_m, y_m)
 
 
-def _robots(estimates: Iterable[robot_estimate_t]) -> list[Disc]:
-    return [
-        Disc(
-            Point(robot.x_m + robot.vx_m_s * _FORESIGHT_S, robot.y_m + robot.vy_m_s * _FORESIGHT_S),
-            2 * _ROBOT_M + _MARGIN_M,
-        )
-        for robot in estimates
-    ]
+def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:
+    found = []
+    for robot in estimates:
+        ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
+        middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)
+        found.append(Disc(middle, 2 * _ROBOT_M + _MARGIN_M))
+    return found
