@@ -25,6 +25,9 @@ from tools.bench.timing import now_us, sleep_s
 
 _FIRST_TICK_S = 50.0
 _END_S = 5.0
+_LOOK_S = 0.2
+
+Started = list[subprocess.Popen[bytes]]
 
 
 class RunFailed(Exception):  # noqa: N818 - it says what happened
@@ -58,10 +61,9 @@ def run(peer: Peer, shape: Shape, ticks: int, seconds: float) -> dict[str, Any]:
         listener.bind(f"{folder}/control")
         listener.listen(1)
         start_us = now_us()
-        listener.settimeout(_FIRST_TICK_S)
         try:
-            with _processes(peer, path, folder):
-                lines = _connect(listener)
+            with _processes(peer, path, folder) as started:
+                lines = _connect(listener, started)
                 first = _read(lines)
                 pids = accounting.descendants(os.getpid())
                 before = accounting.usage(pids)
@@ -92,9 +94,9 @@ def run(peer: Peer, shape: Shape, ticks: int, seconds: float) -> dict[str, Any]:
 
 
 @contextmanager
-def _processes(peer: Peer, path: str, folder: str) -> Iterator[None]:
+def _processes(peer: Peer, path: str, folder: str) -> Iterator[Started]:
     variables = peer.environment.process_variables()
-    started: list[subprocess.Popen[bytes]] = []
+    started: Started = []
     with open(f"{folder}/output", "wb") as output:
         try:
             for words in peer.commands(path):
@@ -103,12 +105,12 @@ def _processes(peer: Peer, path: str, folder: str) -> Iterator[None]:
                         words, env=variables, cwd=REPOSITORY, stdin=subprocess.DEVNULL, stdout=output, stderr=output
                     )
                 )
-            yield
+            yield started
         finally:
             _end(started)
 
 
-def _end(started: list[subprocess.Popen[bytes]]) -> None:
+def _end(started: Started) -> None:
     """Gives components time to end by themselves, then ends daemons and whoever is left."""
     deadline_us = now_us() + int(_END_S * 1e6)
     while any(process.poll() is None for process in started) and now_us() < deadline_us:
@@ -120,10 +122,20 @@ def _end(started: list[subprocess.Popen[bytes]]) -> None:
         process.wait()
 
 
-def _connect(listener: socket.socket) -> TextIO:
-    connection, _ = listener.accept()
-    connection.settimeout(_FIRST_TICK_S)
-    return connection.makefile("rw")
+def _connect(listener: socket.socket, started: Started) -> TextIO:
+    """Waits for the supervisor; not for one that has ended already."""
+    listener.settimeout(_LOOK_S)
+    end_us = now_us() + int(_FIRST_TICK_S * 1e6)
+    while now_us() < end_us:
+        try:
+            connection, _ = listener.accept()
+        except TimeoutError:
+            if all(process.poll() is not None for process in started):
+                raise RunFailed("every process ended before the first tick") from None
+            continue
+        connection.settimeout(_FIRST_TICK_S)
+        return connection.makefile("rw")
+    raise RunFailed(f"no supervisor within {_FIRST_TICK_S:.0f} s")
 
 
 def _read(lines: TextIO) -> dict[str, Any]:

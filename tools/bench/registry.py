@@ -65,7 +65,15 @@ def roscpp_commands(shape_file: str) -> list[list[str]]:
     return [_ROS_MASTER, *ros_build.commands(shape_file)]
 
 
+def fwk_commands(*wishes: str) -> Commands:
+    """The supervisor alone: it forks whatever it needs."""
+    return lambda shape_file: [[CORE.python, "-m", "tools.bench.fwk_supervise", shape_file, *wishes]]
+
+
 _ALL = (
+    Peer("fwk", "fwk", CORE, LCM_GEN, udp=True, start=fwk_commands()),
+    Peer("fwk_grouped", "fwk, ten components a process", CORE, LCM_GEN, start=fwk_commands("grouped")),
+    Peer("fwk_recorded", "fwk with recorder and gateway", CORE, LCM_GEN, start=fwk_commands("recorded")),
     Peer("unix", "Unix datagrams", CORE, LCM_GEN, bare=True),
     Peer("lcm", "bare LCM, a port a channel", CORE, LCM_GEN, udp=True, bare=True),
     Peer("lcm_wire", "LCM's format on plain sockets", CORE, LCM_GEN, udp=True, bare=True),

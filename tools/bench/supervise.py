@@ -10,8 +10,8 @@ from tools.bench.shape import LAST_WARM_UP_TICK, Shape
 from tools.bench.sides import STOP, SupervisorSide, load
 from tools.bench.timing import now_us
 
-_WARM_UP_TICKS = 20
-_WARM_UP_US = 1_000_000  # eCAL and ROS connect readers to writers while ticks already run
+WARM_UP_TICKS = 20
+WARM_UP_US = 1_000_000  # eCAL and ROS connect readers to writers while ticks already run
 _REPEAT_S = 0.005  # first repetition of a tick; doubled each time
 _REPEAT_MAX_S = 0.2
 _GIVE_UP_S = 40.0
@@ -37,7 +37,7 @@ def main() -> None:
         run_tick(side, shape, 1)
         first_us = now_us()
         tick = 1
-        while tick < _WARM_UP_TICKS or now_us() < first_us + _WARM_UP_US:
+        while tick < WARM_UP_TICKS or now_us() < first_us + WARM_UP_US:
             tick += 1
             run_tick(side, shape, tick)
         run_tick(side, shape, LAST_WARM_UP_TICK)

@@ -1,0 +1,108 @@
+"""fwk's supervisor with a stop-watch: python -m tools.bench.fwk_supervise SHAPE_FILE [recorded] [grouped].
+
+It is `fwk.supervisor.run` but for two things: the driver says how many ticks to run and gets each one's time, and
+without `recorded` there is no gateway, so that its cost can be told.
+"""
+
+import json
+import secrets
+import socket
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from fwk.host.process import raise_file_limit
+from fwk.plan.load import LaunchOptions, load_plan
+from fwk.plan.model import Plan
+from fwk.supervisor import RunOptions, Supervisor
+from fwk.supervisor.children import Children
+from fwk.supervisor.hosts import StartFailure
+from fwk.supervisor.zygote import Zygote
+from tools.bench import fwk_launch_file
+from tools.bench.shape import Shape
+from tools.bench.supervise import WARM_UP_TICKS, WARM_UP_US
+from tools.bench.timing import now_us
+
+_NEVER = 1 << 62
+
+
+class MeasuredSupervisor(Supervisor):
+    """Runs ticks when the driver says so."""
+
+    def measure(self, control: socket.socket) -> None:
+        """Starts everything, warms up, answers the driver until it says stop.
+
+        Raises:
+            StartFailure: components were not ready.
+        """
+        self._hosts.start_all(self._interrupted)
+        with control.makefile("rw") as lines:
+
+            def answer(what: dict[str, Any]) -> None:
+                lines.write(json.dumps(what) + "\n")
+                lines.flush()
+
+            self.loop.run_tick()
+            first_us = now_us()
+            while self.loop.tick < WARM_UP_TICKS or now_us() < first_us + WARM_UP_US:
+                self._tick()
+            answer({"first_tick_us": first_us})
+            for line in lines:
+                words = line.split()
+                if words[0] == "stop":
+                    break
+                answer(self._ticks(int(words[1]), float(words[2])))
+        self.loop.finish()
+
+    def _ticks(self, ticks: int, seconds: float) -> dict[str, Any]:
+        tick_us: list[int] = []
+        repeated = self.loop.repeated
+        end_us = now_us() + int(seconds * 1e6)
+        while len(tick_us) < ticks and (start_us := now_us()) <= end_us:
+            self._tick()
+            tick_us.append(now_us() - start_us)
+        return {"tick_us": tick_us, "repeated": self.loop.repeated - repeated}
+
+    def _tick(self) -> None:
+        self.loop.run_tick()
+        if self._status.due:
+            self._publish_status()
+
+
+def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None:
+    """Runs a plan under the driver's command."""
+    number = secrets.randbits(62)
+    options = RunOptions(
+        Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
+    )
+    zygote = Zygote(plan, number, {})
+    children = Children(plan, number, options) if recorded else None
+    supervisor = MeasuredSupervisor(plan, options, number, zygote)
+    if not recorded:
+        supervisor.loop.recorded = _NEVER  # there is no gateway to wait for
+    try:
+        supervisor.measure(control)
+    except StartFailure as failure:
+        control.sendall(json.dumps({"error": str(failure)}).encode() + b"\n")
+    supervisor.stop()
+    if children:
+        children.stop()
+    zygote.close()
+
+
+def main(words: Sequence[str]) -> None:
+    """Checks the launch file and runs it."""
+    shape_file, *wishes = words
+    shape = Shape.read(shape_file)
+    recorded = "recorded" in wishes
+    file = fwk_launch_file.write(shape, shape_file, grouped="grouped" in wishes)
+    plan = load_plan(file, LaunchOptions(bus_port=shape.base_port))
+    raise_file_limit()
+    control = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    control.connect(str(Path(shape.folder, "control")))
+    run(plan, shape.folder, recorded, control)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
