@@ -66,7 +66,7 @@ def summary(plan: Plan) -> list[str]:
         f"{US_PER_S / plan.period_us:g} ticks/s",
     ]
     changed = [
-        f"{component.name}.{key} = {_value(component.config, key)} ({origin})"
+        f"{component.name}.{key} = {value_at(component.config, key)} ({origin})"
         for component in plan.components
         for key, origin in component.origins.items()
         if origin == "--set" or ".host.yaml:" in origin
@@ -93,11 +93,12 @@ def _settings_table(plan: Plan) -> Table:
     table = Table("setting", "value", "origin", box=None, pad_edge=False)
     for component in plan.components:
         for key, origin in component.origins.items():
-            table.add_row(f"{component.name}.{key}", str(_value(component.config, key)), origin)
+            table.add_row(f"{component.name}.{key}", str(value_at(component.config, key)), origin)
     return table
 
 
-def _value(config: object, dotted: str) -> object:
+def value_at(config: object, dotted: str) -> object:
+    """The setting that a dotted name stands for."""
     for key in dotted.split("."):
         config = config[key] if isinstance(config, dict) else None
     return config

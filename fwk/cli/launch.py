@@ -11,6 +11,7 @@ import typer
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.run_dir import RunDirError, make_run_dir
+from fwk.cli.run_files import write_run_files
 from fwk.cli.summary import introduction, summary
 from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
@@ -87,6 +88,7 @@ def launch(
         plan = load_plan(file, wishes)
         _check(plan, debug, video)
         run_dir = make_run_dir(plan.name)
+        write_run_files(run_dir, plan)
         options = RunOptions(
             run_dir,
             ticks=ticks,

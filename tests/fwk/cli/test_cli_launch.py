@@ -1,5 +1,6 @@
 """`fwk-launch`: what is typed is checked, what is run is reported, and the exit code tells."""
 
+import json
 import os
 import pty
 import signal
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import cv2
 import pytest
+import yaml
 from typer.testing import CliRunner
 
 from fwk.bus.ports import PortLock, Ports
@@ -64,10 +66,15 @@ def test_a_run_ends_by_itself_and_says_what_came_of_it(folder: Path) -> None:
 
 @pytest.mark.system
 def test_the_run_directory_keeps_what_belongs_to_the_run(folder: Path) -> None:
-    launch(folder, *FAST, "--time", "0.5")
+    launch(folder, *FAST, "--time", "0.5", "--set", "left/counter.last=700")
     (run_dir,) = (folder / ".cache" / "fwk" / "runs").iterdir()
     assert "-cards-" in run_dir.name
     assert {"plan.json", "log.lcm", "fwk.log"} <= {path.name for path in run_dir.iterdir()}
+    settings = (run_dir / "config.yaml").read_text().splitlines()
+    assert settings == ["left/counter.last: 700  # --set", "right/counter.last: 1000000  # default"]
+    assert yaml.safe_load("\n".join(settings)) == {"left/counter.last": 700, "right/counter.last": 1000000}
+    assert {"core.lcm", "cards.lcm"} <= {path.name for path in (run_dir / "lcmtypes").iterdir()}
+    assert {"python", "fwk", "lcm"} <= set(json.loads((run_dir / "versions.json").read_text()))
 
 
 @pytest.mark.system
