@@ -12,8 +12,9 @@ from fwk.plan.files import Files, find_launch_file, lay_over, read_files
 from fwk.plan.folders import folders_of, join
 from fwk.plan.hosting import Hosting, share_out
 from fwk.plan.model import ComponentPlan, Plan, RestartPolicy
+from fwk.plan.needs import needs_of
 from fwk.plan.overrides import overrides
-from fwk.plan.resolve import Resolved, add_settings, needs_of, resolve
+from fwk.plan.resolve import Resolved, add_settings, resolve
 from fwk.plan.selection import chosen, groups_of
 from fwk.plan.stages import stages_of
 from fwk.plan.surroundings import function_of, last, merged, outside_of, public_url_of
@@ -75,19 +76,19 @@ class _Loading:
         if not asked and not files.gaps:
             problems.add(str(files.path), "", "there is no component in it; name one under 'components:'")
         add_settings(files, asked, problems)
-        needs = needs_of(asked, files, problems)
         components = resolve(files, asked, stages, self.folders, problems)
         outside = outside_of(files, problems)
         whole = self._wire(components, outside, files.may_hide)
+        needs = needs_of(asked, components, whole, files, problems)
         names = [each.name for each in asked]
         groups = groups_of(names, *merged(files, "hosts"), problems)
         kept = set(chosen(names, options.only, options.without, problems))
         shared = self._shared()
         problems.stop_if_any()
         if len(kept) < len(components):
+            # The whole has been found right, so a writer that is missing now was left out on purpose.
             components = [each for each in components if each.asked.name in kept]
-            known = {channel.name for channel in whole.channels}
-            whole = self._wire(components, outside, known.__contains__)
+            whole = self._wire(components, outside, lambda _: True)
         hosts = share_out([each.asked.name for each in components], options.hosting, groups)
         host_of = {member: host.index for host in hosts for member in host.components}
         made = Plan(

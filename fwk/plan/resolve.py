@@ -10,10 +10,8 @@ from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.errors import Problems
 from fwk.plan.expand import Asked
 from fwk.plan.files import Files
-from fwk.plan.needs import ring
 from fwk.plan.selection import matches, nearest
 from fwk.plan.settings import effective
-from fwk.plan.source import Node
 from fwk.plan.stages import stages_in
 from fwk.plan.substitution import substitute
 from fwk.plan.wiring import Wish
@@ -84,26 +82,6 @@ def resolve(
         found.append(Resolved(asked, declared, stages_in(asked, declared.stages, stages, problems), config, origins))
     _check_time_sources(found, problems)
     return found
-
-
-def needs_of(components: Sequence[Asked], files: Files, problems: Problems) -> dict[str, list[str]]:
-    """Component to the components it needs; a name without a slash is one of its own namespace."""
-    names = {asked.name: asked for asked in components}
-    needs: dict[str, list[str]] = {}
-    for asked in components:
-        node = asked.node.child("needs") or Node([], asked.node.place)
-        for number, written in enumerate(node.plain() if isinstance(node.value, list) else [node.value]):
-            name = str(written)
-            full = name if "/" in name or not asked.namespace else f"{asked.namespace}/{name}"
-            if full in names:
-                needs.setdefault(asked.name, []).append(full)
-            elif not files.may_hide(full):
-                text = f"it needs '{full}', which is not there; {nearest(full, list(names))}"
-                problems.add(node.at(number).place, asked.name, text)
-    if around := ring(needs):
-        text = f"components need each other in a ring: {' -> '.join(around)}; leave one 'needs' out"
-        problems.add(names[around[0]].node.at("needs").place, around[0], text)
-    return needs
 
 
 def _class_or_reason(use: str, folders: Sequence[str]) -> Declaration | str:

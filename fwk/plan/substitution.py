@@ -13,8 +13,7 @@ _MARK = re.compile(r"\{([A-Za-z_]\w*)\}")
 def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str], None]) -> Node | None:
     """The same tree with every `{key}` in its texts replaced.
 
-    A text that is nothing but `{key}` takes the value as it is, so that numbers stay numbers. A text with an unknown
-    key goes to `report` as place and message, and is left out.
+    A text with an unknown key goes to `report` as place and message, and is left out.
     """
     if isinstance(node.value, dict):
         found = {key: substitute(below, values, report) for key, below in node.value.items()}
@@ -28,7 +27,4 @@ def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str
         if key not in values:
             report(node.place, f"nothing says what '{{{key}}}' in '{node.value}' stands for; {hint(key, values)}")
             return None
-    whole = _MARK.fullmatch(node.value)
-    if whole:
-        return Node(values[whole[1]], node.place)
     return Node(_MARK.sub(lambda found: str(values[found[1]]), node.value), node.place)

@@ -122,6 +122,11 @@ def test_a_template_makes_the_components_of_each_robot(load: Load) -> None:
     assert component(plan, "world/watcher").channels == {"odometries": ("cyan1/odometry", "cyan2/odometry")}
 
 
+def test_who_looks_at_images_needs_the_camera(load: Load) -> None:
+    plan = load("components: {it/eye: {use: plan_parts:Eye}, it/camera: {use: plan_parts:Camera}}")
+    assert [each.needs for each in plan.components] == [(1,), ()]
+
+
 def test_channels_know_their_writer_and_readers(load: Load) -> None:
     plan = load(ROBOTS)
     odometry = plan.channels[channel_names(plan).index("cyan1/odometry")]
@@ -173,6 +178,16 @@ def test_a_channel_whose_writer_is_left_out_has_none(load: Load) -> None:
     assert writers == {"cyan1/odometry": NOBODY, "cyan1/motor_command": 1, "cyan1/image": NOBODY}
 
 
+def test_a_reader_of_many_does_not_hold_what_nobody_writes(load: Load) -> None:
+    text = (
+        "components: {a/one: {use: plan_parts:Odometer}, a/x: {use: plan_parts:Reader}, w: {use: plan_parts:Watcher}}"
+    )
+    assert component(load(text), "w").channels == {"odometries": ("a/odometry",)}
+    left = load(text, without=["a/one"])
+    assert component(left, "w").channels == {"odometries": ()}
+    assert component(left, "a/x").channels == {"odometry": ("a/odometry",)}
+
+
 def test_programs_outside_write_channels(load: Load) -> None:
     plan = load("components: {a/reader: {use: plan_parts:Reader}}\noutside: {a/odometry: robot.odometry_t}\n")
     assert plan.outside == {"a/odometry": "robot.odometry_t"}
@@ -204,6 +219,21 @@ def test_components_and_types_of_ones_own_lie_beside_or_above_the_launch_file(fo
     ]
     assert plan.channels[0].type_name == "planted.moisture_t"
     assert sys.path[:2] == list(plan.folders)
+
+
+def test_any_package_above_a_folder_called_launch_can_be_used(folder: Path) -> None:
+    for part in ("launch", "planted_package"):
+        (folder / part).mkdir()
+    (folder / "planted_package" / "sun.py").write_text("from plan_parts import Sun as Star\nclass Sun(Star): ...\n")
+    (folder / "launch" / "it.yaml").write_text("components: {sun: {use: planted_package.sun}}")
+    assert load_plan("it.yaml", LaunchOptions()).components[0].class_name == "Sun"
+
+
+def test_a_copy_of_an_installed_type_does_no_harm(load: Load, folder: Path) -> None:
+    source = Path(__file__).parents[3] / "lcmtypes" / "robot.lcm"
+    (folder / "lcmtypes").mkdir()
+    (folder / "lcmtypes" / "robot.lcm").write_text(source.read_text())
+    assert load(DRIVING).folders == (str(folder),)
 
 
 def test_a_plan_survives_being_written_down(load: Load) -> None:

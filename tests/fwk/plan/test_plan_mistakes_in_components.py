@@ -315,6 +315,15 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:3: it/camera: components need each other in a ring: it/camera -> it/eye -> it/camera; "
+        "leave one 'needs' out",
+        """
+        components:
+          it/eye: {use: plan_parts:Eye}
+          it/camera: {use: plan_parts:Camera, needs: eye}
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: components need each other in a ring: it/a -> it/a; leave one 'needs' out",
         "components: {it/a: {use: plan_parts:Odometer, needs: a}}",
     ),
