@@ -45,5 +45,5 @@ def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:
     for robot in estimates:
         ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
         middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)
-        found.append(Disc(middle, 2 * _ROBOT_M + _MARGIN_M))
+        found.append(Disc(middle, 2 * _ROBOT_M + _MARGIN_M, 2 * _ROBOT_M))
     return found

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from procs.behaviour.geometry import bearing_rad, wrap_rad
+from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
 from procs.field import Point
 
 _GRAZE_RAD = 0.02
@@ -18,6 +18,8 @@ class Disc(NamedTuple):
 
     middle: Point
     radius_m: float
+    core_m: float = 0.0
+    """A target nearer to the middle than this is not approached further."""
 
 
 class Way(NamedTuple):
@@ -35,9 +37,13 @@ class Way(NamedTuple):
 def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: float | None = None) -> Way:
     """The way that turns least from the straight one and is free until it has passed what blocks that.
 
-    A disc that covers the target shrinks until the target lies outside it; from a disc that covers the start the way
-    leads out. `before_rad` is the direction of the last tick: staying on the same side is preferred.
+    A disc that covers the target shrinks until the target lies outside it, but not below its core; from a disc that
+    covers the start the way leads out. `before_rad` is the direction of the last tick: staying on the same side is
+    preferred.
     """
+    for disc in discs:
+        if math.dist(disc.middle, target) < disc.core_m + _CROWD_M:
+            target = ahead(disc.middle, bearing_rad(disc.middle, start), disc.core_m + _CROWD_M)
     distance_m, straight_rad = math.dist(start, target), bearing_rad(start, target)
     shrunk = [_shrink(disc, start, target) for disc in discs]
     free_m = _free_m(start, straight_rad, shrunk)
@@ -60,10 +66,7 @@ def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: flo
             if before_rad is not None and turn_rad * wrap_rad(before_rad - straight_rad) < 0:
                 cost_rad += _SWITCH_RAD
             if best is None or cost_rad < best[0]:
-                corner = Point(
-                    start.x_m + needed_m * math.cos(direction_rad), start.y_m + needed_m * math.sin(direction_rad)
-                )
-                length_m = needed_m + math.dist(corner, target)
+                length_m = needed_m + math.dist(ahead(start, direction_rad, needed_m), target)
                 best = cost_rad, Way(wrap_rad(direction_rad), length_m, free_m, blocked=False)
     return best[1] if best else Way(straight_rad, distance_m, _free_m(start, straight_rad, shrunk), blocked=True)
 

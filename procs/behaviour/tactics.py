@@ -18,6 +18,7 @@ _ROOM_PRESSED_M = 0.1  # ... or less before the ball is lost
 _BACK_M = 1.0  # a pass may lose so much ground
 _PRESSED_M = 1.3
 _PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
+_MARK_M = 3.0  # a defender leaves its place for an opponent this near
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 0.8
 
@@ -143,7 +144,7 @@ class Tactics:
     def _help(self, view: View, game: Game, job: Job) -> Order:
         if job.role == DEFENDER:
             runner = _free_opponent(view)
-            if runner and math.dist(runner.place, view.own.place) < 3.0:
+            if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
         return self._stand(view, formation.allowed(job.place, game, self.field), job.role)
 
@@ -171,6 +172,13 @@ def _others(view: View) -> tuple[Robot, ...]:
 
 def _field_players(view: View) -> list[Robot]:
     return [mate for mate in view.mates if mate.role != GOALKEEPER]
+
+
+def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:
+    """Whether the own robot is the one to mark an opponent: within the limit, and no other defender is nearer."""
+    own_m = math.dist(view.own.place, runner.place)
+    defenders = [mate for mate in view.mates if mate.role == DEFENDER]
+    return own_m < limit_m and all(own_m <= math.dist(mate.place, runner.place) for mate in defenders)
 
 
 def _free_opponent(view: View) -> Robot | None:
