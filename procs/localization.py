@@ -10,7 +10,7 @@ from fwk.component import Component
 from fwk.config import Config
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import line_points_t, pose_t
-from procs.estimation.frames import rotation, wrap
+from procs.estimation.frames import Floats, plausible, rotation, wrap
 from procs.estimation.line_map import line_map
 from procs.estimation.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.field import Field
@@ -65,24 +65,17 @@ class Localization(Component):
             raise ValueError(
                 f"{self.name}: start_x_m, start_y_m and start_heading_rad belong together; give all three or none"
             )
-        settings = LocalizerSettings(
-            reach_m=config.reach_m,
-            points=config.points,
-            search_period=config.search_period,
-            lost_score=config.lost_score,
-            good_score=config.good_score,
-        )
-        self._localizer = SelfLocalizer(line_map(config.field), settings, np.array(given) if given else None)
         self._last: odometry_t | None = None
         self._yaw_rate_rad_s = 0.0
         self._last_us = 0
+        self._apply_settings(np.array(given) if given else None)
 
     def loop(self) -> None:
-        """One frame."""
+        if self.config != self._settings:
+            self._apply_settings(self._localizer.pose if self._localizer.localized else None)
         knew = self._localizer.localized
         points = self.line_points.value if self.line_points.refreshed else line_points_t()
-        compass_rad = self.imu.value.heading_rad if self.imu.refreshed else None
-        self._localizer.update(self._motion(), compass_rad, np.array(points.x_m), np.array(points.y_m))
+        self._localizer.update(self._motion(), self._compass_rad(), np.array(points.x_m), np.array(points.y_m))
         if knew != self._localizer.localized:
             x_m, y_m, _ = self._localizer.pose
             self.log.info(f"localized at ({x_m:.2f}, {y_m:.2f}) m" if not knew else "lost, searching the whole field")
@@ -92,19 +85,35 @@ class Localization(Component):
         pose.localized = self._localizer.localized
         self.pose.write()
 
+    def _apply_settings(self, start: Floats | None) -> None:
+        config = self._settings = self.config.model_copy(deep=True)
+        settings = LocalizerSettings(
+            reach_m=config.reach_m,
+            points=config.points,
+            search_period=config.search_period,
+            lost_score=config.lost_score,
+            good_score=config.good_score,
+        )
+        self._localizer = SelfLocalizer(line_map(config.field), settings, start)
+
+    def _compass_rad(self) -> float | None:
+        imu = self.imu.value
+        sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
+        return imu.heading_rad if sound else None
+
     def _motion(self) -> Motion:
         """The way since the last frame by the wheels; the turn by the gyro, which a slipping wheel does not deceive."""
-        if not self.odometry.refreshed:
-            return Motion(0.0, 0.0, 0.0)
-        first = self._last is None
-        now, before = self.odometry.value, self._last or self.odometry.value
-        self._last = now
-        way_m = rotation(-before.heading_rad) @ (now.x_m - before.x_m, now.y_m - before.y_m)
+        now = self.odometry.value
+        sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
+        if not (self.odometry.refreshed and sound):
+            return Motion(0.0, 0.0, 0.0, 0.0)
+        before, passed_s = self._last or now, self.clock.since_s(self._last_us)
+        self._last, self._last_us = now, self.clock.now_us
         turn_rad = now.heading_rad - before.heading_rad
-        way_m = rotation(-turn_rad / 2) @ way_m
-        if self.imu.refreshed and not first:
+        way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
+        if self._compass_rad() is not None:
             rate_rad_s = self.imu.value.yaw_rate_rad_s
-            turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * self.clock.since_s(self._last_us)
+            if before is not now:
+                turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s
             self._yaw_rate_rad_s = rate_rad_s
-        self._last_us = self.clock.now_us
-        return Motion(float(way_m[0]), float(way_m[1]), wrap(turn_rad))
+        return Motion(float(way_m[0]), float(way_m[1]), wrap(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))

@@ -6,7 +6,6 @@ A mate that does not know where it is appears nowhere. While the robot itself do
 counts.
 """
 
-import numpy as np
 from pydantic import Field as Setting
 
 from fwk.aspects.blackboard import Reads, Writes
@@ -24,11 +23,12 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.estimation.ball_tracker import BallTracker, Sighting
-from procs.estimation.frames import Flags, Floats
-from procs.estimation.own_view import OwnView, Seen
-from procs.estimation.robot_tracks import RobotTracks, without_known
-from procs.estimation.team import Mate, Team
-from procs.estimation.world_messages import fill_team_message, fill_world_model, mate_of
+from procs.estimation.opponents import Opponents, OpponentSettings, strangers
+from procs.estimation.own_view import OwnView
+from procs.estimation.seen import Seen
+from procs.estimation.team import Team
+from procs.estimation.told import ball_of, mate_of, obstacles_of
+from procs.estimation.world_messages import fill_team_message, fill_world_model
 from procs.field import Field
 
 _STALE_S = 0.5  # older sightings of mates are not used
@@ -62,6 +62,8 @@ class WorldModelConfig(Config):
     """Ticks from one message to the team to the next."""
     sight_correlation: float = Setting(default=1.5, ge=1.0)
     """Frames that share one error of the camera; the filters widen sightings by it."""
+    shake_s_m: float = Setting(default=0.7, ge=0.0)
+    """How much more the camera shakes with each m/s that the robot drives, as a part of the percepts' deviation."""
     pose_correlation: float = Setting(default=6.0, ge=1.0)
     """Frames that share one error of the own pose."""
     team_correlation: float = Setting(default=2.0, ge=1.0)
@@ -88,79 +90,60 @@ class WorldModel(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallTracker()
-        self._opponents = RobotTracks()
+        self._opponents = Opponents()
         self._team = Team()
         self._kicks = 0
         self._last_us = 0
 
     def loop(self) -> None:
-        now_s = self.clock.now_s
+        config, now_s = self.config, self.clock.now_s
         passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.period_s
         self._last_us = self.clock.now_us
-        view = OwnView(self.pose.value, self.odometry.value, known=self.pose.refreshed)
-        told = [message for inbox in self.team_inbox.fresh for message in inbox.messages]
-        told = [message for message in told if self._team.tell(mate_of(message))]
-        mates = self._team.localized(now_s, self.config.mate_timeout_s)
-
-        ball = view.ball(self.ball_percept.value if self.ball_percept.refreshed else ball_percept_t())
-        if self.kicker_state.value.kicks != self._kicks:
-            self._kicks = self.kicker_state.value.kicks
-            self._ball.kick(float(view.pose[2]))
-        self._ball.advance(passed_s, self.config.ball_timeout_s, self.config.ball_rolling_m_s2)
-        self._follow_ball(view, ball, told, now_s)
-
-        obstacles = view.obstacles(
-            self.obstacle_percepts.value if self.obstacle_percepts.refreshed else obstacle_percepts_t()
-        )
-        obstacles = obstacles.only(self._strangers(obstacles.positions_m, obstacles.covariances_m2, mates, now_s))
-        self._opponents.predict(passed_s, self.config.opponent_timeout_s)
-        self._follow_opponents(view, obstacles, told, mates, now_s)
-
-        fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
+        view = OwnView(self.pose.value, self.odometry.value, self.pose.refreshed, config.shake_s_m)
+        told = self._listen(now_s)
+        mates = self._team.localized(now_s, config.mate_timeout_s)
+        ball = view.ball(self.ball_percept.value) if self.ball_percept.refreshed else Seen.NOTHING
+        self._follow_ball(view, ball, told, passed_s)
+        obstacles = view.obstacles(self.obstacle_percepts.value) if self.obstacle_percepts.refreshed else Seen.NOTHING
+        rules = self._opponent_settings()
+        obstacles = strangers(obstacles, mates, now_s, rules)
+        self._opponents.advance(passed_s, rules)
+        self._opponents.see(obstacles.widened(config.sight_correlation, config.pose_correlation))
+        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
+        for message in told if config.use_team_sight else []:
+            seen = obstacles_of(message).widened(config.team_correlation, 1.0, _ROBOT_SPEED_M_S * self._age_s(message))
+            self._opponents.see(strangers(seen, team, now_s, rules))
+        fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents.tracks, now_s)
         self.world_model.write()
-        if self.clock.tick % self.config.message_period == 0:
+        if self.clock.tick % config.message_period == 0:
             self._tell_team(view, ball, obstacles)
 
-    def _follow_ball(self, view: OwnView, own: Seen, told: list[team_message_t], now_s: float) -> None:
-        config = self.config
-        if self.kicker_state.value.ball_held and view.localized:
+    def _listen(self, now_s: float) -> list[team_message_t]:
+        """This tick's messages from mates, without those that are too old to tell where something is."""
+        heard = [message for inbox in self.team_inbox.fresh for message in inbox.messages]
+        told = []
+        for message in heard:
+            mate = mate_of(message, now_s)
+            if mate is not None and mate.name != self._robot and self._team.tell(mate):
+                told.append(message)
+        return [message for message in told if self._age_s(message) <= _STALE_S]
+
+    def _follow_ball(self, view: OwnView, own: Seen, told: list[team_message_t], passed_s: float) -> None:
+        config, kicker = self.config, self.kicker_state.value
+        if kicker.kicks != self._kicks:
+            self._kicks = kicker.kicks
+            self._ball.kick(float(view.pose[2]))
+        self._ball.advance(passed_s, config.ball_timeout_s, config.ball_rolling_m_s2)
+        if kicker.ball_held and view.localized:
             self._ball.hold(self._robot, view.held_ball(config.mouth_m))
-        spread_m2 = own.spread_m2(config.sight_correlation, config.pose_correlation)
-        for position_m, covariance_m2 in zip(own.positions_m, spread_m2, strict=True):
-            self._ball.see(Sighting(self._robot, True, position_m, covariance_m2))
-        for message in told:
-            age_s = now_s - message.header.time_us / 1e6
-            if config.use_team_sight and message.ball_visible and age_s <= _STALE_S:
-                covariance_m2 = np.array(message.ball_covariance_m2) * config.team_correlation
-                position_m = np.array((message.ball_x_m, message.ball_y_m))
-                self._ball.see(Sighting(message.robot, False, position_m, covariance_m2, age_s))
-
-    def _follow_opponents(
-        self, view: OwnView, own: Seen, told: list[team_message_t], mates: list[Mate], now_s: float
-    ) -> None:
-        config = self.config
-        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
-        self._opponents.see(own.positions_m, own.spread_m2(config.sight_correlation, config.pose_correlation))
-        for message in told:
-            age_s = now_s - message.header.time_us / 1e6
-            if not (config.use_team_sight and message.obstacles and age_s <= _STALE_S):
-                continue
-            positions_m = np.array([(one.x_m, one.y_m) for one in message.obstacles])
-            covariances_m2 = np.array([one.covariance_m2 for one in message.obstacles]) * config.team_correlation
-            covariances_m2 += np.eye(2) * (_ROBOT_SPEED_M_S * age_s) ** 2
-            others = self._strangers(positions_m, covariances_m2, team, now_s)
-            self._opponents.see(positions_m[others], covariances_m2[others])
-
-    def _strangers(self, positions_m: Floats, covariances_m2: Floats, team: list[Mate], now_s: float) -> Flags:
-        """Which obstacles (n, 2) are on the field, seen well enough, and none of the team."""
-        config = self.config
-        half_m = np.array((config.field.half_length_m, config.field.half_width_m)) + config.border_m
-        use: Flags = (np.abs(positions_m) <= half_m).all(axis=1)
-        use &= np.trace(covariances_m2, axis1=1, axis2=2) <= config.obstacle_deviation_m**2
-        team_m = np.array([mate.position_at(now_s) for mate in team])
-        team_m2 = np.array([mate.covariance_at(now_s) for mate in team])
-        use &= without_known(positions_m, covariances_m2, team_m, team_m2, config.mate_radius_m)
-        return use
+        sightings = [(self._robot, own.widened(config.sight_correlation, config.pose_correlation), 0.0)]
+        for message in told if config.use_team_sight else []:
+            sightings.append(
+                (message.robot, ball_of(message).widened(config.team_correlation, 1.0), self._age_s(message))
+            )
+        for robot, seen, age_s in sightings:
+            for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
+                self._ball.see(Sighting(robot, robot == self._robot, position_m, covariance_m2, age_s))
 
     def _tell_team(self, view: OwnView, ball: Seen, obstacles: Seen) -> None:
         message = self.team_message.value
@@ -169,3 +152,16 @@ class WorldModel(Component):
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, ball, obstacles)
         self.team_message.write()
+
+    def _age_s(self, message: team_message_t) -> float:
+        return self.clock.since_s(message.header.time_us)
+
+    def _opponent_settings(self) -> OpponentSettings:
+        config = self.config
+        return OpponentSettings(
+            half_length_m=config.field.half_length_m + config.border_m,
+            half_width_m=config.field.half_width_m + config.border_m,
+            deviation_m=config.obstacle_deviation_m,
+            mate_radius_m=config.mate_radius_m,
+            timeout_s=config.opponent_timeout_s,
+        )

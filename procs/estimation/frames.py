@@ -8,6 +8,13 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.intp]
+BOUND = 1e4
+"""Metres, radians, m/s and so on beyond which a value is no measurement."""
+
+
+def plausible(*values: float) -> bool:
+    """Whether all are numbers that something on a field can have; NaN and infinity are none."""
+    return all(abs(value) < BOUND for value in values)
 
 
 def wrap(angle_rad: float) -> float:

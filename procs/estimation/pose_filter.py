@@ -9,6 +9,7 @@ _PATH_ERROR = 0.1  # of the way driven since the last frame: wheel scale, encode
 _STANDING_M = 0.002
 _TURN_ERROR = 0.03
 _STANDING_RAD = 0.002
+_STRAIN_MEMORY = 0.75  # of the mean innovation from frame to frame
 _SURPRISE = 16.0  # squared Mahalanobis distance; a match further off means that the prediction was poorer than thought
 
 
@@ -24,6 +25,7 @@ class PoseFilter:
         self._filter = KalmanFilter(dim_x=3, dim_z=3)
         self._filter.P = np.diag(np.square(deviations))
         self._filter.H = np.eye(3)
+        self._strain = np.zeros(3)
 
     @property
     def covariance(self) -> Floats:
@@ -39,16 +41,19 @@ class PoseFilter:
         shift[:2, 2] = -way_m[1], way_m[0]
         error_m = _PATH_ERROR * float(np.hypot(ahead_m, left_m)) + _STANDING_M
         error_rad = _TURN_ERROR * abs(turn_rad) + _STANDING_RAD
-        self._filter.predict(F=shift, Q=np.diag(np.square((error_m, error_m, error_rad))))
+        noise = np.diag(np.square((error_m, error_m, error_rad))) + np.outer(self._strain, self._strain)
+        self._filter.predict(F=shift, Q=noise)
 
     def correct(self, pose: Floats, covariance: Floats) -> None:
         """A measurement of the whole pose (3) with its covariance (3, 3).
 
-        A push or slipping wheels move the robot further than the odometry's error allows; the filter then gives
-        its prediction up as far as it takes to find the measurement likely.
+        A push moves the robot further than the odometry's error allows; the filter then gives its prediction up as far
+        as it takes to find the measurement likely. Wheels that slip against another robot are wrong frame after frame
+        in the same direction; the mean of the last innovations is therefore taken for an error of the next prediction.
         """
         innovation = pose - self.pose
         innovation[2] = wrap(float(innovation[2]))
+        self._strain += (1 - _STRAIN_MEMORY) * (innovation - self._strain)
         surprise = float(innovation @ np.linalg.solve(self._filter.P + covariance, innovation))
         if surprise > _SURPRISE:
             self._filter.P *= surprise / _SURPRISE

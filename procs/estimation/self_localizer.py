@@ -20,7 +20,8 @@ from procs.estimation.pose_filter import PoseFilter
 
 _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)
-_LEAST_COVARIANCE = np.diag((0.006**2, 0.006**2, 0.002**2))  # of a match: table and calibration
+_FRAME_STANDING = np.array((0.006, 0.006, 0.002))  # m, m, rad: error that all points of a frame share: calibration, and
+_FRAME_PER_M_S = np.array((0.02, 0.02, 0.001))  # the mirror that shakes more the faster the robot drives
 _COMPASS_ERRORS_RAD = (0.0, -0.1, 0.1)  # tried one after the other while searching
 _COMPASS_MEMORY = 0.98  # of the compass' offset from frame to frame
 
@@ -51,6 +52,7 @@ class Motion:
     ahead_m: float
     left_m: float
     turn_rad: float
+    speed_m_s: float
 
 
 class SelfLocalizer:
@@ -91,16 +93,16 @@ class SelfLocalizer:
         if len(points) < self._settings.least_points:
             return
         if self.localized:
-            self._track(points, compass_rad)
+            self._track(points, compass_rad, motion.speed_m_s)
         elif compass_rad is not None:
             self._seek(points, compass_rad - self._compass_offset_rad)
 
-    def _track(self, points: LinePoints, compass_rad: float | None) -> None:
+    def _track(self, points: LinePoints, compass_rad: float | None, speed_m_s: float) -> None:
         settings = self._settings
         found = match(self._lines, points, self.pose[None])
         self.score += 0.1 * (float(found.scores[0]) - self.score)
         if found.scores[0] > settings.lost_score:
-            self._filter.correct(found.poses[0], self._match_covariance(found))
+            self._filter.correct(found.poses[0], self._match_covariance(found, speed_m_s))
         if compass_rad is not None:
             deviation_rad = wrap(compass_rad - self._compass_offset_rad - float(self.pose[2]))
             self._compass_offset_rad += (1 - _COMPASS_MEMORY) * deviation_rad
@@ -132,9 +134,10 @@ class SelfLocalizer:
         if decided is not None:
             self._found(decided.pose, _FOUND_DEVIATIONS, decided.score)
 
-    def _match_covariance(self, found: Matches) -> Floats:
+    def _match_covariance(self, found: Matches, speed_m_s: float) -> Floats:
+        shared = np.square(_FRAME_STANDING + speed_m_s * _FRAME_PER_M_S)
         weak = np.diag((1.0, 1.0, 1.0))  # so that a direction without lines has a finite, large variance
-        return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + _LEAST_COVARIANCE)
+        return np.asarray(self._settings.correlation * np.linalg.inv(found.information[0] + weak) + np.diag(shared))
 
     def _found(self, pose: Floats, deviations: tuple[float, float, float], score: float) -> None:
         self._filter = PoseFilter(pose, deviations)

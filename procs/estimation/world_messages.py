@@ -6,9 +6,9 @@ import numpy as np
 
 from lcmtypes.soccer import ball_estimate_t, obstacle_t, robot_estimate_t, team_message_t, world_model_t
 from procs.estimation.ball_tracker import BallTracker
-from procs.estimation.frames import wrap
-from procs.estimation.own_view import OwnView, Seen
+from procs.estimation.own_view import OwnView
 from procs.estimation.robot_tracks import RobotTracks
+from procs.estimation.seen import Seen
 from procs.estimation.team import Mate
 
 
@@ -48,19 +48,6 @@ def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstac
         obstacle.covariance_m2 = covariance_m2.tolist()
         obstacle.radius_m = float(radius_m)
         message.obstacles.append(obstacle)
-
-
-def mate_of(message: team_message_t) -> Mate:
-    """What a team message says of its sender."""
-    return Mate(
-        name=message.robot,
-        role=message.role,
-        told_s=message.header.time_us / 1e6,
-        position_m=np.array((message.x_m, message.y_m)),
-        heading_rad=wrap(message.heading_rad),
-        velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
-        localized=message.localized,
-    )
 
 
 def _ball(ball: BallTracker) -> ball_estimate_t:
