@@ -1,12 +1,14 @@
 """Verdicts on the goals, each made to pass and to fail."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import pytest
 
 from tools.bench.environments import CORE
 from tools.bench.figures import Run, Runs
 from tools.bench.goals import Verdict, judge
+from tools.bench.own import AT_100_HZ, SOCCER
 from tools.bench.registry import Peer
 
 PEERS = [
@@ -28,16 +30,25 @@ GOOD = {
     ("fwk", "N=20, loss 1 %"): 1300,
     ("fwk", "N=160, loss 1 %"): 10000,
 }
-CONTRACT, AHEAD, FLAT, RECORDER, LOSS = range(5)
+CONTRACT, AHEAD, FLAT, RECORDER, LOSS, START, JITTER = range(7)
 
 
-def verdicts(ticks_us: Mapping[tuple[str, str], float]) -> list[Verdict]:
+OWN: dict[str, dict[str, Any]] = {
+    AT_100_HZ: {"error_us": [100.0] * 99 + [5000.0]},
+    SOCCER: {"first_tick_s": 2.5, "pss_mb": 900.0},
+}
+
+
+def verdicts(
+    ticks_us: Mapping[tuple[str, str], float], own: Mapping[str, dict[str, Any]] | None = None
+) -> list[Verdict]:
     runs = [Run(0, peer, scenario, {"tick_us": [tick]}) for (peer, scenario), tick in ticks_us.items()]
+    runs += [Run(0, "fwk", scenario, result) for scenario, result in (own or {}).items()]
     return judge(Runs(runs), PEERS, SIZES)
 
 
 def test_all_goals_met() -> None:
-    assert [verdict.word for verdict in verdicts(GOOD)] == ["met"] * 5
+    assert [verdict.word for verdict in verdicts(GOOD, OWN)] == ["met"] * 7
 
 
 @pytest.mark.parametrize(
@@ -54,8 +65,20 @@ def test_one_figure_misses_one_goal(goal: int, change: dict[tuple[str, str], flo
     assert verdicts({**GOOD, **change})[goal].met is False
 
 
+@pytest.mark.parametrize(
+    ("goal", "change"),
+    [
+        (START, {SOCCER: {"first_tick_s": 3.1, "pss_mb": 900.0}}),
+        (START, {SOCCER: {"first_tick_s": 2.5, "pss_mb": 1201.0}}),
+        (JITTER, {AT_100_HZ: {"error_us": [100.0] * 98 + [5000.0] * 2}}),
+    ],
+)
+def test_one_figure_of_our_own_misses_one_goal(goal: int, change: dict[str, dict[str, Any]]) -> None:
+    assert verdicts(GOOD, {**OWN, **change})[goal].met is False
+
+
 def test_what_was_not_measured_is_neither_met_nor_missed() -> None:
-    assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 5
+    assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 7
 
 
 def test_who_is_ahead_of_us_is_named() -> None:

@@ -7,10 +7,17 @@ import pytest
 from tools.bench import report, tables
 from tools.bench.environments import CORE
 from tools.bench.figures import Run, Runs, Spread
+from tools.bench.own import OwnScenario
 from tools.bench.registry import Peer
 from tools.bench.scenarios import growth, variations
 
 PEERS = [Peer("lcm", "bare LCM", CORE, "lcm-gen", udp=True, bare=True), Peer("unix", "Unix", CORE, "lcm-gen")]
+
+
+OWN = [
+    OwnScenario("100 Hz", "jitter", components=20, period_s=0.01),
+    OwnScenario("soccer.yaml", "start", file="soccer.yaml"),
+]
 
 
 def result(*tick_us: float) -> dict[str, object]:
@@ -70,9 +77,24 @@ def test_cost_table_shows_only_who_was_measured() -> None:
     assert len(tables.cost_table(Runs(runs()), PEERS, growth((80,))[0]).splitlines()) == 2
 
 
+def test_tables_of_our_own() -> None:
+    measured = Runs(
+        [
+            Run(0, "fwk", "100 Hz", {"error_us": [*([100.0] * 98), 2000.0, 3000.0]}),
+            Run(0, "fwk", "soccer.yaml", {"first_tick_s": 2.5, "pss_mb": 900.2, "processes": 109, "restart_s": 0.3}),
+        ]
+    )
+    assert "| 100 Hz | 0.10 (0.10-0.10) | 2.00 (2.00-2.00) | 3.00 (3.00-3.00) |" in tables.jitter_table(
+        measured, OWN[:1]
+    )
+    expected = "| soccer.yaml | 109 (109-109) | 2.50 (2.50-2.50) | 900 (900-900) | 0.30 (0.30-0.30) |"
+    assert expected in tables.start_table(measured, OWN[1:])
+    assert "| soccer.yaml | - | - | - | - |" in tables.start_table(Runs([]), OWN[1:])
+
+
 def test_page_names_what_is_missing_and_what_failed() -> None:
     page = report.text(
-        {"command": "bench"}, PEERS, {"Zenoh": "not installed"}, [*growth((5,)), *variations((5,))], runs()
+        {"command": "bench"}, PEERS, {"Zenoh": "not installed"}, [*growth((5,)), *variations((5,))], OWN, runs()
     )
     assert "- command: bench" in page
     assert "- Zenoh: not installed" in page

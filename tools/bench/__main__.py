@@ -8,7 +8,8 @@ import typer
 
 from tools.bench import machine, report, rotation
 from tools.bench.environments import REPOSITORY
-from tools.bench.figures import Run, tick_us
+from tools.bench.figures import Run, error_us, tick_us
+from tools.bench.own import JITTER, START
 from tools.bench.registry import PEERS, Peer
 from tools.bench.scenarios import SIZES, growth, variations
 
@@ -21,6 +22,9 @@ def main(
     sizes: Annotated[str, typer.Option(help="Numbers of components")] = ",".join(map(str, SIZES)),
     varied: Annotated[str, typer.Option(help="Sizes of the runs with ten reads, 64 KiB, loss; empty: none")] = "20,80",
     rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 5,
+    with_own: Annotated[
+        bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")
+    ] = True,
     seconds: Annotated[float, typer.Option(help="Longest time that ticks of one run are measured")] = 2.0,
     quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
     json_file: Annotated[Path, typer.Option("--json", help="Where every run goes")] = _JSON,
@@ -38,9 +42,11 @@ def main(
     about["rounds"] = str(rounds)
     for name, reason in missing.items():
         typer.echo(f"{name}: left out: {reason}", err=True)
+    own = (*JITTER, *START) if with_own else ()
     runs = rotation.rotate(chosen, scenarios, rounds, seconds, _show)
+    runs += rotation.rotate_own(own, rounds, seconds, _show)
     report.write_json(json_file, {**about, "missing": missing}, runs)
-    tables = report.text(about, chosen, missing, scenarios, runs)
+    tables = report.text(about, chosen, missing, scenarios, own, runs)
     typer.echo(tables)
     if not no_page:
         report.insert(page, tables)
@@ -63,7 +69,14 @@ def _numbers(words: str) -> tuple[int, ...]:
 
 
 def _show(run: Run) -> None:
-    figure = run.error or f"{tick_us(run.result) / 1000:.2f} ms"
+    if run.error:
+        figure = run.error
+    elif "tick_us" in run.result:
+        figure = f"{tick_us(run.result) / 1000:.2f} ms"
+    elif "error_us" in run.result:
+        figure = f"p99 of the period's error {error_us(run.result, 0.99) / 1000:.2f} ms"
+    else:
+        figure = f"first tick after {run.result['first_tick_s']:.2f} s, {run.result['pss_mb']:.0f} MB"
     typer.echo(f"round {run.round + 1}  {run.scenario:<20} {run.peer:<12} {figure}", err=True)
 
 

@@ -95,6 +95,11 @@ def tick_mean_us(result: dict[str, Any]) -> float:
     return float(sum(result["tick_us"]) / len(result["tick_us"]))
 
 
+def error_us(result: dict[str, Any], share: float) -> float:
+    """A percentile (0 to 1) of how far periods were from what was asked for, of one run in µs."""
+    return percentile(result["error_us"], share)
+
+
 def tick_p99_us(result: dict[str, Any]) -> float:
     """99th percentile of the tick's wall time of one run in µs."""
     return percentile(result["tick_us"], 0.99)

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from tools.bench.figures import Runs, Spread, tick_mean_us, tick_us
+from tools.bench.figures import Runs, Spread, error_us, tick_mean_us, tick_us
+from tools.bench.own import AT_100_HZ, SOCCER
 from tools.bench.registry import Peer
 
 OWN = "fwk"
@@ -12,6 +13,9 @@ _CONTRACT_LIMIT = 1.25
 _FLAT_LIMIT = 1.30
 _RECORDER_LIMIT = 1.15
 _LOSS_LIMIT = 1.20
+_FIRST_TICK_S = 3.0
+_PSS_MB = 1200.0
+_JITTER_US = 1000.0
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,8 @@ def judge(runs: Runs, peers: Sequence[Peer], sizes: Sequence[int]) -> list[Verdi
             _LOSS_LIMIT,
             {f"N={size}": _loss(runs, size) for size in sizes},
         ),
+        _start(runs),
+        _jitter(runs),
     ]
 
 
@@ -92,6 +98,25 @@ def _flat(runs: Runs, sizes: Sequence[int]) -> Verdict:
     each = {size: runs.spread(OWN, f"N={size}", tick_us) for size in sizes}
     figures = ", ".join(f"N={size} {spread.middle / size:.0f} us" for size, spread in each.items() if spread)
     return Verdict(goal, ratio.middle / 8 <= _FLAT_LIMIT, f"{figures}; N=160 to N=20 x{ratio.middle / 8:.2f}")
+
+
+def _start(runs: Runs) -> Verdict:
+    goal = f"{SOCCER}: first tick within {_FIRST_TICK_S:g} s, at most {_PSS_MB:g} MB together"
+    first = runs.spread(OWN, SOCCER, lambda result: float(result["first_tick_s"]))
+    held = runs.spread(OWN, SOCCER, lambda result: float(result["pss_mb"]))
+    if first is None or held is None:
+        return Verdict(goal, None, "")
+    figures = f"{first.middle:.2f} s ({first.low:.2f}-{first.high:.2f}), {held.middle:.0f} MB"
+    return Verdict(goal, first.middle <= _FIRST_TICK_S and held.middle <= _PSS_MB, figures)
+
+
+def _jitter(runs: Runs) -> Verdict:
+    goal = f"100 Hz with 20 components: p99 of the period's error at most {_JITTER_US / 1000:g} ms"
+    spread = runs.spread(OWN, AT_100_HZ, lambda result: error_us(result, 0.99))
+    if spread is None:
+        return Verdict(goal, None, "")
+    figures = f"{spread.middle / 1000:.2f} ms ({spread.low / 1000:.2f}-{spread.high / 1000:.2f})"
+    return Verdict(goal, spread.middle <= _JITTER_US, figures)
 
 
 def _loss(runs: Runs, size: int) -> Spread | None:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tools.bench import goals, tables
 from tools.bench.figures import Run, Runs
+from tools.bench.own import OwnScenario
 from tools.bench.registry import Peer
 from tools.bench.scenarios import Scenario
 
@@ -29,6 +30,7 @@ def text(
     peers: Sequence[Peer],
     missing: Mapping[str, str],
     scenarios: Sequence[Scenario],
+    own: Sequence[OwnScenario],
     runs: Sequence[Run],
 ) -> str:
     """The generated part of docs/numbers.md."""
@@ -44,14 +46,24 @@ def text(
         parts += ["## A tick, by number of components", tables.tick_table(asked, peers, plain)]
     if others:
         parts += ["## Ten reads, large messages, packet loss", tables.tick_table(asked, peers, others)]
+    if own:
+        parts += ["## Real time", tables.jitter_table(asked, [each for each in own if each.kind == "jitter"])]
+        parts += [
+            "## Start, memory, restart",
+            tables.start_table(asked, [each for each in own if each.kind == "start"]),
+        ]
     parts.append("## What a tick costs")
     parts += [tables.cost_table(asked, peers, scenario) for scenario in scenarios]
-    parts += _left_out(asked, peers, missing, scenarios)
+    parts += _left_out(asked, peers, missing, scenarios, own)
     return "\n\n".join(parts)
 
 
 def _left_out(
-    runs: Runs, peers: Sequence[Peer], missing: Mapping[str, str], scenarios: Sequence[Scenario]
+    runs: Runs,
+    peers: Sequence[Peer],
+    missing: Mapping[str, str],
+    scenarios: Sequence[Scenario],
+    own: Sequence[OwnScenario],
 ) -> list[str]:
     lines = [f"- {name}: {reason}" for name, reason in missing.items()]
     lines += [
@@ -60,6 +72,7 @@ def _left_out(
         for scenario in scenarios
         for error in runs.errors(peer.name, scenario.name)
     ]
+    lines += [f"- fwk, {scenario.name}: {error}" for scenario in own for error in runs.errors("fwk", scenario.name)]
     return ["## Left out or failed", "\n".join(lines) or "Nothing."]
 
 

@@ -9,6 +9,7 @@ from dataclasses import asdict, replace
 from tools.bench import namespace
 from tools.bench.environments import CORE, REPOSITORY
 from tools.bench.figures import Run
+from tools.bench.own import OwnScenario
 from tools.bench.registry import Peer
 from tools.bench.scenarios import Scenario
 
@@ -51,6 +52,21 @@ def rotate(
     return runs
 
 
+def rotate_own(
+    scenarios: Sequence[OwnScenario], rounds: int, seconds: float, report: Callable[[Run], None]
+) -> list[Run]:
+    """Measures what only fwk has, every arrangement once a round."""
+    runs = []
+    words = isolation()
+    for number in range(rounds):
+        for scenario in scenarios:
+            job = {**scenario.job(seconds), "isolated": bool(words)}
+            run = Run(number, "fwk", scenario.name, _result([*words, *_module("own_driver"), json.dumps(job)]))
+            runs.append(run)
+            report(run)
+    return runs
+
+
 def _run(words: list[str], number: int, peer: Peer, scenario: Scenario, seconds: float) -> dict[str, object]:
     shape = scenario.shape
     if not words:
@@ -63,7 +79,14 @@ def _run(words: list[str], number: int, peer: Peer, scenario: Scenario, seconds:
         "seconds": seconds,
         "isolated": bool(words),
     }
-    command = [*words, sys.executable, "-m", "tools.bench.driver", json.dumps(job)]
+    return _result([*words, *_module("driver"), json.dumps(job)])
+
+
+def _module(name: str) -> list[str]:
+    return [sys.executable, "-m", f"tools.bench.{name}"]
+
+
+def _result(command: list[str]) -> dict[str, object]:
     try:
         done = subprocess.run(
             command,

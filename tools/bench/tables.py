@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from tools.bench.figures import Runs, Spread, tick_mean_us, tick_p99_us, tick_us
+from tools.bench.figures import Runs, Spread, error_us, tick_mean_us, tick_p99_us, tick_us
+from tools.bench.own import OwnScenario
 from tools.bench.registry import Peer
 from tools.bench.scenarios import Scenario
 
@@ -101,3 +102,28 @@ def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
 def _value(result: dict[str, Any], key: str) -> float | None:
     value = result.get(key)
     return None if value is None else float(value)
+
+
+def jitter_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
+    """How far the period from iteration to iteration is from what was asked for."""
+    rows = []
+    for scenario in scenarios:
+        spreads = [
+            runs.spread("fwk", scenario.name, lambda result, share=share: error_us(result, share))  # type: ignore[misc]
+            for share in (0.5, 0.99, 1.0)
+        ]
+        rows.append([scenario.name, *(milliseconds(spread) for spread in spreads)])
+    return markdown(["error of the period, ms", "median", "p99", "largest"], rows)
+
+
+def start_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
+    """What it takes to start, to hold and to restart."""
+    rows = []
+    for scenario in scenarios:
+        row = [scenario.name]
+        for key, form in (("processes", ".0f"), ("first_tick_s", ".2f"), ("pss_mb", ".0f"), ("restart_s", ".2f")):
+            spread = runs.spread("fwk", scenario.name, lambda result, key=key: _value(result, key))  # type: ignore[misc]
+            cell = "-" if spread is None else f"{spread.middle:{form}} ({spread.low:{form}}-{spread.high:{form}})"
+            row.append(cell)
+        rows.append(row)
+    return markdown(["launch file", "processes", "first tick, s", "PSS, MB", "component restarted, s"], rows)

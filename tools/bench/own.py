@@ -1,0 +1,39 @@
+"""Arrangements that only fwk has: how evenly it ticks in real time, how it starts, what it holds, how it restarts."""
+
+from dataclasses import asdict, dataclass
+from typing import Any, Literal
+
+
+@dataclass(frozen=True)
+class OwnScenario:
+    """One arrangement of fwk alone."""
+
+    name: str
+    kind: Literal["jitter", "start"]
+    components: int = 0
+    """Jitter: how many components tick."""
+    stages: int = 5
+    period_s: float = 0.0
+    busy: bool = False
+    """Jitter: whether every core has other work to do."""
+    file: str = ""
+    """Start: the launch file."""
+
+    def job(self, seconds: float) -> dict[str, Any]:
+        """What the driver of such runs is told."""
+        return {**asdict(self), "seconds": seconds}
+
+
+AT_100_HZ = "100 Hz, N=20, idle cores"
+SOCCER = "soccer.yaml"
+
+JITTER = (
+    OwnScenario(AT_100_HZ, "jitter", components=20, period_s=0.01),
+    OwnScenario("100 Hz, N=20, busy cores", "jitter", components=20, period_s=0.01, busy=True),
+    OwnScenario("1 kHz, N=2, idle cores", "jitter", components=2, stages=1, period_s=0.001),
+    OwnScenario("1 kHz, N=2, busy cores", "jitter", components=2, stages=1, period_s=0.001, busy=True),
+)
+START = (
+    OwnScenario(SOCCER, "start", file="soccer.yaml"),
+    OwnScenario("soccer-1v1.yaml", "start", file="soccer-1v1.yaml"),
+)
