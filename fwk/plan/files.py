@@ -86,8 +86,9 @@ def read_files(path: Path, problems: Problems) -> Files:
 
 def lay_over(files: Files, path: Path, node: Node, problems: Problems) -> None:
     """Adds a layer on top that may say what a host-specific file may say."""
-    content = _checked(HostFile, node, files, problems)
-    if content:
+    checked = _checked(HostFile, node, files, problems)
+    if checked:
+        content, node = checked
         given = {name: getattr(content, name) for name in content.model_fields_set}
         files.layers.append(Layer(path, LaunchFile.model_construct(**given), node))
 
@@ -105,10 +106,11 @@ class _Reader:
             return
         self._read.add(path)
         node = read_yaml(path, shown(path), self._problems)
-        content = _checked(LaunchFile, node, self._files, self._problems) if node else None
-        if node is None or content is None:
+        checked = _checked(LaunchFile, node, self._files, self._problems) if node else None
+        if checked is None:
             self._files.gaps.add("*")
             return
+        content, node = checked
         for number, name in enumerate(content.include):
             self._include(name, node.at("include", number).place, [*above, path])
         self._files.layers.append(Layer(path, content, node))
@@ -131,7 +133,7 @@ class _Reader:
             self.read(found, above)
 
 
-def _checked(model: type[F], node: Node, files: Files, problems: Problems) -> F | None:
+def _checked(model: type[F], node: Node, files: Files, problems: Problems) -> tuple[F, Node] | None:
     """The file's content; what does not fit is reported and left out, so that the rest can be checked too."""
 
     def report(path: NodePath, place: str, text: str) -> None:

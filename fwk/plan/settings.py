@@ -31,8 +31,8 @@ def effective(
         report(where if path else place, text)
 
     try:
-        made = validated(config, given, mistake, "setting")
-        values = made.model_dump(mode="json") if made else {}
+        checked = validated(config, given, mistake, "setting")
+        values = checked[0].model_dump(mode="json") if checked else {}
     except Exception as error:  # of a validator of the component's own
         report(place, f"its settings cannot be checked: {type(error).__name__}: {error}")
         return {}, {}

@@ -27,10 +27,11 @@ class _Mistake:
     missing: bool
 
 
-def validated(model: type[M], node: Node, report: Report, what: str) -> M | None:
+def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M, Node] | None:
     """The values as an instance of the model; every mistake goes to `report`. `what` is the word for a key.
 
-    What does not fit is left out of the result, so that the rest can be looked at too. None if nothing is left.
+    What does not fit is left out of the instance and of the node given back, so that the rest can be looked at too.
+    None if nothing is left.
     """
     first = True
     while True:
@@ -38,8 +39,8 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> M | None
         for mistake in mistakes:
             if first or not mistake.missing:  # later on, what is missing was left out here
                 report(mistake.path, node.at(*mistake.path).place, mistake.text)
-        if not mistakes:
-            return made
+        if made:
+            return made, node
         if any(mistake.path == () for mistake in mistakes):
             return None
         for path in reversed(
@@ -57,7 +58,8 @@ def _tried(model: type[M], node: Node, what: str) -> tuple[M | None, list[_Mista
             _Mistake(_path(node, found["loc"]), _text(model, node, found, what), found["type"] == "missing")
             for found in error.errors(include_url=False)
         ]
-    return made, [_Mistake(path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
+    mixed_up = [_Mistake(path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
+    return None if mixed_up else made, mixed_up
 
 
 def _without(node: Node, path: Path) -> Node:

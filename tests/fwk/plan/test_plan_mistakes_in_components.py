@@ -186,6 +186,13 @@ def test_imports(folder: Path, broken: Broken) -> None:
         "components: {it/a: {use: plan_parts:Odometer, config: {gain: 1}}}",
     ),
     Broken(
+        "it.yaml:2: 'config.it/a' is [1, 2]; it should be a mapping with keys such as 'name: value'",
+        """
+        components: {it/a: {use: plan_parts:Keyed, config: {key: x}}}
+        config: {it/a: [1, 2]}
+        """,
+    ),
+    Broken(
         """
         it.yaml:3: it/a: no setting 'gain'; there is key
         it.yaml:5: no component 'it/c'; there is it/a, it/b
