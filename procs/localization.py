@@ -15,6 +15,8 @@ from procs.estimation.line_map import line_map
 from procs.estimation.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.field import Field
 
+_FASTEST_M_S = 8.0  # no robot drives faster
+
 
 class LocalizationConfig(Config):
     """Settings of the self-localization."""
@@ -111,6 +113,8 @@ class Localization(Component):
         self._last, self._last_us = now, self.clock.now_us
         turn_rad = now.heading_rad - before.heading_rad
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
+        if np.hypot(*way_m) > _FASTEST_M_S * max(passed_s, self.clock.period_s):
+            return Motion(0.0, 0.0, 0.0, 0.0)  # the driver began anew: its frame has moved, not the robot
         if self._compass_rad() is not None:
             rate_rad_s = self.imu.value.yaw_rate_rad_s
             if before is not now:

@@ -276,3 +276,54 @@ def test_same_messages_give_the_same_poses() -> None:
 def test_a_part_of_a_start_pose_is_refused() -> None:
     with pytest.raises(ValueError, match="belong together"):
         Bench(Localization, start_x_m=1.0)
+
+
+def test_a_robot_that_is_blocked_while_its_wheels_turn_stays_where_it_is() -> None:
+    robot = FakeRobot(seed=19)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    bench = Bench(Localization, start_x_m=3.0, start_y_m=2.0, start_heading_rad=0.0)
+    frames(bench, robot, 20)
+    errors = []
+    for _ in range(60):
+        robot.odometry = np.add(robot.odometry, (2.0 * PERIOD_S, 0.0, 0.0))
+        assert frames(bench, robot, 1) == [True]
+        errors.append(np.hypot(*robot.error(bench)[:2]))
+    assert np.sqrt(np.mean(np.square(errors[5:]))) < 0.06, "the wheels turn 0.1 m a frame"
+
+
+def test_odometry_that_begins_anew_moves_nobody() -> None:
+    robot = FakeRobot(seed=21)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    robot.odometry = np.array((7.0, -3.0, 2.0))
+    bench = Bench(Localization, start_x_m=3.0, start_y_m=2.0, start_heading_rad=0.0)
+    frames(bench, robot, 10)
+    robot.odometry = np.zeros(3)
+    assert all(frames(bench, robot, 10))
+    assert np.hypot(*robot.error(bench)[:2]) < 0.05
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 1e300, -1e300])
+def test_values_that_cannot_be_are_survived(value: float) -> None:
+    robot = FakeRobot(seed=23)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    for name in ("x_m", "y_m", "heading_rad", "vx_m_s"):
+        bench.port("odometry").put(**{name: value})
+        bench.port("imu").put(heading_rad=value, yaw_rate_rad_s=value)
+        bench.port("line_points").put(x_m=[value] * 20, y_m=[value] * 20)
+        bench.iterate()
+    assert all(frames(bench, robot, 10))
+    assert np.hypot(*robot.error(bench)[:2]) < 0.05
+
+
+def test_settings_changed_while_it_runs_count_from_the_next_frame() -> None:
+    robot = FakeRobot(seed=25)
+    robot.pose = np.array((3.0, 2.0, 0.0))
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    bench.component.config.good_score = 0.99
+    assert all(frames(bench, robot, 5)), "the pose is kept"
+    robot.pose = np.array((-6.0, -2.0, 0.0))
+    frames(bench, robot, 40)
+    assert not any(frames(bench, robot, 40)), "no picture is that good"

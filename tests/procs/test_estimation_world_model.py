@@ -273,3 +273,43 @@ def test_same_messages_give_the_same_world() -> None:
         return [sent.encode() for robot in four.robots for sent in robot.bench.port("world_model").sent]
 
     assert run() == run()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e300])
+def test_values_that_cannot_be_are_survived(value: float) -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(10):
+        robot.sense(np.array((2.0, 0.0)), [np.array((0.0, 2.0))])
+        robot.bench.iterate()
+    obstacle = obstacle_t()
+    obstacle.x_m = obstacle.radius_m = value
+    said = team_message_t()
+    said.robot, said.localized, said.ball_visible, said.obstacles = "cyan2", True, True, [obstacle]
+    said.x_m = value
+    told = team_message_t()
+    told.robot, told.localized, told.ball_visible, told.obstacles = "cyan3", True, True, [obstacle]
+    told.ball_x_m = value
+    for broken in ({"x_m": value}, {"covariance": [[value] * 3] * 3}, {}):
+        robot.bench.port("pose").put(**{"localized": True, **broken})
+        robot.bench.port("odometry").put(vx_m_s=value, omega_rad_s=value)
+        robot.bench.port("ball_percept").put(visible=True, x_m=value, covariance_m2=[[value, 0.0], [0.0, -1.0]])
+        robot.bench.port("obstacle_percepts").put(obstacles=[obstacle])
+        robot.bench.port("kicker_state").put(ball_held=False, kicks=5)
+        robot.bench.port("team_inbox").put(messages=[said, told])
+        robot.bench.iterate()
+    for _ in range(5):
+        robot.sense(np.array((2.0, 0.0)), [np.array((0.0, 2.0))])
+        robot.bench.iterate()
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((2.0, 0.0), abs=0.1)
+    assert len(robot.world.opponents) == 1
+    assert [mate.name for mate in robot.world.mates] == ["cyan3"]
+
+
+def test_a_sighting_without_any_error_is_no_end_of_the_filter() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(10):
+        robot.bench.port("pose").put(localized=True)
+        robot.bench.port("ball_percept").put(visible=True, x_m=2.0)
+        robot.bench.port("obstacle_percepts").put(obstacles=[obstacle_t(), obstacle_t()])
+        robot.bench.iterate()
+    assert robot.world.ball.x_m == pytest.approx(2.0, abs=1e-3)
