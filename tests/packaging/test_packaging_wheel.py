@@ -105,3 +105,12 @@ def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run
     assert "20 ticks done" in result.stdout
     info = installed("fwk", "log-info", "mine.log")
     assert "cards.count_t" in info.stdout, info.stdout
+
+
+def test_the_installed_robots_play(installed: Run) -> None:
+    result = installed(
+        "fwk-launch", "one-robot.yaml", "--ticks", "5", "--speed", "max", "--bus-port", free_bus_port(), "--no-record"
+    )
+    assert result.returncode == 0, result.stdout
+    assert "CYAN 0 : 0 MAGENTA" in result.stdout
+    assert "one-robot: 5 ticks done" in result.stdout
