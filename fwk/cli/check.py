@@ -44,7 +44,9 @@ def check(
     try:
         plan = load_plan(file, options)
     except PlanError as error:
-        typer.echo(error, err=True)
+        for problem in error.problems:
+            place, rest = problem.place, str(problem).removeprefix(problem.place)
+            typer.echo(typer.style(place, bold=True) + rest, err=True)
         typer.echo(_counted(len(error.problems), "mistake"), err=True)
         raise typer.Exit(BAD_INPUT) from error
     console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
