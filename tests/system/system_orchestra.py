@@ -87,14 +87,14 @@ class Player(Component):
     burst: Writes[burst_t]
 
     def init(self) -> None:
-        if Path("pids").is_dir():
-            Path("pids", self.name.replace("/", "_")).write_text(str(os.getpid()))
+        self.leave_trace("pid", os.getpid())
         self.make_trouble("init")
         self.note.value.digest = self.config.tone
 
     def loop(self) -> None:
         note = self.note.value
         note.iterations += 1
+        self.leave_trace("tick", self.clock.tick)
         before = self.digest()
         note.heard = [self.heard(reader) for _, reader in (*self.notes.items(), *self.bursts.items())]
         for _ in range(self.config.work):
@@ -110,6 +110,12 @@ class Player(Component):
 
     def finalize(self) -> None:
         self.make_trouble("finalize")
+
+    def leave_trace(self, kind: str, number: int) -> None:
+        if Path("traces").is_dir():
+            new = Path("traces", f"{self.name.replace('/', '_')}.{kind}.new")
+            new.write_text(str(number))
+            new.rename(new.with_suffix(""))
 
     def make_trouble(self, where: str) -> None:
         done = Path("trouble-" + self.name.replace("/", "_"))

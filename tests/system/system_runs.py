@@ -127,9 +127,22 @@ class Launched:
             child.pid for child in self._children() if os.getsid(child.pid) == child.pid and not child.children()
         )
 
-    def host(self, component: str) -> int:
-        """The process of a player, which has written its number into `pids/`."""
-        return int((self.folder / "pids" / component.replace("/", "_")).read_text())
+    def host(self, player: str) -> int:
+        """The process of a player, which leaves its number in `traces/`, if there is such a folder."""
+        return self._trace(player, "pid")
+
+    def tick(self, player: str) -> int:
+        """The newest tick of a player; 0 before its first."""
+        return self._trace(player, "tick")
+
+    def until_ticks(self, player: str, number: int) -> None:
+        """Waits until a player has gone through so many more ticks."""
+        before = self.tick(player)
+        self.until_true(lambda: self.tick(player) >= before + number, f"{number} more ticks of {player}")
+
+    def _trace(self, player: str, kind: str) -> int:
+        path = self.folder / "traces" / f"{player.replace('/', '_')}.{kind}"
+        return int(path.read_text()) if path.exists() else 0
 
     def _children(self) -> list[psutil.Process]:
         return psutil.Process(self.process.pid).children()

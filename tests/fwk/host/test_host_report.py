@@ -1,0 +1,54 @@
+"""What was refused: each kind named once, all counted."""
+
+from fwk.aspects.logging import Logger
+from fwk.clock import Clock
+from fwk.host.report import Complaints, Figures
+from lcmtypes.core import log_t
+
+
+class Lines:
+    def __init__(self) -> None:
+        self.lines: list[log_t] = []
+        self.complaints = Complaints(Logger("r/base", Clock(), self.lines.append))
+
+    @property
+    def texts(self) -> list[str]:
+        return [line.text for line in self.lines]
+
+
+def test_the_same_complaint_is_named_at_powers_of_ten_and_always_counted() -> None:
+    said = Lines()
+    for _ in range(1234):
+        said.complaints("r/pose", "datagram from port 4711; refused")
+    assert said.texts == [
+        "r/pose: datagram from port 4711; refused",
+        *(f"r/pose: datagram from port 4711; refused ({count} times)" for count in (10, 100, 1000)),
+    ]
+    assert said.complaints.total == 1234
+    assert {line.level for line in said.lines} == {log_t.WARNING}
+
+
+def test_each_channel_and_each_kind_is_named() -> None:
+    said = Lines()
+    for channel in ("r/pose", "r/imu"):
+        for text in ("truncated; refused", "wrong type; refused"):
+            said.complaints(channel, text)
+    assert len(said.texts) == 4
+
+
+def test_a_stranger_with_endless_kinds_does_not_fill_memory_or_log() -> None:
+    said = Lines()
+    for number in range(100_000):
+        said.complaints("r/pose", f"datagram from port {number}; refused")
+    assert said.complaints.total == 100_000
+    assert len(said.texts) < 110
+
+
+def test_figures_sum_up_iterations() -> None:
+    figures = Figures("r/base", state="running")
+    for duration_us in (10, 30, 20):
+        figures.ran(duration_us)
+    message = figures.message()
+    assert (message.name, message.state, message.iterations) == ("r/base", "running", 3)
+    assert (message.busy_us, message.worst_us) == (60, 30)
+    assert message.awake_us >= 0
