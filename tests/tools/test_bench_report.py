@@ -8,6 +8,7 @@ from tools.bench import report, tables
 from tools.bench.environments import CORE
 from tools.bench.figures import Run, Runs, Spread
 from tools.bench.own import OwnScenario
+from tools.bench.record import Record
 from tools.bench.registry import Peer
 from tools.bench.scenarios import growth, variations
 
@@ -92,13 +93,15 @@ def test_tables_of_our_own() -> None:
     assert "| soccer.yaml | - | - | - | - |" in tables.start_table(Runs([]), OWN[1:])
 
 
+def record() -> Record:
+    return Record({"command": "bench"}, {"Zenoh": "not installed"}, ["lcm", "unix"], [5], [5], True, runs())
+
+
 def test_page_names_what_is_missing_and_what_failed() -> None:
-    page = report.text(
-        {"command": "bench"}, PEERS, {"Zenoh": "not installed"}, [*growth((5,)), *variations((5,))], OWN, runs()
-    )
+    page = report.text(record())
     assert "- command: bench" in page
     assert "- Zenoh: not installed" in page
-    assert "- Unix, N=5, 64 KiB: no first tick" in page
+    assert "- Unix datagrams, N=5, 64 KiB: no first tick" in page
 
 
 def test_insert_replaces_the_generated_part_only(tmp_path: Path) -> None:
@@ -118,7 +121,7 @@ def test_insert_refuses_a_page_without_its_place(tmp_path: Path, text: str) -> N
     assert page.read_text() == text
 
 
-def test_runs_survive_the_json_file(tmp_path: Path) -> None:
+def test_a_record_survives_its_file(tmp_path: Path) -> None:
     path = tmp_path / "deep" / "numbers.json"
-    report.write_json(path, {"machine": "this"}, runs())
-    assert report.read_runs(path) == runs()
+    record().save(path)
+    assert Record.read(path) == record()

@@ -1,4 +1,4 @@
-"""Two components of the peers that need nothing installed, in real processes."""
+"""Two components of fwk and of the peers that need nothing installed, in real processes."""
 
 from pathlib import Path
 
@@ -18,8 +18,19 @@ def _types() -> None:
     generate(Path(rotation.__file__).parent / "messages" / "lcmtypes")
 
 
-@pytest.mark.parametrize("name", ["unix", "lcm", "lcm_wire"])
-@pytest.mark.parametrize("padding_bytes", [0, 100_000])
+@pytest.mark.parametrize(
+    ("name", "padding_bytes"),
+    [
+        ("unix", 0),
+        ("unix", 100_000),
+        ("lcm", 0),
+        ("lcm", 100_000),
+        ("lcm_wire", 0),
+        ("lcm_wire", 100_000),
+        ("fwk", 0),
+        ("fwk_recorded", 100_000),
+    ],
+)
 def test_a_peer_does_the_work(name: str, padding_bytes: int) -> None:
     scenario = Scenario("two", Shape(2, padding_bytes=padding_bytes))
     runs = rotation.rotate([PEERS[name]], [scenario], 1, 0.2, lambda _: None)

@@ -1,6 +1,7 @@
 """Command line of the benchmark: python -m tools.bench [--quick] [--peers unix,lcm] [--sizes 5,20] [--rounds 5]."""
 
 import sys
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated
 
@@ -9,9 +10,9 @@ import typer
 from tools.bench import machine, report, rotation
 from tools.bench.environments import REPOSITORY
 from tools.bench.figures import Run, error_us, tick_us
-from tools.bench.own import JITTER, START
+from tools.bench.record import Record
 from tools.bench.registry import PEERS, Peer
-from tools.bench.scenarios import SIZES, growth, variations
+from tools.bench.scenarios import SIZES
 
 _PAGE = REPOSITORY / "docs" / "numbers.md"
 _JSON = REPOSITORY / "build" / "bench" / "numbers.json"
@@ -21,35 +22,47 @@ def main(
     peers: Annotated[str, typer.Option(help="Names, comma between; empty: all")] = "",
     sizes: Annotated[str, typer.Option(help="Numbers of components")] = ",".join(map(str, SIZES)),
     varied: Annotated[str, typer.Option(help="Sizes of the runs with ten reads, 64 KiB, loss; empty: none")] = "20,80",
-    rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 5,
-    with_own: Annotated[
-        bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")
-    ] = True,
+    own: Annotated[bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")] = True,
+    rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 3,
     seconds: Annotated[float, typer.Option(help="Longest time that ticks of one run are measured")] = 2.0,
     quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
     json_file: Annotated[Path, typer.Option("--json", help="Where every run goes")] = _JSON,
     page: Annotated[Path, typer.Option(help="Page whose tables are replaced")] = _PAGE,
     no_page: Annotated[bool, typer.Option("--no-page", help="Print the tables, change no page")] = False,
+    render: Annotated[bool, typer.Option("--render", help="Measure nothing: tables of the JSON file")] = False,
 ) -> None:
-    """Measures a full tick of fwk and of its peers, in rotation, and writes docs/numbers.md."""
+    """Measures a full tick of fwk and of its peers, in rotation, and writes docs/numbers.md.
+
+    Ctrl-C ends the measuring; what was measured until then is written.
+    """
     if quick:
         sizes, varied, rounds, seconds = "5,20", "20", 2, 0.5
-    chosen, missing = _peers(peers)
-    scenarios = [*growth(_numbers(sizes)), *variations(_numbers(varied))]
-    about: dict[str, str] = {"command": _command(), **machine.describe()}
-    isolated = bool(rotation.isolation())
-    about["isolation"] = "a network and process namespace a run" if isolated else "own ports a run; no namespaces here"
-    about["rounds"] = str(rounds)
-    for name, reason in missing.items():
-        typer.echo(f"{name}: left out: {reason}", err=True)
-    own = (*JITTER, *START) if with_own else ()
-    runs = rotation.rotate(chosen, scenarios, rounds, seconds, _show)
-    runs += rotation.rotate_own(own, rounds, seconds, _show)
-    report.write_json(json_file, {**about, "missing": missing}, runs)
-    tables = report.text(about, chosen, missing, scenarios, own, runs)
+    if render:
+        record = Record.read(json_file)
+    else:
+        chosen, missing = _peers(peers)
+        about = {"command": _command(), **machine.describe(), "isolation": _isolation(), "rounds": str(rounds)}
+        names = [peer.name for peer in chosen]
+        record = Record(about, missing, names, _numbers(sizes), _numbers(varied), own)
+        _measure(record, rounds, seconds, json_file)
+    tables = report.text(record)
     typer.echo(tables)
     if not no_page:
         report.insert(page, tables)
+
+
+def _measure(record: Record, rounds: int, seconds: float, json_file: Path) -> None:
+    for name, reason in record.missing.items():
+        typer.echo(f"{name}: left out: {reason}", err=True)
+
+    def take(run: Run) -> None:
+        record.runs.append(run)
+        typer.echo(f"round {run.round + 1}  {run.scenario:<24} {run.peer:<12} {_figure(run)}", err=True)
+        record.save(json_file)
+
+    with suppress(KeyboardInterrupt):
+        rotation.rotate(record.peers, record.scenarios, rounds, seconds, take)
+        rotation.rotate_own(record.own, rounds, seconds, take)
 
 
 def _peers(names: str) -> tuple[list[Peer], dict[str, str]]:
@@ -68,16 +81,20 @@ def _numbers(words: str) -> tuple[int, ...]:
         raise typer.BadParameter(f"'{words}': numbers with commas between, for example 5,20,40") from error
 
 
-def _show(run: Run) -> None:
+def _figure(run: Run) -> str:
     if run.error:
-        figure = run.error
-    elif "tick_us" in run.result:
-        figure = f"{tick_us(run.result) / 1000:.2f} ms"
-    elif "error_us" in run.result:
-        figure = f"p99 of the period's error {error_us(run.result, 0.99) / 1000:.2f} ms"
-    else:
-        figure = f"first tick after {run.result['first_tick_s']:.2f} s, {run.result['pss_mb']:.0f} MB"
-    typer.echo(f"round {run.round + 1}  {run.scenario:<20} {run.peer:<12} {figure}", err=True)
+        return run.error
+    if "tick_us" in run.result:
+        return f"{tick_us(run.result) / 1000:.2f} ms"
+    if "error_us" in run.result:
+        return f"p99 of the period's error {error_us(run.result, 0.99) / 1000:.2f} ms"
+    return f"first tick after {run.result['first_tick_s']:.2f} s, {run.result['pss_mb']:.0f} MB"
+
+
+def _isolation() -> str:
+    if rotation.isolation():
+        return "a network and process namespace a run"
+    return "own ports a run; this machine allows no namespaces, so packet loss is not measured"
 
 
 def _command() -> str:

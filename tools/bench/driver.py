@@ -23,7 +23,7 @@ from tools.bench.registry import PEERS, Peer
 from tools.bench.shape import Shape
 from tools.bench.timing import now_us, sleep_s
 
-_FIRST_TICK_S = 50.0
+_FIRST_TICK_S = 90.0
 _END_S = 5.0
 _LOOK_S = 0.2
 

@@ -1,44 +1,21 @@
-"""Writes what was measured: every run as JSON, and the tables into the generated part of docs/numbers.md."""
+"""The tables of a benchmark, and their place in docs/numbers.md."""
 
-import json
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 
 from tools.bench import goals, tables
-from tools.bench.figures import Run, Runs
-from tools.bench.own import OwnScenario
-from tools.bench.registry import Peer
-from tools.bench.scenarios import Scenario
+from tools.bench.figures import Runs
+from tools.bench.record import Record
 
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
 
 
-def write_json(path: Path, about: Mapping[str, object], runs: Sequence[Run]) -> None:
-    """Writes every run with the wall time of every tick."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(json.dumps({**about, "runs": [asdict(run) for run in runs]}, indent=1))
-
-
-def read_runs(path: Path) -> list[Run]:
-    """Reads back the runs of `write_json`."""
-    return [Run(**run) for run in json.loads(path.read_text())["runs"]]
-
-
-def text(
-    about: Mapping[str, str],
-    peers: Sequence[Peer],
-    missing: Mapping[str, str],
-    scenarios: Sequence[Scenario],
-    own: Sequence[OwnScenario],
-    runs: Sequence[Run],
-) -> str:
+def text(record: Record) -> str:
     """The generated part of docs/numbers.md."""
-    asked = Runs(runs)
+    asked, peers, scenarios, own = Runs(record.runs), record.peers, record.scenarios, record.own
     plain = [scenario for scenario in scenarios if scenario.is_plain]
     others = [scenario for scenario in scenarios if not scenario.is_plain]
     sizes = [scenario.shape.components for scenario in plain]
-    parts = ["\n".join(f"- {key}: {value}" for key, value in about.items())]
+    parts = ["\n".join(f"- {key}: {value}" for key, value in record.about.items())]
     verdicts = goals.judge(asked, peers, sizes)
     rows = [[verdict.goal, verdict.word, verdict.figures or "-"] for verdict in verdicts]
     parts += ["## Goals", tables.markdown(["goal", "verdict", "figures"], rows)]
@@ -54,25 +31,22 @@ def text(
         ]
     parts.append("## What a tick costs")
     parts += [tables.cost_table(asked, peers, scenario) for scenario in scenarios]
-    parts += _left_out(asked, peers, missing, scenarios, own)
+    parts += _left_out(record)
     return "\n\n".join(parts)
 
 
-def _left_out(
-    runs: Runs,
-    peers: Sequence[Peer],
-    missing: Mapping[str, str],
-    scenarios: Sequence[Scenario],
-    own: Sequence[OwnScenario],
-) -> list[str]:
-    lines = [f"- {name}: {reason}" for name, reason in missing.items()]
+def _left_out(record: Record) -> list[str]:
+    runs = Runs(record.runs)
+    lines = [f"- {name}: {reason}" for name, reason in record.missing.items()]
     lines += [
         f"- {peer.title}, {scenario.name}: {error}"
-        for peer in peers
-        for scenario in scenarios
+        for peer in record.peers
+        for scenario in record.scenarios
         for error in runs.errors(peer.name, scenario.name)
     ]
-    lines += [f"- fwk, {scenario.name}: {error}" for scenario in own for error in runs.errors("fwk", scenario.name)]
+    lines += [
+        f"- fwk, {scenario.name}: {error}" for scenario in record.own for error in runs.errors("fwk", scenario.name)
+    ]
     return ["## Left out or failed", "\n".join(lines) or "Nothing."]
 
 

@@ -13,7 +13,7 @@ from tools.bench.own import OwnScenario
 from tools.bench.registry import Peer
 from tools.bench.scenarios import Scenario
 
-_RUN_S = 120.0
+_RUN_S = 150.0
 _FIRST_PORT = 20_000
 _PORTS_A_RUN = 700
 

@@ -14,7 +14,7 @@ WARM_UP_TICKS = 20
 WARM_UP_US = 1_000_000  # eCAL and ROS connect readers to writers while ticks already run
 _REPEAT_S = 0.005  # first repetition of a tick; doubled each time
 _REPEAT_MAX_S = 0.2
-_GIVE_UP_S = 40.0
+_GIVE_UP_S = 80.0
 
 
 class NoAnswer(Exception):  # noqa: N818 - it says what happened

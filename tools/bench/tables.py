@@ -29,11 +29,6 @@ def milliseconds(spread: Spread | None) -> str:
     return f"{_number(spread.middle / 1000)} ({_number(spread.low / 1000)}-{_number(spread.high / 1000)})"
 
 
-def times(spread: Spread | None) -> str:
-    """A ratio: `x1.25 (1.20-1.31)`."""
-    return "-" if spread is None else f"x{spread.middle:.2f} ({spread.low:.2f}-{spread.high:.2f})"
-
-
 def _number(value: float) -> str:
     return f"{value:.2f}" if value < 10 else f"{value:.1f}" if value < 100 else f"{value:.0f}"
 

@@ -12,7 +12,7 @@ from tools.bench.shape import Shape
 from tools.bench.timing import now_us, sleep_s
 
 _NUMBERS = struct.Struct("=ii")
-_PATIENCE_US = 30_000_000
+_PATIENCE_US = 60_000_000
 
 
 def supervisor(shape: Shape) -> "ZenohSupervisor":

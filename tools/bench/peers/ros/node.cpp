@@ -30,7 +30,7 @@ constexpr int kWarmUpTicks = 20;
 constexpr int64_t kWarmUpUs = 1000000;
 constexpr double kRepeatS = 0.005;
 constexpr double kRepeatMaxS = 0.2;
-constexpr int64_t kGiveUpUs = 40000000;
+constexpr int64_t kGiveUpUs = 80000000;
 
 struct Shape {
   int index, components, stages, reads, padding;
