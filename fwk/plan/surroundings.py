@@ -14,6 +14,8 @@ from fwk.plan.names import mistake_in
 
 _URL = "udpm://"
 _BUFFER = "recv_buf_size"
+_PUBLIC_PORT = 7667
+_PORTS = range(1024, 65536)
 
 
 def last(files: Files, key: str, default: Any) -> Any:
@@ -65,7 +67,8 @@ def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str
     Where no file names one, the usual port moves by as much as the bus port does, so that two runs keep apart.
     """
     moved = 0 if bus_port is None else bus_port - Plan.bus_port
-    url: str = last(files, "public_url", Plan.public_url.replace(":7667", f":{7667 + moved}"))
+    port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # below the lowest comes the highest
+    url: str = last(files, "public_url", Plan.public_url.replace(f":{_PUBLIC_PORT}", f":{port}"))
     if not url.startswith(_URL):
         text = f"'{url}' is no public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
         problems.add(_place(files, "public_url"), "", text)

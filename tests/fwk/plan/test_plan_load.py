@@ -73,6 +73,18 @@ def test_options_win_over_the_file(load: Load) -> None:
     assert load(DRIVING, sets=["period_s=0.1", "speed=max"]).period_us == 100_000
 
 
+PORTS = [(None, 7667), (17_700, 7667), (18_700, 8667), (11_057, 1024), (11_056, 65_535)]
+
+
+@pytest.mark.parametrize(("bus_port", "port"), PORTS)
+def test_the_public_bus_moves_with_the_bus_port_unless_the_file_names_it(
+    load: Load, bus_port: int | None, port: int
+) -> None:
+    assert load(DRIVING, bus_port=bus_port).public_url.startswith(f"udpm://239.255.76.67:{port}?")
+    named = load(DRIVING + "public_url: udpm://239.255.76.67:7000\n", bus_port=bus_port)
+    assert named.public_url == "udpm://239.255.76.67:7000?recv_buf_size=4194304"
+
+
 def test_settings_lie_over_each_other_and_tell_their_origin(load: Load, folder: Path) -> None:
     (folder / "part.yaml").write_text(
         "components:\n"
