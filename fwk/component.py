@@ -54,6 +54,9 @@ class Component:
     def loop(self) -> None:
         """One iteration."""
 
+    def config_changed(self) -> None:
+        """Called between two iterations when settings were changed; `self.config` has the new ones."""
+
     def finalize(self) -> None:
         """Called once after the last iteration."""
 

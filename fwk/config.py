@@ -1,5 +1,7 @@
 """Settings of a component: typed fields with defaults, checked before anything starts."""
 
+from typing import Self
+
 from pydantic import BaseModel, ConfigDict
 
 
@@ -17,3 +19,14 @@ class Config(BaseModel):
     model_config = ConfigDict(
         extra="forbid", use_attribute_docstrings=True, validate_assignment=True, validate_default=True
     )
+
+    def take_over(self, other: Self) -> None:
+        """Becomes like `other`, whose values are checked already; whoever holds this object, or one nested in it, sees
+        the new values.
+        """
+        for name in type(self).model_fields:
+            old, new = getattr(self, name), getattr(other, name)
+            if isinstance(old, Config) and type(new) is type(old):
+                old.take_over(new)
+            else:
+                self.__dict__[name] = new

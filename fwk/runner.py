@@ -59,6 +59,12 @@ class Runner:
         for port in declaration.ports:
             setattr(self.component, port.attribute, self._port(port, channels[port.attribute]))
 
+    def configure(self, settings: Mapping[str, Any]) -> None:
+        """Between two iterations: gives the component new settings, all of them, and tells it."""
+        config: Config = getattr(self.component, "config")  # noqa: B009 - not every component declares one
+        config.take_over(type(config).model_validate(settings))
+        self.component.config_changed()
+
     def iterate(
         self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
     ) -> list[tuple[str, bytes]]:

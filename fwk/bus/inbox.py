@@ -1,6 +1,6 @@
 """One channel as its reading process holds it: what has arrived, what is missing, and who may send."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from fwk import messages
 from fwk.bus import wire
@@ -74,10 +74,10 @@ class Inbox(Box):
     Its messages wait in the socket until `collect` is asked for them, so their arrival wakes nobody.
     """
 
-    def __init__(self, plan: ChannelPlan, port: int, writer_port: int, complain: Complain) -> None:
+    def __init__(self, plan: ChannelPlan, port: int, senders: Sequence[int], complain: Complain) -> None:
         super().__init__(plan)
         self._socket = multicast_receiver(port)
-        self._writer_port = writer_port
+        self._senders = senders  # ports that its messages may come from
         self._name = plan.name.encode()
         self._start = len(self._name) + 9  # of the data in a short message
         self._fingerprint = messages.fingerprint(messages.type_named(plan.type_name))
@@ -115,7 +115,7 @@ class Inbox(Box):
             datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
         except BlockingIOError:
             return False
-        if address[1] != self._writer_port:
+        if address[1] not in self._senders:
             self._complain(self.plan.name, f"datagram from port {address[1]}, which is not the writer's; refused")
             return True
         start = self._start

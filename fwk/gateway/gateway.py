@@ -2,6 +2,7 @@
 
 import select
 import socket
+import struct
 from typing import Protocol
 
 from fwk.aspects.logging import Logger
@@ -12,7 +13,7 @@ from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import Clock
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
-from fwk.messages import Header, MessageError
+from fwk.messages import Header, MessageError, sequence_of
 from fwk.plan.model import Plan
 from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
 
@@ -52,6 +53,7 @@ class Gateway:
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
+        self._newest: dict[int, bytes] = {}  # newest message of each channel
         self._waiting: dict[int, tick_record_t] = {}
         self._next = 1  # tick whose record comes next
         self._open = True
@@ -98,6 +100,7 @@ class Gateway:
         collected = []
         for box in moved:
             for data in box.take():
+                self._newest[box.plan.index] = data
                 header = Header.of(data)
                 collected.append((header.tick, header.stage, box.plan.index, header.sequence, box.plan.name, data))
         collected.sort()
@@ -158,14 +161,19 @@ class Gateway:
             except (BlockingIOError, ConnectionRefusedError):
                 break
             try:
-                message = wire.Assembler().feed(datagram, address[1])
-                if not message or message[0] != b"fwk/gone":
-                    raise MessageError("not fwk/gone")
-                gone = gone_t.decode(message[1])
-                if gone.run == self._run:
-                    self._give_up(gone)
-            except (MessageError, ValueError) as error:
-                self._complaints("fwk/gone", f"{error}; refused")
+                name, data = wire.short(datagram)
+                if name == b"fwk/gone":
+                    gone = gone_t.decode(data)
+                    if gone.run == self._run:
+                        self._give_up(gone)
+                elif name == b"fwk/fetch":
+                    fetch = fetch_t.decode(data)
+                    if fetch.run == self._run and 0 <= fetch.channel < len(self._plan.channels):
+                        self._answer_for(fetch)
+                else:
+                    raise MessageError("neither gone nor fetch")
+            except (MessageError, ValueError, struct.error) as error:
+                self._complaints("fwk/gone", f"{error} (from port {address[1]}); refused")
         try:
             if not self._control.recv(1):
                 self._open = False
@@ -174,6 +182,24 @@ class Gateway:
         except OSError:
             self._open = False
         return self._open
+
+    def _answer_for(self, fetch: fetch_t) -> None:
+        """Answers in place of a writer that has left the run: its newest message is here, older ones are gone."""
+        gone = gone_t()
+        gone.run, gone.channel = fetch.run, fetch.channel
+        gone.first_sequence, gone.last_sequence = fetch.first_sequence, fetch.last_sequence
+        if fetch.host == self._ports.gateway:
+            self._give_up(gone)
+            return
+        box = self._inputs.box(fetch.channel)
+        if box.floor < fetch.last_sequence:  # not there yet; the reader asks again
+            return
+        newest = self._newest.get(fetch.channel)
+        if newest and fetch.first_sequence <= sequence_of(newest) <= fetch.last_sequence:
+            self._sender.publish(box.plan.name.encode(), newest, self._ports.channel(fetch.channel))
+            gone.last_sequence = sequence_of(newest) - 1
+        if gone.last_sequence >= gone.first_sequence:
+            self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
 
     def _give_up(self, gone: gone_t) -> None:
         lost = self._inputs.gone(gone)

@@ -1,11 +1,12 @@
 """The host process: answers each tick with one iteration of each of its components and one done."""
 
+import json
 import select
 import socket
 import struct
 import traceback
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 
 from fwk.aspects.logging import Logger
@@ -15,14 +16,14 @@ from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import US_PER_S, Clock, monotonic_us
-from fwk.component import declaration
+from fwk.component import DeclarationError, declaration
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.runner import Runner, Surroundings
-from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
+from lcmtypes.core import actual_t, change_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
 REPORT_US = US_PER_S
@@ -40,6 +41,10 @@ class Assignment:
     """Sequence numbers that its channels have reached, for one that was restarted."""
     rings: Mapping[str, Ring]
 
+    settings: Mapping[str, str] = field(default_factory=dict)
+    """Settings of its components that were changed since the run began, by name, as JSON."""
+    fresh_code: bool = False
+    """Whether it imports the application's modules anew."""
 
 class Failure(Exception):  # noqa: N818 - a failure of a component, not an error of the framework
     """A component failed; the text says which, where and why."""
@@ -64,7 +69,7 @@ class Host:
         read = [channel for channel in plan.channels if indices & set(channel.readers)]
         local = [channel for channel in read if channel.name in written]
         self.inputs = Inputs(plan, read, local, assignment.host, assignment.run, self._sender, self._complaints)
-        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local)
+        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.sequences)
         stages = sorted({stage for component in self._own for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
         self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
@@ -80,6 +85,7 @@ class Host:
         self._answered = (0, -1)  # the newest (tick, stage) done
         self._done = b""
         self._report_us = 0
+        self._configured = 0  # number of the newest change of settings taken over
 
     def serve(self) -> None:
         """Initialises the components, answers ticks until it is told to stop, finalizes the components.
@@ -118,7 +124,11 @@ class Host:
         component = getattr(import_module(plan.module), plan.class_name)
         declared = declaration(component)
         surroundings = Surroundings(self._plan.seed, self._plan.period_us, self._send_log, self._assignment.rings)
-        config = declared.config.model_validate(plan.config) if declared.config else None
+        if {port.attribute for port in declared.ports} != set(plan.channels):
+            raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
+        changed = self._assignment.settings.get(plan.name)
+        settings = json.loads(changed) if changed else plan.config
+        config = declared.config.model_validate(settings) if declared.config else None
         runner = Runner(declared, plan.name, config, plan.channels, surroundings, self._assignment.incarnation)
         for channel, writer in runner.writers.items():
             writer.sequence = self._assignment.sequences.get(channel, 0)
@@ -159,6 +169,7 @@ class Host:
             return
         self._deliver(moved)
         self._iterate(tick, stage)
+        self._configure(tick.changes)
         self._answered = (tick.tick, stage)
 
     def _deliver(self, moved: list[Box]) -> None:
@@ -168,6 +179,14 @@ class Host:
                 self._waiting[name][box.plan.name] += arrived
 
     def _iterate(self, tick: tick_t, stage: int) -> None:
+    def _configure(self, changes: list[change_t]) -> None:
+        for change in changes:
+            plan = self._plan.components[change.component]
+            if plan.name in self._runners and change.number > self._configured:
+                with self._guard(plan.name, "config_changed"):
+                    self._runners[plan.name].configure(json.loads(change.settings))
+        self._configured = max([self._configured, *(change.number for change in changes)])
+
         written: list[tuple[str, bytes]] = []
         next_us, began_us = -1, monotonic_us()
         for plan in self._own:

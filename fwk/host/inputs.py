@@ -40,8 +40,8 @@ class Inputs:
         self._boxes: dict[int, Box] = {box.plan.index: box for box in self.local.values()}
         for channel in read:
             if channel.name not in self.local:
-                writer_port = ports.host(self._writer_host[channel.index])
-                self._boxes[channel.index] = Inbox(channel, ports.channel(channel.index), writer_port, complain)
+                senders = (ports.host(self._writer_host[channel.index]), ports.host(ports.gateway))
+                self._boxes[channel.index] = Inbox(channel, ports.channel(channel.index), senders, complain)
         self.fetched = 0  # messages that were lost and came after asking
         self.lost = 0  # messages that could not be had any more
 
@@ -64,6 +64,10 @@ class Inputs:
                 box.mark = sequence
                 moved.append(box)
         return moved
+
+    def box(self, channel: int) -> Box:
+        """The channel with that index."""
+        return self._boxes[channel]
 
     def newest_only(self) -> None:
         """For a late joiner: of what is visible already it wants the newest."""

@@ -15,11 +15,17 @@ class Outputs:
     """The channels that a host's components write."""
 
     def __init__(
-        self, written: Mapping[str, ChannelPlan], ports: Ports, sender: Sender, local: Mapping[str, Box]
+        self,
+        written: Mapping[str, ChannelPlan],
+        ports: Ports,
+        sender: Sender,
+        local: Mapping[str, Box],
+        sequences: Mapping[str, int],
     ) -> None:
         self._written = {
             name: (plan.index, name.encode(), ports.channel(plan.index), History()) for name, plan in written.items()
         }
+        self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
         self._sender = sender
         self._ports = ports
@@ -40,9 +46,16 @@ class Outputs:
         return marks
 
     def answer(self, fetch: fetch_t) -> None:
-        """Sends again what a reader lacks, or tells it that this is no longer to be had."""
+        """Sends again what a reader lacks, or tells it that this is no longer to be had.
+
+        What a predecessor had sent, before this process was started in its place, the gateway may still have.
+        """
         if fetch.channel not in self._by_index:
             return
+        before = self._before[fetch.channel]
+        if fetch.first_sequence <= before:
+            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(self._ports.gateway))
+            fetch.first_sequence = before + 1
         name, port, history = self._by_index[fetch.channel]
         kept = history.between(fetch.first_sequence, fetch.last_sequence)
         for _, data in kept:

@@ -15,6 +15,7 @@ from fwk.supervisor.children import Children, decoded
 from fwk.supervisor.hosts import Hosts, StartFailure
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.control import Control
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.pace import Pace
@@ -85,6 +86,7 @@ class Supervisor:
             return f"not started: {failure}", True
         self._status = StatusReport(self._status.run, self._hosts.table, self.loop, self.pace)
         while not self._interrupted() and not self._done():
+        self._zygote = zygote
             self.loop.run_tick()
             self._clock.tick, self._clock.now_us = self.loop.tick, self.pace.time_us
             if self._status.due:
@@ -92,6 +94,7 @@ class Supervisor:
         self.wall_s = self._status.wall_s
         self.loop.finish()
         broken = [f"{entry.name}: {entry.reason}" for entry in self._hosts.table if entry.state == "failed"]
+        self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log)
         if broken:
             return f"failed: {'; '.join(broken)}", True
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
@@ -117,6 +120,8 @@ class Supervisor:
         status = self._status.message()
         self._sender.publish(b"fwk/status", status.encode(), self._ports.status)
         return status
+        self._control.close()
 
     def _send_log(self, line: log_t) -> None:
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)
+        self._control.published(status)

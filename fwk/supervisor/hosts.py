@@ -10,6 +10,7 @@ from fwk.plan.model import Plan
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.output import Captured
+from fwk.supervisor.standin import StandIn
 from fwk.supervisor.table import HostEntry, host_table
 from fwk.supervisor.zygote import Started, Zygote
 from lcmtypes.core import actual_t
@@ -28,12 +29,15 @@ class Hosts:
         self.table: list[HostEntry] = host_table(plan)
         self.on_started: Callable[[HostEntry], None] = lambda _: None
         self.on_lost: Callable[[HostEntry], None] = lambda _: None
+        self.on_stopped: Callable[[HostEntry], None] = lambda _: None
+        self.settings_of: Callable[[HostEntry], dict[str, str]] = lambda _: {}
         self._plan = plan
         self._zygote = zygote
         self._ledger = ledger
         self._mailbox = mailbox
         self._log = log
         self._stopping = False
+        self._standins: dict[int, StandIn] = {}
         mailbox.on_actual = self._on_actual
         mailbox.watch(zygote.socket.fileno(), self._on_zygote)
 
@@ -65,13 +69,35 @@ class Hosts:
             elif entry.state == "starting" and now_us - entry.since_us > entry.ready_timeout_us:
                 self._log.error(f"{entry.name}: not ready after {entry.ready_timeout_us / US_PER_S:g} s; killed")
                 entry.since_us = now_us
+                self.kill(entry)
+            elif entry.state == "stopping" and now_us - entry.since_us > STOP_GRACE_US:
+                self._log.warning(f"{entry.name}: did not stop when asked; killed")
+                entry.since_us = now_us
+                self.kill(entry)
+
+    def steer(self) -> None:
+        """Between two ticks: what is asked to leave the loop leaves it, what is asked to join it is started."""
+        for entry in self.table:
+            if entry.leaves:
+                entry.leaving(monotonic_us())
+                self.on_stopped(entry)
                 if entry.pid:
-                    self._zygote.signal(entry.pid, signal.SIGKILL)
+                    self._zygote.signal(entry.pid, signal.SIGTERM)
+            elif entry.joins:
+                self._start(entry)
+            elif not entry.wanted and entry.state in ("loaded", "waiting", "failed"):
+                entry.state, entry.reason = "stopped", ""
+                self.on_stopped(entry)
+
+    def kill(self, entry: HostEntry) -> None:
+        """Ends a process that cannot be asked any more."""
+        if entry.pid:
+            self._zygote.signal(entry.pid, signal.SIGKILL)
 
     @property
     def unsettled(self) -> bool:
         """Whether something has to be maintained."""
-        return any(entry.state in ("waiting", "starting") for entry in self.table)
+        return any(entry.state in ("waiting", "starting", "stopping") for entry in self.table)
 
     def stop_all(self) -> list[str]:
         """Asks all hosts to stop, kills those that do not; returns the names of those killed."""
@@ -95,8 +121,12 @@ class Hosts:
         return killed
 
     def _start(self, entry: HostEntry) -> None:
+        standin = self._standins.pop(entry.index, None)
+        if standin:
+            standin.close()
         incarnation = entry.starting(monotonic_us())
-        self._zygote.start(entry.index, incarnation, self._ledger.sequences(entry.index))
+        settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
+        self._zygote.start(entry.index, incarnation, sequences, settings, entry.fresh_code)
 
     def _where(self, entry: HostEntry) -> str:
         stuck = [item.name for item in entry.components if item.state == "init"]
@@ -121,16 +151,22 @@ class Hosts:
             entry = self.table[event.host]
             if isinstance(event, Started):
                 entry.pid = event.pid
+                if entry.state == "stopping":  # asked to stop before there was a process to ask
+                    self._zygote.signal(event.pid, signal.SIGTERM)
                 Captured(event.output, self._mailbox, partial(self._say, self._log.info, entry.name))
                 Captured(event.errors, self._mailbox, partial(self._say, self._log.warning, entry.name))
             elif event.incarnation == entry.incarnation:
                 self._ended(entry, event.code)
 
     def _ended(self, entry: HostEntry, code: int) -> None:
+        asked = entry.state == "stopping"
         entry.ended(code, monotonic_us(), self._stopping)
         self._ledger.void(entry.index, entry.incarnation + 1)
-        self.on_lost(entry)
-        if not self._stopping:
+        if not asked:
+            self.on_lost(entry)
+        if not entry.expected and not self._stopping:
+            self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
+        if not self._stopping and not asked:
             again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
             self._log.error(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
 

@@ -13,12 +13,13 @@ from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.pace import Pace
-from fwk.supervisor.table import HostEntry
-from lcmtypes.core import done_t, tick_event_t, tick_record_t, tick_t, void_t
+from fwk.supervisor.table import Change, HostEntry
+from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
 REPEAT_US = 2_000  # a tick is repeated after so much more than the stage usually takes; doubles with each time
 REPEAT_LONGEST_US = 100_000
 UNSETTLED_US = 20_000  # how often to look after hosts that are being started again
+STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 
 
@@ -41,6 +42,8 @@ class MainLoop:
         self.repeated = 0
         self.late = 0
         self.recorded = 0  # newest tick that the gateway has
+        self.on_boundary: Callable[[int], None] = lambda _: None
+        """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
         self._plan = plan
         self._run = run
         self._hosts = hosts
@@ -65,10 +68,30 @@ class MainLoop:
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._events: list[tick_event_t] = []
         self._changed: dict[int, int] = {}
+        self._changes: list[Change] = []  # that this tick began with
         self._records: deque[tuple[int, bytes]] = deque(maxlen=4 * WINDOW)
         mailbox.on_done = self._on_done
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
+        hosts.on_stopped = self._on_stopped
+
+    @property
+    def time_us(self) -> int:
+        """Logical time of the newest tick."""
+        return self._pace.time_us
+
+    @property
+    def waits_for(self) -> list[str]:
+        """Names of the hosts that the running stage waits for."""
+        return [self._hosts.table[index].name for index in sorted(self._outstanding)]
+
+    def change(self, component: int, number: int, settings: str) -> None:
+        """At a tick boundary: new settings of a component, which its next iteration has."""
+        entry = self._hosts.table[self._plan.components[component].host]
+        change = Change(component, number, settings, self._step + 1)
+        self._changes.append(change)
+        if entry.alive:
+            entry.changes.append(change)
 
     def run_tick(self) -> None:
         """Waits until the next tick may begin, then runs all its stages."""
@@ -79,6 +102,8 @@ class MainLoop:
             return
         if self._hosts.unsettled:
             self._hosts.maintain()
+        self.on_boundary(self.tick + 1)
+        self._hosts.steer()
         self.tick += 1
         time_us = self._pace.advance(monotonic_us())
         for stage, members in enumerate(self._by_stage):
@@ -120,6 +145,7 @@ class MainLoop:
             if not self._lockstep and now_us >= began_us + self._stage_time_us:
                 self._leave_behind(members, stage)
                 return
+            self._break_off(now_us)
             if self._hosts.unsettled:
                 self._hosts.maintain()
                 self._outstanding &= {entry.index for entry in members if entry.expected}
@@ -143,7 +169,18 @@ class MainLoop:
         tick.n_voids = len(tick.voids)
         tick.absent = [entry.index for entry in members if entry not in told]
         tick.n_absent = len(tick.absent)
+        tick.changes = [_message(change) for entry in told for change in entry.changes]
+        tick.n_changes = len(tick.changes)
         self._sender.publish(sync.TICK, sync.encode_tick(tick), self._ports.stage(self._stage))
+
+    def _break_off(self, now_us: int) -> None:
+        """Kills what shall stop but keeps the loop from reaching the boundary at which it would."""
+        for index in self._outstanding:
+            entry = self._hosts.table[index]
+            if entry.leaves and now_us >= entry.asked_us + STUCK_US:
+                self._log.warning(f"{entry.name}: shall stop, but does not come out of its iteration; killed")
+                entry.asked_us = now_us
+                self._hosts.kill(entry)
 
     def _voids(self, since: int) -> list[void_t]:
         made = []
@@ -169,6 +206,8 @@ class MainLoop:
             entry.seen = self._step
         else:
             return
+        if entry.changes:
+            entry.told()
         for channel, sequence in zip(done.channel, done.sequence, strict=True):
             self._ledger.publish(channel, sequence)
             self._changed[channel] = sequence
@@ -190,7 +229,7 @@ class MainLoop:
         self._outstanding = set()
 
     def _on_started(self, entry: HostEntry) -> None:
-        self._event(tick_event_t.STARTED, entry.index)
+        self._event(tick_event_t.STARTED, entry.index, entry.started_with)
         if entry.incarnation > 1:
             self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
         self._again = True
@@ -199,6 +238,9 @@ class MainLoop:
         self._event(tick_event_t.LOST, entry.index)
         if not self._lockstep or not entry.expected:
             self._outstanding.discard(entry.index)
+
+    def _on_stopped(self, entry: HostEntry) -> None:
+        self._event(tick_event_t.STOPPED, entry.index)
 
     def _event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
         event = tick_event_t()
@@ -214,7 +256,9 @@ class MainLoop:
         record.n_marks = len(record.channel)
         record.voids = self._voids(self._step - 4 * len(self._by_stage))
         record.n_voids = len(record.voids)
-        self._changed = {}
+        record.changes = [_message(change) for change in self._changes]
+        record.n_changes = len(record.changes)
+        self._changed, self._changes = {}, []
         data = record.encode()
         self._records.append((self.tick, data))
         self._sender.publish(b"fwk/record", data, self._ports.record)
@@ -235,3 +279,9 @@ class MainLoop:
         self._mailbox.pump(0)
         while not self._interrupted() and (left_us := begin_us - monotonic_us()) > 0:
             self._mailbox.pump_until(left_us)
+
+
+def _message(change: Change) -> change_t:
+    made = change_t()
+    made.component, made.number, made.settings = change.component, change.number, change.settings
+    return made

@@ -24,6 +24,7 @@ class Mailbox:
     def __init__(self, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
         self.on_done: Callable[[done_t], None] = lambda _: None
         self.on_actual: Callable[[actual_t], None] = lambda _: None
+        self.afterwards: Handler = lambda: None  # called when something was handled
         self.signals: list[int] = []
         self._first_host = ports.host(0)
         self._assembler = wire.Assembler()
@@ -57,6 +58,7 @@ class Mailbox:
             handler = self._handlers.get(descriptor)
             if handler:
                 handler()
+        self.afterwards()
 
     def pump_until(self, left_us: int) -> None:
         """As `pump`, but never longer than `left_us`, to the microsecond as well as the system can."""

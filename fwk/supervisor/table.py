@@ -4,8 +4,20 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from fwk.clock import US_PER_S
+from fwk.host.debugger import LEFT
 from fwk.plan.model import Plan, RestartPolicy
 from lcmtypes.core import component_state_t
+
+
+@dataclass(frozen=True)
+class Change:
+    """New settings of a component: all of them, as JSON."""
+
+    component: int
+    number: int
+    settings: str
+    step: int
+    """Step of the main loop from which on they are told."""
 
 
 @dataclass
@@ -17,7 +29,7 @@ class HostEntry:
     policy: RestartPolicy
     ready_timeout_us: int
     state: str = "loaded"
-    """loaded, starting, running, waiting (to be started again), stopped, failed."""
+    """loaded, starting, running, stopping, waiting (to be started again), stopped, failed."""
     incarnation: int = 0
     pid: int = 0
     since_us: int = 0
@@ -31,6 +43,20 @@ class HostEntry:
     busy: tuple[int, int] | None = None
     """(tick, stage) that it still works on, late."""
     components: list[component_state_t] = field(default_factory=list)
+    wanted: bool = True
+    """Whether it should run: the one half of the desired state."""
+    desired_run: int = 1
+    """The other half: a number that goes up with each wish to start it again."""
+    actual_run: int = 0
+    """The desired run number at its last start."""
+    asked_us: int = 0
+    """Wall time at which the desired state changed last."""
+    fresh_code: bool = False
+    """Whether its processes import the application's modules anew, because their files changed."""
+    changes: list[Change] = field(default_factory=list)
+    """Settings that it has not taken over yet."""
+    started_with: int = 0
+    """Newest tick whose changes of settings it was started with."""
 
     def __post_init__(self) -> None:
         self._starts_us: deque[int] = deque()
@@ -43,11 +69,53 @@ class HostEntry:
     @property
     def expected(self) -> bool:
         """Whether it takes part in the loop now or will when it is ready."""
-        return self.state in ("loaded", "starting", "running", "waiting")
+        return self.state in ("loaded", "starting", "running", "waiting") or (self.wanted and self.state == "stopping")
+
+    @property
+    def settled(self) -> bool:
+        """Whether it is as desired, or failed in trying."""
+        if not self.wanted:
+            return self.state == "stopped"
+        return self.state in ("running", "failed", "stopped") and self.actual_run == self.desired_run
+
+    @property
+    def leaves(self) -> bool:
+        """Whether its process has to end for what is desired."""
+        return self.alive and (not self.wanted or self.actual_run != self.desired_run)
+
+    @property
+    def joins(self) -> bool:
+        """Whether a process has to be started for what is desired."""
+        idle = self.state in ("loaded", "waiting", "stopped", "failed")
+        return self.wanted and self.actual_run != self.desired_run and idle
+
+    def want_stop(self, now_us: int) -> None:
+        """It shall not run any more."""
+        self.wanted, self.asked_us = False, now_us
+
+    def want_start(self, now_us: int) -> None:
+        """It shall run, if it does not yet."""
+        if not self.wanted or self.state in ("stopped", "failed"):
+            self.want_restart(now_us)
+
+    def want_restart(self, now_us: int) -> None:
+        """It shall run, in a new process; earlier failures are forgotten."""
+        self.wanted, self.asked_us = True, now_us
+        self.desired_run += 1
+        self._starts_us.clear()
+
+    def leaving(self, now_us: int) -> None:
+        """It leaves the loop; its process has been asked to end."""
+        self.state, self.since_us, self.changes = "stopping", now_us, []
+
+    def told(self) -> None:
+        """It has answered the newest tick, and with that taken over the changes that the tick told."""
+        self.changes = [change for change in self.changes if change.step > self.seen]
 
     def starting(self, now_us: int) -> int:
         """It is being started; returns its incarnation."""
         self.incarnation += 1
+        self.actual_run, self.changes = self.desired_run, []
         self.state, self.since_us, self.reason = "starting", now_us, ""
         self.seen, self.busy, self.pid = 0, None, 0
         self._starts_us.append(now_us)
@@ -55,13 +123,22 @@ class HostEntry:
 
     def ended(self, code: int, now_us: int, stopping: bool) -> None:
         """Its process ended; decides whether and when it is started again."""
-        self.pid, self.busy, self.since_us = 0, None, now_us
+        self.pid, self.busy, self.since_us, self.changes = 0, None, now_us, []
+        if self.state == "stopping":
+            self.state, self.restart_us = ("waiting" if self.wanted and not stopping else "stopped"), now_us
+            return
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
         if stopping and code == 0:
             self.state = "stopped"
             return
         if not self.reason:
             self.reason = next((item.reason for item in self.components if item.reason), how)
+        if not self.wanted:  # asked to stop, but ended before the loop came to it
+            self.state = "stopped"
+            return
+        if code == LEFT and not stopping:  # the debugger was left: on with it, and nobody counts it as a failure
+            self.state, self.restart_us, self.reason = "waiting", now_us, "its debugger was left"
+            return
         wanted = self.policy.when == "always" or (self.policy.when == "on-failure" and code != 0)
         if stopping or not wanted:
             self.state = "stopped" if code == 0 else "failed"

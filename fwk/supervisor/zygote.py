@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.aspects.vision import Ring
+from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
 from fwk.host.process import StopSignal, die_with_parent, run_forked
 from fwk.plan.model import Plan
@@ -57,9 +58,16 @@ class Zygote:
         other.close()
         self.socket.setblocking(False)
 
-    def start(self, host: int, incarnation: int, sequences: Mapping[str, int]) -> None:
-        """Asks for a host process; `Started` comes with the events."""
-        self._send({"start": host, "incarnation": incarnation, "sequences": dict(sequences)})
+    def start(
+        self, host: int, incarnation: int, sequences: Mapping[str, int], settings: Mapping[str, str], fresh_code: bool
+    ) -> None:
+        """Asks for a host process; `Started` comes with the events.
+
+        `settings` are those of its components that differ from the plan's, by name, as JSON; with `fresh_code` the
+        application's modules are imported anew.
+        """
+        assignment = {"host": host, "incarnation": incarnation, "sequences": dict(sequences)}
+        self._send({"start": {**assignment, "settings": dict(settings), "fresh_code": fresh_code}})
 
     def signal(self, pid: int, number: int) -> None:
         """Signals a host process; one that has ended meanwhile is left alone."""
@@ -124,12 +132,14 @@ class _Forker:
             return False
         request = json.loads(packet)
         if "start" in request:
-            self._fork(request["start"], request["incarnation"], request["sequences"])
+            self._fork(**request["start"])
         elif request["pid"] in self._children:
             os.kill(request["pid"], request["signal"])
         return True
 
-    def _fork(self, host: int, incarnation: int, sequences: dict[str, int]) -> None:
+    def _fork(
+        self, host: int, incarnation: int, sequences: dict[str, int], settings: dict[str, str], fresh_code: bool
+    ) -> None:
         output, output_write = os.pipe()
         errors, errors_write = os.pipe()
         parent = os.getpid()
@@ -142,7 +152,9 @@ class _Forker:
             os.dup2(errors_write, 2)
             for descriptor in (output, output_write, errors, errors_write):
                 os.close(descriptor)
-            assignment = Assignment(self._plan, host, self._run, incarnation, sequences, self._rings)
+            assignment = Assignment(
+                self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code
+            )
             run_forked(lambda stop: _serve_host(assignment, stop))
         os.close(output_write)
         os.close(errors_write)
@@ -165,6 +177,8 @@ class _Forker:
 
 def _serve_host(assignment: Assignment, stop: StopSignal) -> int:
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
+    if assignment.fresh_code:
+        forget_modules(assignment.plan)
     try:
         Host(assignment, stop, stop.wakeup).serve()
     except Failure:

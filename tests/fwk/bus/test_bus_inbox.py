@@ -24,7 +24,7 @@ def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0) ->
 class Wired:
     def __init__(self) -> None:
         self.complaints: list[str] = []
-        self.inbox = Inbox(PLAN, PORT, WRITER, lambda channel, text: self.complaints.append(f"{channel}: {text}"))
+        self.inbox = Inbox(PLAN, PORT, (WRITER,), lambda channel, text: self.complaints.append(f"{channel}: {text}"))
         self.sender = Sender(WRITER)
 
     def send(self, *sequences: int, writer: str = "cyan1/localization") -> None:

@@ -1,0 +1,134 @@
+"""The side that asks: finds the run and talks to it."""
+
+import contextlib
+import json
+import socket
+from collections.abc import Iterator
+from typing import Any, Self
+
+from fwk.control import address
+
+TIMEOUT_S = 5.0
+_CHUNK = 64 << 10
+
+
+class ControlError(Exception):
+    """The run cannot be asked, or refuses; says why and what would be right."""
+
+
+class Client:
+    """A connection to a run's supervisor or gateway."""
+
+    def __init__(self, socket_address: str, timeout_s: float = TIMEOUT_S) -> None:
+        self._rest = b""
+        self._timeout_s = timeout_s
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        self._socket.settimeout(timeout_s)
+        try:
+            self._socket.connect(socket_address)
+        except OSError as error:
+            self._socket.close()
+            raise ControlError(f"the run does not answer ({error.strerror}); it is perhaps just ending") from error
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._socket.close()
+
+    def ask(self, verb: str, timeout_s: float | None = None, **fields: Any) -> dict[str, Any]:
+        """Sends a request and waits for its answer.
+
+        Raises:
+            ControlError: refused, or no answer in time.
+        """
+        self._send(verb, fields)
+        return self._answer(timeout_s or self._timeout_s)
+
+    def follow(self, verb: str, **fields: Any) -> Iterator[dict[str, Any]]:
+        """Sends a request and gives all its answers, until the run ends.
+
+        Raises:
+            ControlError: refused.
+        """
+        self._send(verb, fields)
+        while True:
+            try:
+                yield self._answer(None)
+            except EOFError:
+                return
+
+    def _send(self, verb: str, fields: dict[str, Any]) -> None:
+        with contextlib.suppress(BrokenPipeError):  # refused: the reason can be read
+            self._socket.sendall(json.dumps({"verb": verb, **fields}).encode() + b"\n")
+
+    def _answer(self, timeout_s: float | None) -> dict[str, Any]:
+        self._socket.settimeout(timeout_s)
+        parts = [self._rest]
+        while b"\n" not in parts[-1]:
+            try:
+                data = self._socket.recv(_CHUNK)
+            except TimeoutError as error:
+                raise ControlError(f"the run has not answered within {timeout_s:g} s") from error
+            except ConnectionError:
+                data = b""
+            if not data:
+                if timeout_s is None:
+                    raise EOFError
+                raise ControlError("the run has ended")
+            parts.append(data)
+        line, _, self._rest = b"".join(parts).partition(b"\n")
+        answer: dict[str, Any] = json.loads(line)
+        if not answer.get("ok"):
+            raise ControlError(str(answer.get("error")))
+        return answer
+
+
+def find_run(bus_port: int | None) -> int:
+    """The bus port of the run that is meant: the one that is named, or the only one.
+
+    Raises:
+        ControlError: there is none, or several.
+    """
+    ports = address.running()
+    if bus_port is not None:
+        if bus_port not in ports:
+            others = f"; there is one with --bus-port {_listed(ports)}" if ports else ""
+            raise ControlError(f"no run on this machine has --bus-port {bus_port}{others}")
+        return bus_port
+    if not ports:
+        raise ControlError("nothing runs on this machine; start something with: fwk-launch FILE")
+    if len(ports) > 1:
+        raise ControlError(f"several runs are on this machine; say which: --bus-port {_listed(ports)}")
+    return ports[0]
+
+
+def supervisor(bus_port: int | None) -> Client:
+    """A connection to the supervisor of the run that is meant.
+
+    Raises:
+        ControlError: as `find_run`.
+    """
+    return Client(address.supervisor_address(find_run(bus_port)))
+
+
+def gateway(bus_port: int | None) -> Client:
+    """A connection to the gateway of the run that is meant.
+
+    Raises:
+        ControlError: as `find_run`.
+    """
+    return Client(address.gateway_address(find_run(bus_port)))
+
+
+def _listed(ports: list[int]) -> str:
+    return " or ".join(f"{port}{_name_of(port)}" for port in ports)
+
+
+def _name_of(port: int) -> str:
+    try:
+        with Client(address.supervisor_address(port), 1.0) as client:
+            run = client.ask("run")
+            return f" ({run['plan']}, pid {run['pid']})"
+    except ControlError:
+        return ""

@@ -1,0 +1,111 @@
+"""What can be asked of a run, one model a request; a request is one JSON object on one line.
+
+Every answer is a JSON object with `ok`; where that is false, `error` says what is wrong and what would be right.
+"""
+
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+R = TypeVar("R")
+Action = Literal["start", "stop", "restart", "reload", "load", "unload"]
+Names = Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=1000)]
+
+
+class _Request(BaseModel):
+    model_config = ConfigDict(extra="forbid", strict=True)
+
+
+class Run(_Request):
+    """Which run is this: plan, file, run directory, process, ports."""
+
+    verb: Literal["run"]
+
+
+class Status(_Request):
+    """The run and its components; of all, or of those that the patterns mean."""
+
+    verb: Literal["status"]
+    names: Names = []
+
+
+class Steer(_Request):
+    """Another desired state for some components; answered when they have it."""
+
+    verb: Literal["steer"]
+    action: Action
+    names: Names
+
+
+class Settings(_Request):
+    """Every effective setting with its origin, type and meaning."""
+
+    verb: Literal["settings"]
+    names: Names = []
+
+
+class SetSettings(_Request):
+    """New values as `NAME.SETTING=VALUE`; answered when the components have them, `check`: only whether they could."""
+
+    verb: Literal["set"]
+    changes: Names
+    check: bool = False
+    origin: str = Field("fwk config set", max_length=500)
+
+
+class WatchSettings(_Request):
+    """From now on an answer for each change of a setting."""
+
+    verb: Literal["watch_settings"]
+    names: Names = []
+
+
+class Common(_Request):
+    """The common interface of one component."""
+
+    verb: Literal["state", "period", "time_awake", "parameters", "kill"]
+    name: str
+
+
+class Channels(_Request):
+    """Asked of the gateway: all channels with type, writer, readers, newest sequence number, tick and time."""
+
+    verb: Literal["channels"]
+
+
+class Show(_Request):
+    """Asked of the gateway: a channel's newest message."""
+
+    verb: Literal["show"]
+    channel: str
+
+
+class Watch(_Request):
+    """Asked of the gateway: a channel's newest message, and from now on each new one."""
+
+    verb: Literal["watch"]
+    channel: str
+
+
+SupervisorRequest = Run | Status | Steer | Settings | SetSettings | WatchSettings | Common
+GatewayRequest = Channels | Show | Watch
+to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
+to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])
+
+
+class RequestError(Exception):
+    """A request that cannot be understood or fulfilled; says why and what would be right."""
+
+
+def parsed(adapter: TypeAdapter[R], line: bytes) -> R:
+    """Reads a request.
+
+    Raises:
+        RequestError: it is none.
+    """
+    try:
+        return adapter.validate_json(line)
+    except ValidationError as error:
+        first = error.errors(include_url=False, include_input=False)[0]
+        place = ".".join(map(str, first["loc"]))
+        raise RequestError(f"no request: {f'{place}: ' if place else ''}{first['msg']}") from error

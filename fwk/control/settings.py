@@ -1,0 +1,187 @@
+"""The settings of a run's components as they are now, where each comes from, and what they may become."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from typing import Any
+
+from pydantic.fields import FieldInfo
+
+from fwk.component import declaration
+from fwk.config import Config
+from fwk.control.requests import RequestError
+from fwk.plan.errors import PlanError, Problems
+from fwk.plan.model import ComponentPlan, Plan
+from fwk.plan.overrides import PLACE, overrides
+from fwk.plan.selection import matches, nearest
+from fwk.plan.settings import effective
+from fwk.plan.source import Node
+
+_NOW = "now"
+_CHANGE_MAX = 30_000  # bytes of all changes of a tick; they travel in one datagram
+
+
+@dataclass(frozen=True)
+class NewSettings:
+    """All settings that a component gets, and which of them are said anew."""
+
+    component: int
+    values: dict[str, Any]
+    said: dict[str, Any]
+    """Dotted name to value."""
+
+    @property
+    def text(self) -> str:
+        """All settings, as JSON."""
+        return json.dumps(self.values)
+
+
+class RunSettings:
+    """What every component is set to."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._values = {component.index: component.config for component in plan.components}
+        self._origins = {component.index: dict(component.origins) for component in plan.components}
+        self._asked: dict[int, dict[str, Any]] = {}  # what components get at the next boundary
+        self._changed: set[int] = set()
+
+    def rows(self, patterns: Sequence[str]) -> list[dict[str, Any]]:
+        """Name, value, origin, type and meaning of every setting; of some components, or single settings.
+
+        Raises:
+            RequestError: a pattern means nothing.
+        """
+        found = [row for component in self._plan.components for row in self._rows_of(component)]
+        if not patterns:
+            return found
+        for pattern in patterns:
+            if not any(_means(pattern, row) for row in found):
+                raise RequestError(f"no setting '{pattern}'; {self._nearest(pattern, found)}")
+        return [row for row in found if any(_means(pattern, row) for pattern in patterns)]
+
+    def changed(self, components: Sequence[int]) -> dict[str, str]:
+        """Settings of these components that differ from the plan's: by name, as JSON."""
+        some = self._changed.intersection(components)
+        return {self._plan.components[index].name: json.dumps(self._values[index]) for index in sorted(some)}
+
+    def check(self, sets: Sequence[str]) -> list[NewSettings]:
+        """What components get by `NAME.SETTING=VALUE`, on top of what is asked for already; nothing is changed yet.
+
+        Raises:
+            RequestError: with every mistake.
+        """
+        problems = Problems()
+        typed = overrides(sets, problems)
+        wishes = typed.at("config").value if typed.child("config") else {}
+        for key in typed.value:
+            if key != "config":
+                problems.add(key, "", "it belongs to the run as a whole and stays as it is; NAME.SETTING can be set")
+        found = [
+            made
+            for component in self._plan.components
+            if (made := self._check_component(component, _layers(component.name, wishes), problems))
+        ]
+        names = [component.name for component in self._plan.components]
+        for pattern in wishes:
+            if not any(matches(name, pattern) for name in names):
+                problems.add(pattern, "", f"no component '{pattern}'; {nearest(pattern, names)}")
+        try:
+            problems.stop_if_any()
+        except PlanError as error:
+            raise RequestError(
+                "\n".join(str(problem).removeprefix(f"{PLACE}: ") for problem in error.problems)
+            ) from error
+        if sum(len(new.text) for new in found) > _CHANGE_MAX:
+            raise RequestError(f"these are more than {_CHANGE_MAX} bytes of settings; set fewer at once")
+        return found
+
+    def ask(self, new: NewSettings) -> None:
+        """The component gets these at the next boundary."""
+        self._asked[new.component] = new.values
+
+    def take(self, new: NewSettings, origin: str) -> None:
+        """The component has these from now on."""
+        self._values[new.component] = new.values
+        self._asked.pop(new.component, None)
+        self._origins[new.component] |= dict.fromkeys(new.said, origin)
+        self._changed.add(new.component)
+
+    def _check_component(self, component: ComponentPlan, layers: list[Node], problems: Problems) -> NewSettings | None:
+        if not layers:
+            return None
+        kind = _config_class(component)
+        texts: list[str] = []
+        now = _node(self._asked.get(component.index, self._values[component.index]))
+        values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
+        for text in texts:
+            problems.add("", component.name, text)
+        if texts:
+            return None
+        said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
+        return NewSettings(component.index, values, said)
+
+    def _rows_of(self, component: ComponentPlan) -> list[dict[str, Any]]:
+        values, kind = self._values[component.index], _config_class(component)
+        return [
+            {
+                "component": component.name,
+                "setting": name,
+                "value": _value(values, name),
+                "origin": origin,
+                **_described(kind, name),
+            }
+            for name, origin in self._origins[component.index].items()
+        ]
+
+    def _nearest(self, pattern: str, rows: Sequence[dict[str, Any]]) -> str:
+        component, _, setting = pattern.partition(".")
+        own = [row["setting"] for row in rows if matches(row["component"], component)]
+        if setting and own:
+            return nearest(setting, own)
+        return nearest(component, list(dict.fromkeys(row["component"] for row in rows)))
+
+
+def _means(pattern: str, row: dict[str, Any]) -> bool:
+    component, _, setting = pattern.partition(".")
+    own = str(row["setting"])
+    return matches(row["component"], component) and (not setting or own == setting or own.startswith(f"{setting}."))
+
+
+def _layers(name: str, wishes: dict[str, Node]) -> list[Node]:
+    return [node for pattern, node in wishes.items() if matches(name, pattern)]
+
+
+def _config_class(component: ComponentPlan) -> type[Config] | None:
+    return _config_of(component.module, component.class_name)
+
+
+@cache
+def _config_of(module: str, class_name: str) -> type[Config] | None:
+    return declaration(getattr(import_module(module), class_name)).config
+
+
+def _node(value: Any) -> Node:
+    if isinstance(value, dict):
+        return Node({key: _node(below) for key, below in value.items()}, _NOW)
+    return Node([_node(below) for below in value] if isinstance(value, list) else value, _NOW)
+
+
+def _value(values: Any, dotted: str) -> Any:
+    for key in dotted.split("."):
+        values = values[key] if isinstance(values, dict) else None
+    return values
+
+
+def _described(kind: type[Config] | None, dotted: str) -> dict[str, Any]:
+    """Type and meaning of a setting; every setting can be edited."""
+    found: FieldInfo | None = None
+    annotation: Any = kind
+    for key in dotted.split("."):
+        fields = annotation.model_fields if isinstance(annotation, type) and issubclass(annotation, Config) else {}
+        found = fields.get(key)
+        annotation = found.annotation if found else None
+    name = annotation.__name__ if isinstance(annotation, type) else str(annotation or "any")
+    return {"type": name, "meaning": (found.description or "") if found else "", "editable": True}

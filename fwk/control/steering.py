@@ -1,0 +1,96 @@
+"""Finds out what a wish such as `restart cyan1/*` means for the processes of a run, and whether it can be granted."""
+
+from collections.abc import Mapping, Sequence
+
+from fwk.control.requests import Action, RequestError
+from fwk.control.users import needed_by, users_of, with_needs
+from fwk.plan.model import Plan
+from fwk.plan.selection import matches, nearest
+from fwk.supervisor.table import HostEntry
+
+_STOPS = ("stop", "unload")
+_RUNNING = ("starting", "running", "waiting")
+
+
+class Steering:
+    """Turns wishes for components into wishes for their processes."""
+
+    def __init__(self, plan: Plan, table: Sequence[HostEntry]) -> None:
+        self._plan = plan
+        self._table = table
+        self._needs = needed_by(plan)
+
+    def components(self, patterns: Sequence[str]) -> list[int]:
+        """Indices of the components that patterns mean.
+
+        Raises:
+            RequestError: one means none.
+        """
+        names = [component.name for component in self._plan.components]
+        for pattern in patterns:
+            if not any(matches(name, pattern) for name in names):
+                raise RequestError(f"no component '{pattern}'; {nearest(pattern, names)}")
+        return [index for index, name in enumerate(names) if any(matches(name, pattern) for pattern in patterns)]
+
+    def hosts(self, action: Action, patterns: Sequence[str]) -> list[HostEntry]:
+        """The processes concerned.
+
+        Raises:
+            RequestError: it cannot be done; names who stands against it.
+        """
+        if not patterns:
+            raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
+        chosen = self.components(patterns)
+        if action == "load":
+            chosen = [index for index in with_needs(chosen, self._needs) if index in chosen or not self._runs(index)]
+        elif action == "start":
+            self._check_needs(chosen)
+        elif action == "unload":
+            self._check_users(chosen)
+        entries = {self._plan.components[index].host: self._entry(index) for index in chosen}
+        self._check_whole(action, chosen, entries)
+        return list(entries.values())
+
+    def wish(self, action: Action, entry: HostEntry, now_us: int) -> None:
+        """Sets the desired state of a process."""
+        if action in _STOPS:
+            entry.want_stop(now_us)
+        elif action in ("start", "load"):
+            entry.want_start(now_us)
+        else:
+            entry.fresh_code = entry.fresh_code or action == "reload"
+            entry.want_restart(now_us)
+
+    def _entry(self, index: int) -> HostEntry:
+        return self._table[self._plan.components[index].host]
+
+    def _runs(self, index: int) -> bool:
+        entry = self._entry(index)
+        return entry.wanted and entry.state in _RUNNING
+
+    def _name(self, index: int) -> str:
+        return self._plan.components[index].name
+
+    def _check_needs(self, chosen: Sequence[int]) -> None:
+        for index in chosen:
+            missing = [each for each in sorted(self._needs[index]) if each not in chosen and not self._runs(each)]
+            if missing:
+                name, needed = self._name(index), ", ".join(map(self._name, missing))
+                raise RequestError(f"{name} needs {needed}, which does not run; 'fwk load {name}' starts both")
+
+    def _check_users(self, chosen: Sequence[int]) -> None:
+        for index in chosen:
+            users = [each for each in users_of(index, self._needs) if each not in chosen and self._runs(each)]
+            if users:
+                name, by = self._name(index), " ".join(map(self._name, users))
+                raise RequestError(f"{name} is needed by {by}; unload them too: fwk unload {name} {by}")
+
+    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostEntry]) -> None:
+        """A process starts and stops as a whole."""
+        for host, entry in entries.items():
+            others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
+            if others:
+                raise RequestError(
+                    f"the process '{entry.name}' holds {', '.join(others)} as well; {action} all of them, "
+                    "or give each component its own process with --hosting process"
+                )

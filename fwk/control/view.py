@@ -1,0 +1,40 @@
+"""A run and its components as plain data, for whoever asks."""
+
+from typing import Any
+
+from fwk.clock import US_PER_S
+from fwk.plan.model import ComponentPlan, Plan
+from fwk.supervisor.table import HostEntry
+from lcmtypes.core import component_state_t
+
+
+def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> dict[str, Any]:
+    """State and figures of one component; times of iterations are wall time."""
+    told = next((item for item in entry.components if item.name == component.name), component_state_t())
+    return {
+        "name": component.name,
+        "state": _state(entry, told),
+        "wanted": "running" if entry.wanted else "stopped",
+        "stages": [plan.stages[stage] for stage in component.stages],
+        "process": entry.name,
+        "pid": entry.pid,
+        "starts": entry.incarnation,
+        "restarts": entry.restarts,
+        "iterations": told.iterations,
+        "mean_ms": told.busy_us / told.iterations / 1000 if told.iterations else 0.0,
+        "worst_ms": told.worst_us / 1000,
+        "awake_s": told.awake_us / US_PER_S if entry.pid else 0.0,
+        "fetched": told.fetched,
+        "lost": told.lost,
+        "strangers": told.strangers,
+        "reason": told.reason or entry.reason,
+        "needs": [plan.components[index].name for index in component.needs],
+    }
+
+
+def _state(entry: HostEntry, told: component_state_t) -> str:
+    if entry.busy:
+        return "late"
+    if entry.state in ("starting", "running", "stopping") and told.state:
+        return told.state
+    return "failed" if told.state == "failed" and entry.state == "failed" else entry.state

@@ -1,0 +1,32 @@
+"""Stands in for a host that has left the run: whoever lacks one of its messages is sent on to the gateway."""
+
+from fwk.bus import wire
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.messages import MessageError
+from fwk.plan.model import Plan
+from fwk.supervisor.mailbox import Mailbox
+
+
+class StandIn:
+    """Has the port of the host as long as no process of its own does."""
+
+    def __init__(self, plan: Plan, host: int, mailbox: Mailbox) -> None:
+        ports = Ports.of(plan)
+        self._gateway = ports.host(ports.gateway)
+        self._sender = Sender(ports.host(host))
+        self._mailbox = mailbox
+        mailbox.watch(self._sender.socket.fileno(), self._pass_on)
+
+    def close(self) -> None:
+        """The host comes back."""
+        self._mailbox.unwatch(self._sender.socket.fileno())
+        self._sender.socket.close()
+
+    def _pass_on(self) -> None:
+        try:
+            channel, data = wire.short(self._sender.socket.recv(wire.DATAGRAM_MAX))
+        except (MessageError, OSError):
+            return
+        if channel == b"fwk/fetch":
+            self._sender.send(channel, data, self._gateway)
