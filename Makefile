@@ -36,7 +36,7 @@ test-fast: types  ## The tests without the slow ones
 	$(BIN)/pytest -m 'not slow'
 
 docs: types  ## Writes docs/commands.md from the commands themselves
-	$(BIN)/python -m fwk.cli.reference > docs/commands.md
+	$(BIN)/python -m fwk.cli.reference > .venv/commands.md && mv .venv/commands.md docs/commands.md
 
 clean:  ## Removes what was made, the environment too
 	rm -rf .venv build/lib build/bdist.* dist fwk.egg-info lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
