@@ -12,10 +12,10 @@ from fwk.host.process import raise_file_limit
 from fwk.host.report import Complaints
 from fwk.plan.model import Plan
 from fwk.supervisor.children import Children, decoded
+from fwk.supervisor.control import Control
 from fwk.supervisor.hosts import Hosts, StartFailure
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop import MainLoop
-from fwk.supervisor.control import Control
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.pace import Pace
@@ -74,6 +74,7 @@ class Supervisor:
         self.loop = MainLoop(
             plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
         )
+        self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log)
         self._status = StatusReport(number, self._hosts.table, self.loop, self.pace)
         self.wall_s = 0.0
 
@@ -86,7 +87,6 @@ class Supervisor:
             return f"not started: {failure}", True
         self._status = StatusReport(self._status.run, self._hosts.table, self.loop, self.pace)
         while not self._interrupted() and not self._done():
-        self._zygote = zygote
             self.loop.run_tick()
             self._clock.tick, self._clock.now_us = self.loop.tick, self.pace.time_us
             if self._status.due:
@@ -94,13 +94,13 @@ class Supervisor:
         self.wall_s = self._status.wall_s
         self.loop.finish()
         broken = [f"{entry.name}: {entry.reason}" for entry in self._hosts.table if entry.state == "failed"]
-        self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log)
         if broken:
             return f"failed: {'; '.join(broken)}", True
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
 
     def stop(self) -> status_t:
         """Stops every process; returns the last view of them."""
+        self._control.close()
         status = self._publish_status()
         for name in self._hosts.stop_all():
             self.log.warning(f"{name} did not stop when asked; killed")
@@ -118,10 +118,9 @@ class Supervisor:
 
     def _publish_status(self) -> status_t:
         status = self._status.message()
+        self._control.published(status)
         self._sender.publish(b"fwk/status", status.encode(), self._ports.status)
         return status
-        self._control.close()
 
     def _send_log(self, line: log_t) -> None:
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)
-        self._control.published(status)
