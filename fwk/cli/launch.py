@@ -17,7 +17,7 @@ from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
-from fwk.supervisor import PortsInUse, RunOptions, run
+from fwk.supervisor import DebuggerMissing, PortsInUse, RunOptions, run
 
 RUN_BROKEN = 1
 BAD_INPUT = 2
@@ -58,6 +58,10 @@ def launch(
     debug: Annotated[
         str | None, typer.Option(metavar="NAME", help="run this component under pdb in this terminal")
     ] = None,
+    debugpy: Annotated[
+        int | None,
+        typer.Option(min=1, max=65535, metavar="PORT", help="with --debug: wait for debugpy at this port, not for pdb"),
+    ] = None,
     bus_port: Annotated[
         int | None, typer.Option(min=1024, max=65535, metavar="N", help="first port of the inner buses")
     ] = None,
@@ -75,6 +79,8 @@ def launch(
         raise typer.BadParameter("--record and --no-record exclude each other; keep one")
     if video and no_record:
         raise typer.BadParameter("--video is made from the recording; leave out --no-record")
+    if debugpy and not debug:
+        raise typer.BadParameter("--debugpy belongs to --debug NAME; say which component")
     wishes = LaunchOptions(
         sets=tuple(sets or ()),
         hosting=hosting.value,
@@ -97,6 +103,7 @@ def launch(
             record=None if no_record else record or run_dir / RECORDING,
             video=video,
             debug=debug,
+            debugpy_port=debugpy or 0,
             plain=plain or debug is not None,
         )
         for line in introduction(plan):
@@ -115,7 +122,7 @@ def _ending() -> Iterator[None]:
     """Turns what keeps a run from starting into a sentence and an exit code."""
     try:
         yield
-    except (PlanError, PortsInUse, RunDirError) as error:
+    except (DebuggerMissing, PlanError, PortsInUse, RunDirError) as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error
     except KeyboardInterrupt as interrupt:

@@ -5,6 +5,7 @@ import select
 import socket
 import struct
 import traceback
+from bdb import BdbQuit
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from importlib import import_module
@@ -40,11 +41,11 @@ class Assignment:
     sequences: Mapping[str, int]
     """Sequence numbers that its channels have reached, for one that was restarted."""
     rings: Mapping[str, Ring]
-
     settings: Mapping[str, str] = field(default_factory=dict)
     """Settings of its components that were changed since the run began, by name, as JSON."""
     fresh_code: bool = False
     """Whether it imports the application's modules anew."""
+
 
 class Failure(Exception):  # noqa: N818 - a failure of a component, not an error of the framework
     """A component failed; the text says which, where and why."""
@@ -84,8 +85,8 @@ class Host:
         }
         self._answered = (0, -1)  # the newest (tick, stage) done
         self._done = b""
-        self._report_us = 0
         self._configured = 0  # number of the newest change of settings taken over
+        self._report_us = 0
 
     def serve(self) -> None:
         """Initialises the components, answers ticks until it is told to stop, finalizes the components.
@@ -168,8 +169,8 @@ class Host:
         if not self.inputs.wait(moved, self._handle_own):
             return
         self._deliver(moved)
-        self._iterate(tick, stage)
         self._configure(tick.changes)
+        self._iterate(tick, stage)
         self._answered = (tick.tick, stage)
 
     def _deliver(self, moved: list[Box]) -> None:
@@ -178,7 +179,6 @@ class Host:
             for name in self._readers[box.plan.index]:
                 self._waiting[name][box.plan.name] += arrived
 
-    def _iterate(self, tick: tick_t, stage: int) -> None:
     def _configure(self, changes: list[change_t]) -> None:
         for change in changes:
             plan = self._plan.components[change.component]
@@ -187,6 +187,7 @@ class Host:
                     self._runners[plan.name].configure(json.loads(change.settings))
         self._configured = max([self._configured, *(change.number for change in changes)])
 
+    def _iterate(self, tick: tick_t, stage: int) -> None:
         written: list[tuple[str, bytes]] = []
         next_us, began_us = -1, monotonic_us()
         for plan in self._own:
@@ -276,5 +277,5 @@ class _Guard:
         pass
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, Exception):
+        if isinstance(error, Exception) and not isinstance(error, BdbQuit):
             raise self._host.fail(self._name, self._moment, error) from error

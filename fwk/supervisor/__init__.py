@@ -2,12 +2,15 @@
 
 import json
 import secrets
+import signal
+import sys
 
 from fwk.aspects.logging import Logger
 from fwk.aspects.vision import Ring
 from fwk.bus.ports import PortLock, Ports, PortsInUse
 from fwk.bus.sockets import Sender
 from fwk.clock import US_PER_S, Clock
+from fwk.host.debugger import DebuggerMissing, DebugRequest, check
 from fwk.host.process import raise_file_limit
 from fwk.host.report import Complaints
 from fwk.plan.model import Plan
@@ -23,7 +26,7 @@ from fwk.supervisor.status import StatusReport
 from fwk.supervisor.zygote import Zygote
 from lcmtypes.core import log_t, status_t
 
-__all__ = ["Outcome", "PortsInUse", "RunOptions", "run"]
+__all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "RunOptions", "run"]
 
 
 def run(plan: Plan, options: RunOptions) -> Outcome:
@@ -31,16 +34,18 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
 
     Raises:
         PortsInUse: another run on this machine has the ports.
+        DebuggerMissing: debugpy is asked for and not installed.
     """
     ports = Ports.of(plan)
+    debug = _debug_request(plan, options)
     lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
     (options.run_dir / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
     number = secrets.randbits(62)
     rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
-    zygote = Zygote(plan, number, rings)
+    zygote = Zygote(plan, number, rings, debug)
     children = Children(plan, number, options)
-    supervisor = Supervisor(plan, options, number, zygote)
+    supervisor = Supervisor(plan, options, number, zygote, debug)
     reason, failed = supervisor.work()
     status = supervisor.stop()
     newest = decoded(plan, children.stop())
@@ -57,10 +62,21 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     )
 
 
+def _debug_request(plan: Plan, options: RunOptions) -> DebugRequest | None:
+    for component in plan.components:
+        if component.name == options.debug:
+            request = DebugRequest(component.host, component, options.debugpy_port)
+            check(request)
+            return request
+    return None
+
+
 class Supervisor:
     """One run of a plan, from the first process to the last."""
 
-    def __init__(self, plan: Plan, options: RunOptions, number: int, zygote: Zygote) -> None:
+    def __init__(
+        self, plan: Plan, options: RunOptions, number: int, zygote: Zygote, debug: DebugRequest | None = None
+    ) -> None:
         self._plan = plan
         self._options = options
         self._ports = Ports.of(plan)
@@ -70,7 +86,11 @@ class Supervisor:
         self._mailbox = Mailbox(self._ports, number, Complaints(self.log))
         ledger = Ledger(plan)
         self.pace = Pace(plan, options.speed)
+        self._zygote = zygote
         self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log)
+        self._debugged = self._hosts.table[debug.host] if debug else None
+        if self._debugged:
+            self._debugged.ready_timeout_us = sys.maxsize
         self.loop = MainLoop(
             plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
         )
@@ -114,6 +134,10 @@ class Supervisor:
         )
 
     def _interrupted(self) -> bool:
+        if self._debugged and self._debugged.pid and self._debugged.incarnation == 1:
+            while signal.SIGINT in self._mailbox.signals:  # Ctrl-C is the debugger's as long as there is one
+                self._mailbox.signals.remove(signal.SIGINT)
+                self._zygote.signal(self._debugged.pid, signal.SIGINT)
         return bool(self._mailbox.signals)
 
     def _publish_status(self) -> status_t:

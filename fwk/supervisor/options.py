@@ -25,6 +25,8 @@ class RunOptions:
     """Where a video of the run goes; the launcher draws it from the recording when the run has ended."""
     debug: str | None = None
     """Component that runs under pdb in this terminal."""
+    debugpy_port: int = 0
+    """Instead of pdb, the component waits for an editor's debugger at this port of 127.0.0.1."""
     plain: bool = False
     """Lines of text instead of the live display, on a terminal too."""
 

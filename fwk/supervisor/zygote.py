@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.aspects.vision import Ring
+from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
 from fwk.host.process import StopSignal, die_with_parent, run_forked
@@ -44,7 +45,7 @@ class Ended:
 class Zygote:
     """The supervisor's side of the zygote."""
 
-    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring]) -> None:
+    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring], debug: DebugRequest | None = None) -> None:
         self.socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         parent = os.getpid()
         gc.collect()
@@ -54,7 +55,7 @@ class Zygote:
             self.socket.close()
             os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
             die_with_parent(parent)
-            run_forked(lambda stop: _Forker(plan, run, rings, other).serve(stop))
+            run_forked(lambda stop: _Forker(plan, run, rings, other, debug).serve(stop))
         other.close()
         self.socket.setblocking(False)
 
@@ -103,7 +104,15 @@ class Zygote:
 class _Forker:
     """The zygote's own side."""
 
-    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring], connection: socket.socket) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        run: int,
+        rings: Mapping[str, Ring],
+        connection: socket.socket,
+        debug: DebugRequest | None,
+    ) -> None:
+        self._debug = debug
         self._plan = plan
         self._run = run
         self._rings = rings
@@ -140,6 +149,7 @@ class _Forker:
     def _fork(
         self, host: int, incarnation: int, sequences: dict[str, int], settings: dict[str, str], fresh_code: bool
     ) -> None:
+        debugged = self._debug if self._debug and self._debug.host == host and incarnation == 1 else None
         output, output_write = os.pipe()
         errors, errors_write = os.pipe()
         parent = os.getpid()
@@ -148,14 +158,16 @@ class _Forker:
             die_with_parent(parent)
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._connection.close()
-            os.dup2(output_write, 1)
-            os.dup2(errors_write, 2)
+            if not debugged:  # who is debugged keeps the terminal
+                os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+                os.dup2(output_write, 1)
+                os.dup2(errors_write, 2)
             for descriptor in (output, output_write, errors, errors_write):
                 os.close(descriptor)
             assignment = Assignment(
                 self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code
             )
-            run_forked(lambda stop: _serve_host(assignment, stop))
+            run_forked(lambda stop: _serve_host(assignment, stop, debugged))
         os.close(output_write)
         os.close(errors_write)
         self._children[pid] = (host, incarnation)
@@ -175,12 +187,15 @@ class _Forker:
             self._connection.send(json.dumps(event).encode())
 
 
-def _serve_host(assignment: Assignment, stop: StopSignal) -> int:
+def _serve_host(assignment: Assignment, stop: StopSignal, debugged: DebugRequest | None) -> int:
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     if assignment.fresh_code:
         forget_modules(assignment.plan)
+    host = Host(assignment, stop, stop.wakeup)
     try:
-        Host(assignment, stop, stop.wakeup).serve()
+        if debugged:
+            return debug(debugged, host.serve)
+        host.serve()
     except Failure:
         return 1  # logged and reported already
     return 0

@@ -16,7 +16,7 @@ BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
 _MARK = "FWK_TEST_RUN"
 _BLOCK = 128
-_BASES = range(21_000, 32_000, _BLOCK)
+_BASES = range(21_120, 32_000, _BLOCK)  # where lock blocks of ports begin
 
 
 class PortBlock:

@@ -1,0 +1,97 @@
+"""Runs a host under a debugger: pdb in the terminal of fwk-launch, or debugpy for an editor to attach to."""
+
+import bdb
+import inspect
+import os
+import pdb
+import signal
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+
+from fwk.plan.model import ComponentPlan
+
+LEFT = 75
+"""Exit code of a host whose debugger was left: it is given back to the supervisor, which starts it normally."""
+
+
+@dataclass(frozen=True)
+class DebugRequest:
+    """Which host is to be debugged, and how."""
+
+    host: int
+    component: ComponentPlan
+    debugpy_port: int = 0
+    """Listen there instead of asking in the terminal; 0: pdb."""
+
+
+class DebuggerMissing(Exception):  # noqa: N818 - what is
+    """debugpy was asked for and is not installed."""
+
+
+def check(request: DebugRequest) -> None:
+    """Finds out before anything starts whether the debugger is there.
+
+    Raises:
+        DebuggerMissing: it is not; says what to type.
+    """
+    if request.debugpy_port:
+        try:
+            import_module("debugpy")
+        except ImportError as error:
+            raise DebuggerMissing("--debugpy: debugpy is not installed; type: pip install debugpy") from error
+
+
+def debug(request: DebugRequest, serve: Callable[[], None]) -> int:
+    """Runs `serve` under the debugger, stopped where the component's first iteration begins; returns an exit code."""
+    if request.debugpy_port:
+        return _debugpy(request, serve)
+    file, line = _first_line_of_loop(request.component)
+    debugger = _Pdb(nosigint=True)
+    debugger.set_break(file, line, temporary=True)
+    signal.signal(signal.SIGINT, lambda _number, frame: debugger.set_trace(frame))
+    print(f"fwk: {request.component.name} under pdb; it stops where loop() begins, everybody waits for it", flush=True)
+    print("fwk: 'c' goes on, Ctrl-C stops again, 'q' leaves the debugger and gives the component back", flush=True)
+    try:
+        debugger.run_quietly(serve)
+    except bdb.BdbQuit:
+        return LEFT
+    return 0
+
+
+class _Pdb(pdb.Pdb):
+    """pdb that stops at breakpoints only, not in the framework's code before them."""
+
+    def run_quietly(self, work: Callable[[], None]) -> None:
+        self.reset()
+        self.botframe = sys._getframe()  # below here nothing is stepped into
+        self.set_continue()
+        sys.breakpointhook = lambda *_, **__: self.set_trace(sys._getframe(1))
+        sys.settrace(self.trace_dispatch)
+        try:
+            work()
+        finally:
+            sys.settrace(None)
+
+    def set_continue(self) -> None:
+        """Goes on; keeps tracing, so that Ctrl-C can stop again."""
+        self._set_stopinfo(self.botframe, None, -1)  # type: ignore[attr-defined]
+
+
+def _debugpy(request: DebugRequest, serve: Callable[[], None]) -> int:
+    debugpy = import_module("debugpy")
+    debugpy.listen(("127.0.0.1", request.debugpy_port))
+    where = f"127.0.0.1:{request.debugpy_port}"
+    print(f"fwk: {request.component.name} (pid {os.getpid()}) waits for a debugger at {where}", flush=True)
+    debugpy.wait_for_client()
+    serve()
+    return 0
+
+
+def _first_line_of_loop(component: ComponentPlan) -> tuple[str, int]:
+    loop = getattr(import_module(component.module), component.class_name).loop
+    code = loop.__code__
+    file = inspect.getsourcefile(loop) or code.co_filename
+    lines: Sequence[int] = sorted({line for _, _, line in code.co_lines() if line and line > code.co_firstlineno})
+    return file, lines[0] if lines else code.co_firstlineno

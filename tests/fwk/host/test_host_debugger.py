@@ -1,0 +1,22 @@
+"""Debuggers are looked for before anything starts."""
+
+import sys
+
+import pytest
+
+from fwk import Component, Writes
+from fwk.host.debugger import DebuggerMissing, DebugRequest, check
+from fwk.testing.plans import plan_of
+from lcmtypes.robot import imu_t
+
+
+class Senses(Component):
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+
+def test_a_debugger_that_is_not_installed_is_named_with_what_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "debugpy", None)
+    component = plan_of({"r/senses": Senses}).components[0]
+    with pytest.raises(DebuggerMissing, match="pip install debugpy"):
+        check(DebugRequest(0, component, debugpy_port=5678))
