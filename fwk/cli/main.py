@@ -9,7 +9,11 @@ from typer.core import TyperGroup
 
 from fwk.cli.arguments import SeveralNames
 
-NAMES = ("check", "replay", "compare", "log-info", "video", "spy", "doctor")
+NAMES = (
+    "check",
+    *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "bb"),
+    *("replay", "compare", "log-info", "video", "spy", "doctor"),
+)
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""
 
 

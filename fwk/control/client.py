@@ -16,6 +16,10 @@ class ControlError(Exception):
     """The run cannot be asked, or refuses; says why and what would be right."""
 
 
+class RefusedError(ControlError):
+    """The run was asked for something that it cannot do, or that does not exist."""
+
+
 class Client:
     """A connection to a run's supervisor or gateway."""
 
@@ -80,7 +84,7 @@ class Client:
         line, _, self._rest = b"".join(parts).partition(b"\n")
         answer: dict[str, Any] = json.loads(line)
         if not answer.get("ok"):
-            raise ControlError(str(answer.get("error")))
+            raise RefusedError(str(answer.get("error")))
         return answer
 
 

@@ -1,6 +1,9 @@
 """Finds out what a wish such as `restart cyan1/*` means for the processes of a run, and whether it can be granted."""
 
+import ast
+import sys
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 
 from fwk.control.requests import Action, RequestError
 from fwk.control.users import needed_by, users_of, with_needs
@@ -47,6 +50,8 @@ class Steering:
             self._check_needs(chosen)
         elif action == "unload":
             self._check_users(chosen)
+        elif action == "reload":
+            self._check_code(chosen)
         entries = {self._plan.components[index].host: self._entry(index) for index in chosen}
         self._check_whole(action, chosen, entries)
         return list(entries.values())
@@ -84,6 +89,18 @@ class Steering:
             if users:
                 name, by = self._name(index), " ".join(map(self._name, users))
                 raise RequestError(f"{name} is needed by {by}; unload them too: fwk unload {name} {by}")
+
+    def _check_code(self, chosen: Sequence[int]) -> None:
+        """A file that is no Python is found while the old code still runs."""
+        for index in chosen:
+            file = str(getattr(sys.modules.get(self._plan.components[index].module), "__file__", ""))
+            try:
+                ast.parse(Path(file).read_bytes(), file)
+            except OSError as error:
+                raise RequestError(f"{self._name(index)}: {file} cannot be read: {error.strerror}") from error
+            except (SyntaxError, ValueError) as error:
+                line = f":{error.lineno}" if isinstance(error, SyntaxError) else ""
+                raise RequestError(f"{file}{line}: {self._name(index)} runs on: {error}") from error
 
     def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostEntry]) -> None:
         """A process starts and stops as a whole."""

@@ -3,6 +3,7 @@
 import select
 import socket
 import struct
+from collections.abc import Callable
 from typing import Protocol
 
 from fwk.aspects.logging import Logger
@@ -57,11 +58,17 @@ class Gateway:
         self._waiting: dict[int, tick_record_t] = {}
         self._next = 1  # tick whose record comes next
         self._open = True
+        self._handlers: list[Callable[[], None]] = []
         self._poller = select.poll()
         for source in (self._records, self._lines, self._status, self._sender.socket, control):
             self._poller.register(source, select.POLLIN)
         if public:
             self._poller.register(public, select.POLLIN)
+
+    def watch(self, descriptor: int, handler: Callable[[], None]) -> None:
+        """Calls `handler`, which must not wait, whenever something happens, also when there is something to read."""
+        self._poller.register(descriptor, select.POLLIN)
+        self._handlers.append(handler)
 
     def serve(self) -> None:
         """Works until the supervisor closes the control connection."""
@@ -71,6 +78,8 @@ class Gateway:
             self._hear_strangers()
             self._receive_lines()
             self._receive_records()
+            for handle in self._handlers:
+                handle()
             if self._next in self._waiting or not self._waiting:
                 continue
             self._ask_for_records()

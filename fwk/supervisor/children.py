@@ -7,8 +7,10 @@ import socket
 from fwk import messages
 from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
-from fwk.gateway import sinks
+from fwk.gateway import json_log, sinks
+from fwk.gateway.board import Board
 from fwk.gateway.gateway import Gateway
+from fwk.gateway.json_log import JsonLog
 from fwk.host.process import die_with_parent, run_forked
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
@@ -78,6 +80,10 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     if public:
         gateway.sinks.append(sinks.Mirror(public))
     gateway.sinks.append(sinks.TextLog(options.run_dir / "fwk.log"))
+    gateway.sinks.append(JsonLog(options.run_dir / json_log.FILE))
+    board = Board(plan)
+    gateway.sinks.append(board)
+    gateway.watch(board.fileno(), board.handle)
     gateway.sinks.append(sinks.Display(plan, display))
     gateway.sinks.append(sinks.Newest(plan, control))
     gateway.serve()

@@ -1,0 +1,112 @@
+"""The blackboard from outside: channels' newest messages for whoever asks, each new one for whoever watches."""
+
+from typing import Any
+
+from fwk import messages
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.control import requests
+from fwk.control.address import gateway_address
+from fwk.control.requests import RequestError
+from fwk.control.server import Connection, Server
+from fwk.messages import Header, MessageError
+from fwk.plan.errors import hint
+from fwk.plan.model import NOBODY, ChannelPlan, Plan
+
+_BYTES_SHOWN = 64
+
+
+class Board:
+    """A sink of the gateway that answers questions."""
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._channels = {channel.name: channel for channel in plan.channels}
+        self._newest: dict[str, bytes] = {}
+        self._arrived_us: dict[str, int] = {}
+        self._counts = dict.fromkeys(self._channels, 0)
+        self._watching: dict[str, list[Connection]] = {}
+        self._server = Server(gateway_address(plan.bus_port), self._take)
+
+    def fileno(self) -> int:
+        """For waiting until somebody asks."""
+        return self._server.fileno()
+
+    def handle(self) -> None:
+        """Answers who asks."""
+        self._server.handle()
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a message."""
+        if channel not in self._channels:
+            return
+        self._newest[channel], self._arrived_us[channel] = data, monotonic_us()
+        self._counts[channel] += 1
+        if channel in self._watching:
+            watching = [connection for connection in self._watching[channel] if connection.open]
+            self._watching[channel] = watching
+            for connection in watching:
+                connection.stream({"ok": True, **self._shown(channel)})
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """The run is over."""
+        self._server.close()
+
+    def _take(self, line: bytes, connection: Connection) -> None:
+        try:
+            request = requests.parsed(requests.to_gateway, line)
+            if isinstance(request, requests.Channels):
+                connection.reply({"ok": True, "channels": [self._row(each) for each in self._plan.channels]})
+                return
+            answer = self._shown(self._known(request.channel))
+            if isinstance(request, requests.Watch):
+                self._watching.setdefault(request.channel, []).append(connection)
+            connection.reply({"ok": True, **answer})
+        except RequestError as error:
+            connection.refuse(str(error))
+
+    def _known(self, channel: str) -> str:
+        if channel not in self._channels:
+            raise RequestError(f"no channel '{channel}'; {hint(channel, self._channels)}")
+        return channel
+
+    def _row(self, channel: ChannelPlan) -> dict[str, Any]:
+        names = [component.name for component in self._plan.components]
+        outside = "programs outside" if channel.name in self._plan.outside else ""
+        data = self._newest.get(channel.name)
+        header = Header.of(data) if data else None
+        return {
+            "channel": channel.name,
+            "type": channel.type_name,
+            "writer": outside if channel.writer == NOBODY else names[channel.writer],
+            "readers": [names[index] for index in channel.readers],
+            "messages": self._counts[channel.name],
+            "sequence": header.sequence if header else 0,
+            "tick": header.tick if header else 0,
+            "time_us": header.time_us if header else 0,
+            "age_s": (monotonic_us() - self._arrived_us[channel.name]) / US_PER_S if data else None,
+            "bytes": len(data) if data else 0,
+        }
+
+    def _shown(self, name: str) -> dict[str, Any]:
+        row, data = self._row(self._channels[name]), self._newest.get(name)
+        if data is None:
+            return {**row, "value": None}
+        try:
+            value = plain(messages.decode(messages.type_named(row["type"]), data, name))
+        except MessageError as error:
+            raise RequestError(str(error)) from error
+        return {**row, "value": value}
+
+
+def plain(value: Any) -> Any:
+    """A message as plain data for JSON; of long byte arrays only how long they are."""
+    if hasattr(value, "__typenames__"):
+        return {name: plain(getattr(value, name)) for name in value.__slots__}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if isinstance(value, bytes):
+        return list(value) if len(value) <= _BYTES_SHOWN else f"{len(value)} bytes"
+    return value
