@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from fwk.typegen import generate
-from tools.bench import rotation
+from tools.bench import fwk_launch_file, rotation
+from tools.bench.own import OwnScenario
 from tools.bench.registry import PEERS
 from tools.bench.scenarios import Scenario
 from tools.bench.shape import Shape
@@ -55,3 +56,22 @@ def test_plain_sockets_read_exactly_what_they_want() -> None:
     repeated = result["repeated"] / len(result["tick_us"])  # on a busy machine: a tick and a done each
     assert -0.2 < result["for_nothing"] < 2 * repeated + 0.2
     assert result["stale"] == 0
+
+
+def test_real_time_gives_an_error_for_every_period() -> None:
+    scenario = OwnScenario("fast", "jitter", components=2, stages=1, period_s=0.005)
+    result = rotation.rotate_own([scenario], 1, 0.5, lambda _: None)[0].result
+    assert "error" not in result
+    assert 1 <= len(result["error_us"]) < 120
+    assert all(error >= 0 for error in result["error_us"])
+
+
+def test_a_run_is_watched_from_its_start_to_a_restart(tmp_path: Path) -> None:
+    shape = Shape(2, folder=str(tmp_path))
+    file = fwk_launch_file.write(shape, shape.save())
+    result = rotation.rotate_own([OwnScenario("small", "start", file=file)], 1, 1.0, lambda _: None)[0].result
+    assert "error" not in result
+    assert result["processes"] >= 2 + 4  # components; launcher, zygote, gateway, display
+    assert result["first_tick_s"] > 0
+    assert result["restart_s"] > 0
+    assert result["pss_mb"] > 20
