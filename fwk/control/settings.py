@@ -74,11 +74,11 @@ class RunSettings:
             RequestError: with every mistake.
         """
         problems = Problems()
-        typed = overrides(sets, problems)
+        for text in sets:
+            if "." not in text.partition("=")[0]:
+                problems.add("", "", f"'{text}' is no NAME.SETTING=VALUE; what belongs to the run as a whole stays")
+        typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
         wishes = typed.at("config").value if typed.child("config") else {}
-        for key in typed.value:
-            if key != "config":
-                problems.add(key, "", "it belongs to the run as a whole and stays as it is; NAME.SETTING can be set")
         found = [
             made
             for component in self._plan.components
@@ -87,7 +87,7 @@ class RunSettings:
         names = [component.name for component in self._plan.components]
         for pattern in wishes:
             if not any(matches(name, pattern) for name in names):
-                problems.add(pattern, "", f"no component '{pattern}'; {nearest(pattern, names)}")
+                problems.add("", "", f"no component '{pattern}'; {nearest(pattern, names)}")
         try:
             problems.stop_if_any()
         except PlanError as error:

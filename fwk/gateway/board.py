@@ -74,13 +74,14 @@ class Board:
 
     def _row(self, channel: ChannelPlan) -> dict[str, Any]:
         names = [component.name for component in self._plan.components]
-        outside = "programs outside" if channel.name in self._plan.outside else ""
+        outside = channel.name in self._plan.outside
         data = self._newest.get(channel.name)
         header = Header.of(data) if data else None
         return {
             "channel": channel.name,
             "type": channel.type_name,
-            "writer": outside if channel.writer == NOBODY else names[channel.writer],
+            "writer": names[channel.writer] if channel.writer != NOBODY else "programs outside" if outside else "",
+            "outside": outside,
             "readers": [names[index] for index in channel.readers],
             "messages": self._counts[channel.name],
             "sequence": header.sequence if header else 0,

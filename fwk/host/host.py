@@ -63,7 +63,8 @@ class Host:
         self._sender = Sender(self._ports.host(assignment.host))
         self._own = [plan.components[index] for index in plan.hosts[assignment.host].components]
         self.figures = {component.name: Figures(component.name) for component in self._own}
-        self.log = Logger(plan.hosts[assignment.host].name, Clock(), self._send_log)
+        self._clock = Clock(plan.period_us)
+        self.log = Logger(plan.hosts[assignment.host].name, self._clock, self._send_log)
         self._complaints = Complaints(self.log)
         indices = {component.index for component in self._own}
         written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
@@ -163,6 +164,7 @@ class Host:
             if (tick.tick, stage) == self._answered:
                 self._sender.publish(sync.DONE, self._done, self._ports.sync)
             return
+        self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
         if self._answered[0] == 0 and tick.tick > 1:
             self.inputs.newest_only()

@@ -116,6 +116,7 @@ class Control:
         return {
             "plan": self._plan.name,
             "file": self._plan.file,
+            "folders": list(self._plan.folders),
             "run_dir": str(self._options.run_dir),
             "record": str(record) if record else "",
             "pid": os.getpid(),

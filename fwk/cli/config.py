@@ -1,0 +1,118 @@
+"""`fwk config`: the settings of a run, where they come from, and live changes."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from fwk.cli.asking import FAILED, BusPort, Json, asking
+from fwk.control import client
+from fwk.control.keep import KeepError, Kept, keep
+from fwk.plan.files import host_file, shown
+
+WIDTH_IN_A_PIPE = 200
+config = typer.Typer(add_completion=False, no_args_is_help=True)
+SomeSettings = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="NAME...", help="components, patterns, or NAME.SETTING; all by default"),
+]
+
+
+@config.callback()
+def settings() -> None:
+    """Shows the settings of a run with their origins, and changes them between two ticks."""
+
+
+@config.command("list")
+def list_settings(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+    """Lists every effective setting with its origin and meaning."""
+    with asking(), client.supervisor(bus_port) as run:
+        rows = run.ask("settings", names=names or [])["settings"]
+    if as_json:
+        typer.echo(json.dumps(rows, indent=2))
+        return
+    table = Table("setting", "value", "type", "origin", "meaning", box=None, pad_edge=False)
+    for row in rows:
+        table.add_row(_path(row), json.dumps(row["value"]), row["type"], row["origin"], row["meaning"])
+    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
+
+
+@config.command()
+def get(
+    path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Prints the value of a setting; of several, if the name is a pattern, one a line with its own name."""
+    with asking(), client.supervisor(bus_port) as run:
+        rows = run.ask("settings", names=[path])["settings"]
+    if as_json:
+        typer.echo(json.dumps(rows, indent=2))
+    elif len(rows) == 1:
+        typer.echo(json.dumps(rows[0]["value"]))
+    else:
+        for row in rows:
+            typer.echo(f"{_path(row)} = {json.dumps(row['value'])}")
+
+
+@config.command("set")
+def set_settings(
+    changes: Annotated[
+        list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.gain=0.5")
+    ],
+    save: Annotated[bool, typer.Option("--save", help="keep them in the host-specific file for later runs")] = False,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Changes settings between two ticks, all of them or none; says since which tick the components have them.
+
+    `--save` keeps them in NAME.host.yaml beside the launch file NAME.yaml, before they are set. If that fails, nothing
+    is changed.
+    """
+    origin = "fwk config set"
+    with asking(), client.supervisor(bus_port) as run:
+        if save:
+            run.ask("set", changes=changes, check=True)
+            file = host_file(Path(run.ask("run")["file"]))
+            _keep(file, changes)
+            origin = f"{origin} --save, {shown(file)}"
+        answer = run.ask("set", changes=changes, origin=origin)
+    if as_json:
+        typer.echo(json.dumps(answer))
+        return
+    for component in answer["settings"]:
+        for setting, value in component["values"].items():
+            kept = f", kept in {shown(file)}" if save else ""
+            typer.echo(f"{component['component']}.{setting} = {json.dumps(value)} since tick {answer['tick']}{kept}")
+
+
+@config.command()
+def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+    """Shows each change of a setting as it happens, until the run ends."""
+    with asking(), client.supervisor(bus_port) as run:
+        known: dict[str, Any] = {}
+        for answer in run.follow("watch_settings", names=names or []):
+            now = {_path(row): row for row in answer["settings"]}
+            changed = {path: row for path, row in now.items() if path in known and row != known[path]}
+            known |= now
+            for path, row in changed.items():
+                if as_json:
+                    typer.echo(json.dumps({**row, "tick": answer["tick"]}))
+                else:
+                    typer.echo(f"tick {answer['tick']}: {path} = {json.dumps(row['value'])} ({row['origin']})")
+
+
+def _keep(file: Path, changes: list[str]) -> None:
+    try:
+        keep(file, [Kept.of(each) for each in changes])
+    except KeepError as error:
+        typer.echo(f"error: {error}; nothing was set", err=True)
+        raise typer.Exit(FAILED) from error
+
+
+def _path(row: dict[str, Any]) -> str:
+    return f"{row['component']}.{row['setting']}"

@@ -1,0 +1,94 @@
+"""`fwk log`: the text log of a run."""
+
+import json
+import os
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.cli.asking import BusPort, Json, ask, asking
+from fwk.cli.lines import log_line
+from fwk.clock import US_PER_S, wall_us
+from fwk.control.address import running
+from fwk.control.client import ControlError
+from fwk.gateway.json_log import FILE
+from fwk.record.text_log import Filter, from_plain, read_lines
+
+RUNS = Path(".cache", "fwk", "runs")
+
+
+class Level(StrEnum):
+    """Levels of lines, the harmless first."""
+
+    DEBUG = "debug"
+    INFO = "info"
+    WARNING = "warning"
+    ERROR = "error"
+
+
+def log(
+    run_dir: Annotated[
+        Path | None,
+        typer.Argument(metavar="RUN", help="run directory; by default that of the run that goes on, or the newest"),
+    ] = None,
+    follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
+    level: Annotated[Level, typer.Option(help="lines of this level and worse")] = Level.DEBUG,
+    component: Annotated[str | None, typer.Option(metavar="NAME", help="of this component or pattern")] = None,
+    tick: Annotated[str | None, typer.Option(metavar="N|A-B", help="of this tick, or from A to B")] = None,
+    file: Annotated[str | None, typer.Option(metavar="NAME", help="written in this source file")] = None,
+    line: Annotated[int | None, typer.Option(metavar="N", help="written in this line of the source file")] = None,
+    text: Annotated[str | None, typer.Option(metavar="WORDS", help="that contain this, in capitals or not")] = None,
+    since: Annotated[float | None, typer.Option(metavar="SECONDS", help="of the last so many seconds")] = None,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Shows the lines that components and framework have written; all conditions have to hold.
+
+    With `--json` a line is an object with the fields of core.log_t.
+    """
+    wanted = Filter(
+        level=level.value,
+        component=component,
+        tick=_ticks(tick) if tick else None,
+        file=file,
+        line=line,
+        text=text,
+        since_us=wall_us() - round(since * US_PER_S) if since is not None else None,
+    )
+    with asking():
+        path, runs = _find(run_dir, bus_port)
+        for each in read_lines(path, runs if follow else lambda: False):
+            if wanted.wants(each):
+                typer.echo(json.dumps(each) if as_json else log_line(from_plain(each)))
+
+
+def _find(run_dir: Path | None, bus_port: int | None) -> tuple[Path, Callable[[], bool]]:
+    """The log that is meant, and what says whether it may still grow."""
+    if run_dir is None:
+        try:
+            run = ask(bus_port, "run")
+            pid = int(run["pid"])
+            return Path(run["run_dir"]) / FILE, lambda: _lives(pid)
+        except ControlError:
+            folders = sorted((Path.home() / RUNS).glob("*"))
+            if bus_port is not None or running() or not folders:
+                raise
+            run_dir = folders[-1]
+    if not (run_dir / FILE).is_file():
+        raise typer.BadParameter(f"{run_dir}: no run directory, there is no {FILE} in it")
+    return run_dir / FILE, lambda: False
+
+
+def _lives(pid: int) -> bool:
+    return os.path.exists(f"/proc/{pid}")
+
+
+def _ticks(text: str) -> tuple[int, int]:
+    first, dash, last = text.partition("-")
+    try:
+        return int(first), int(last if dash else first)
+    except ValueError as error:
+        raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100-200") from error

@@ -1,0 +1,133 @@
+"""Changes one value in a YAML text and leaves everything else as people wrote it, comments too."""
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from typing import Any
+
+import yaml
+
+from fwk.plan.errors import Problems
+from fwk.plan.source import read_value
+
+_PLAIN_KEY = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
+
+
+class EditError(Exception):
+    """The text cannot be changed without harm; says why."""
+
+
+def with_value(text: str, path: Sequence[str], value: Any) -> str:
+    """The text with `value` at the mapping keys of `path`, which are added where they are missing.
+
+    The result is read again and compared, so that a text too artful for this is refused, not spoiled.
+
+    Raises:
+        EditError: it is no YAML, or the value cannot be put there.
+    """
+    before = read(text)
+    changed = _edited(text, path, value)
+    if not _reads_as(changed, _over(before, path, value)):
+        raise EditError(f"'{'.'.join(path)}' cannot be changed there without touching other values; write it by hand")
+    return changed
+
+
+def read(text: str) -> Any:
+    """The text as plain data; of an empty one, an empty mapping.
+
+    Raises:
+        EditError: it is no YAML.
+    """
+    problems = Problems()
+    node = read_value(text, "", problems)
+    if problems or node is None:
+        raise EditError("it is no YAML; put it right first: fwk check says where")
+    return node.plain() or {}
+
+
+def _reads_as(text: str, expected: Any) -> bool:
+    try:
+        return bool(read(text) == expected)
+    except EditError:
+        return False
+
+
+def _over(data: Any, path: Sequence[str], value: Any) -> Any:
+    if not path:
+        return value
+    below = data if isinstance(data, dict) else {}
+    return {**below, path[0]: _over(below.get(path[0]), path[1:], value)}
+
+
+def _edited(text: str, path: Sequence[str], value: Any) -> str:
+    node = yaml.compose(text, yaml.SafeLoader)
+    if node is None:
+        return _with_newline(text) + _lines(path, value, 0)
+    for depth, key in enumerate(path):
+        if not isinstance(node, yaml.MappingNode):
+            return _replaced(text, node, _nested(path[depth:], value))
+        below = next((each for name, each in node.value if name.value == key), None)
+        if below is None:
+            return _inserted(text, node, path[depth:], value)
+        node = below
+    return _replaced(text, node, value)
+
+
+def _replaced(text: str, node: yaml.Node, value: Any) -> str:
+    start, end = node.start_mark.index, _end(node)
+    gap = " " if start == end else ""  # a key with nothing behind its colon
+    if isinstance(node, yaml.CollectionNode) and not node.flow_style:
+        gap = "  "  # a list may stand as far left as its key, a value on one line may not
+    newline = "\n" if text[start:end].endswith("\n") else ""
+    return f"{text[:start]}{gap}{_flow(value)}{newline}{text[end:]}"
+
+
+def _inserted(text: str, node: yaml.MappingNode, path: Sequence[str], value: Any) -> str:
+    if node.flow_style or not node.value:
+        end = node.end_mark.index - 1
+        pair = f"{_key(path[0])}: {_flow(_nested(path[1:], value))}"
+        return f"{text[:end]}{', ' if node.value else ''}{pair}{text[end:]}"
+    end = _end(node)
+    if not text[:end].endswith("\n"):  # behind a comment at the end of that line
+        end = text.find("\n", end) + 1 or len(text)
+    return _with_newline(text[:end]) + _lines(path, value, node.value[0][0].start_mark.column) + text[end:]
+
+
+def _end(node: yaml.Node) -> int:
+    """Where a value ends; the parser counts what follows a block as part of it."""
+    if isinstance(node, yaml.CollectionNode) and not node.flow_style and node.value:
+        last = node.value[-1]
+        return _end(last[1] if isinstance(last, tuple) else last)
+    end: int = node.end_mark.index
+    return end
+
+
+def _lines(path: Sequence[str], value: Any, indent: int) -> str:
+    made = [f"{' ' * (indent + 2 * depth)}{_key(key)}:" for depth, key in enumerate(path)]
+    return "\n".join(made) + f" {_flow(value)}\n"
+
+
+def _nested(path: Sequence[str], value: Any) -> Any:
+    for key in reversed(path):
+        value = {key: value}
+    return value
+
+
+def _with_newline(text: str) -> str:
+    return text if not text or text.endswith("\n") else f"{text}\n"
+
+
+def _key(key: str) -> str:
+    return key if _PLAIN_KEY.fullmatch(key) else json.dumps(key)
+
+
+def _flow(value: Any) -> str:
+    """The value on one line."""
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{_key(str(key))}: {_flow(below)}" for key, below in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_flow, value)) + "]"
+    if isinstance(value, float) and not math.isfinite(value):
+        return {math.inf: ".inf", -math.inf: "-.inf"}.get(value, ".nan")
+    return json.dumps(value, ensure_ascii=False)
