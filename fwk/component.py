@@ -48,6 +48,14 @@ class Component:
     name: str
     """Full name: `cyan1/omni_ball`."""
 
+    @classmethod
+    def preload(cls, config: Any) -> None:
+        """Called before processes are forked, once for each setting of the class: make here what all can share.
+
+        Fill a cache with tables that are never written to; the component's `init` finds them there. Nothing may depend
+        on it: a component started by hand or in a test has to do without.
+        """
+
     def init(self) -> None:
         """Called once before the first iteration; an exception means that the component does not start."""
 

@@ -61,6 +61,11 @@ class Camera(Component):
     log: Logger
     rng: np.random.Generator
 
+    @classmethod
+    def preload(cls, config: CameraConfig) -> None:
+        """The painted field and the mirror's maps are the same for all robots."""
+        Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, _bodies(config))
+
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._robot = self.name.rpartition("/")[0]
@@ -80,8 +85,8 @@ class Camera(Component):
 
     def _apply_settings(self) -> None:
         config = self._settings = self.config.model_copy(deep=True)
-        bodies = Bodies(config.robot_radius_m, config.robot_height_m, config.ball_radius_m)
-        self._renderer = Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, bodies)
+        mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
+        self._renderer = Renderer(mirror, config.field, _bodies(config))
         self._noise = SensorNoise(
             config.mirror.size_px, config.noise_levels, config.brightness, config.flicker, self._noise_seed
         )
@@ -108,6 +113,10 @@ class Camera(Component):
         deviation_px = self._settings.shake_px + self._settings.shake_px_per_m_s * speed_m_s
         right_px, down_px = deviation_px * self.rng.standard_normal(2)
         return float(right_px), float(down_px)
+
+
+def _bodies(config: CameraConfig) -> Bodies:
+    return Bodies(config.robot_radius_m, config.robot_height_m, config.ball_radius_m)
 
 
 def _is_here(robot: true_robot_t) -> bool:

@@ -29,7 +29,7 @@ class LocalizationConfig(Config):
     """See start_x_m."""
     start_heading_rad: float | None = None
     """See start_x_m."""
-    reach_m: float = Setting(default=6.0, gt=0.5, le=12.0)
+    reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
     """Most white points of a frame that are used."""
@@ -53,6 +53,11 @@ class Localization(Component):
     config: LocalizationConfig
     clock: Clock
     log: Logger
+
+    @classmethod
+    def preload(cls, config: LocalizationConfig) -> None:
+        """The table of the field's lines is the same for all robots."""
+        line_map(config.field)
 
     def init(self) -> None:
         """Makes the table of the field's lines.

@@ -17,6 +17,7 @@ from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
 from fwk.host.process import StopSignal, die_with_parent, run_forked
 from fwk.plan.model import Plan
+from fwk.supervisor.preload import preload
 
 _PACKET_MAX = 1 << 20
 
@@ -120,6 +121,9 @@ class _Forker:
         self._children: dict[int, tuple[int, int]] = {}
 
     def serve(self, stop: StopSignal) -> int:
+        preload(self._plan)
+        gc.collect()
+        gc.freeze()
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake us
         poller = select.poll()
         poller.register(self._connection, select.POLLIN)

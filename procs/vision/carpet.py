@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -26,6 +27,7 @@ class Carpet:
     metres_per_px: float
 
 
+@lru_cache(maxsize=4)
 def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
     """Paints the field, its border and some of the floor around it."""
     half_m = (field.half_length_m + field.border_m + _FLOOR_M, field.half_width_m + field.border_m + _FLOOR_M)

@@ -1,6 +1,7 @@
 """The ground as the mirror shows it: the carpet warped to a robot's view."""
 
 import math
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -20,7 +21,7 @@ class GroundView:
     def __init__(self, mirror: Mirror, carpet: Carpet) -> None:
         self._size_px = mirror.size_px
         self._carpet = carpet
-        self._maps = [[_ground_map(mirror, right / 2, down / 2) for right in (0, 1)] for down in (0, 1)]
+        self._maps = _ground_maps(mirror)
 
     def picture(self, x_m: float, y_m: float, heading_rad: float, right: int = 0, down: int = 0) -> Picture:
         """The ground seen from a pose in the world; `right` and `down` move the picture by so many half pixels."""
@@ -35,6 +36,12 @@ class GroundView:
             carpet.pixels, looked_up, None, cv2.INTER_NEAREST, borderValue=FLOOR
         )
         return np.asarray(view, np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _ground_maps(mirror: Mirror) -> list[list[NDArray[np.float32]]]:
+    """For pictures moved by a half pixel down and to the right, or not; made once a process, for every camera in it."""
+    return [[_ground_map(mirror, right / 2, down / 2) for right in (0, 1)] for down in (0, 1)]
 
 
 def _ground_map(mirror: Mirror, right_px: float, down_px: float) -> NDArray[np.float32]:

@@ -1,0 +1,22 @@
+"""What all components of a class share is made once, before processes are forked."""
+
+import json
+from contextlib import suppress
+from importlib import import_module
+
+from fwk.component import Component, declaration
+from fwk.plan.model import Plan
+
+
+def preload(plan: Plan) -> None:
+    """Calls `preload` of every component class that has one, once for each of its different settings."""
+    done = set()
+    for planned in plan.components:
+        key = (planned.module, planned.class_name, json.dumps(planned.config, sort_keys=True, default=str))
+        component: type[Component] = getattr(import_module(planned.module), planned.class_name)
+        if key in done or component.preload.__func__ is Component.preload.__func__:  # type: ignore[attr-defined]
+            continue
+        done.add(key)
+        config_type = declaration(component).config
+        with suppress(Exception):  # whatever is wrong with it, the component's own init says so, with its name
+            component.preload(config_type.model_validate(planned.config) if config_type else None)
