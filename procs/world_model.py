@@ -46,13 +46,13 @@ class WorldModelConfig(Config):
     """Deceleration of the rolling ball."""
     mouth_m: float = Setting(default=0.33, gt=0.0)
     """From the robot's middle to the middle of a ball that it holds."""
-    opponent_timeout_s: float = Setting(default=1.0, gt=0.0)
+    opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
     """An opponent is forgotten when nobody has seen it for longer."""
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
     """A mate is forgotten when it has said nothing for longer."""
     mate_radius_m: float = Setting(default=0.5, gt=0.0)
     """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
-    obstacle_deviation_m: float = Setting(default=0.6, gt=0.0)
+    obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
     """Obstacles seen with a larger standard deviation are not used."""
     border_m: float = Setting(default=0.7, ge=0.0)
     """Obstacles further outside the field than that are no robots of the match."""

@@ -10,7 +10,6 @@ _STANDING_M = 0.002
 _TURN_ERROR = 0.03
 _STANDING_RAD = 0.002
 _STRAIN_MEMORY = 0.75  # of the mean innovation from frame to frame
-_SURPRISE = 16.0  # squared Mahalanobis distance; a match further off means that the prediction was poorer than thought
 
 
 class PoseFilter:
@@ -47,16 +46,12 @@ class PoseFilter:
     def correct(self, pose: Floats, covariance: Floats) -> None:
         """A measurement of the whole pose (3) with its covariance (3, 3).
 
-        A push moves the robot further than the odometry's error allows; the filter then gives its prediction up as far
-        as it takes to find the measurement likely. Wheels that slip against another robot are wrong frame after frame
-        in the same direction; the mean of the last innovations is therefore taken for an error of the next prediction.
+        Wheels that slip, or another robot that pushes, make the prediction wrong frame after frame in the same
+        direction; the mean of the last innovations is therefore taken for an error of the next prediction.
         """
         innovation = pose - self.pose
         innovation[2] = wrap(float(innovation[2]))
         self._strain += (1 - _STRAIN_MEMORY) * (innovation - self._strain)
-        surprise = float(innovation @ np.linalg.solve(self._filter.P + covariance, innovation))
-        if surprise > _SURPRISE:
-            self._filter.P *= surprise / _SURPRISE
         self._filter.update(innovation[:, None], R=covariance)
         error = self._filter.x[:, 0]
         self._filter.x = np.zeros((3, 1))

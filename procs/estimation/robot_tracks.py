@@ -9,7 +9,7 @@ _ACCELERATION_M_S2 = 2.5
 _UNKNOWN_SPEED_M_S = 1.5
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
-_SAME_M = 0.3
+_SAME_M = 0.45  # robots are 0.5 m wide
 
 
 class RobotTracks:

@@ -22,15 +22,16 @@ _LOST_DEVIATIONS = (5.0, 5.0, 0.3)  # m, m, rad
 _FOUND_DEVIATIONS = (0.1, 0.1, 0.05)
 _FRAME_STANDING = np.array((0.006, 0.006, 0.002))  # m, m, rad: error that all points of a frame share: calibration, and
 _FRAME_PER_M_S = np.array((0.02, 0.02, 0.001))  # the mirror that shakes more the faster the robot drives
-_COMPASS_ERRORS_RAD = (0.0, -0.1, 0.1)  # tried one after the other while searching
-_COMPASS_MEMORY = 0.98  # of the compass' offset from frame to frame
+_COMPASS_ERRORS_RAD = (0.0, -0.12, 0.12, -0.24, 0.24)  # tried one after the other while searching
+_COMPASS_MEMORY = 0.998  # of the compass' offset from frame to frame: so slow that a robot that is carried away learns
+_COMPASS_FORGETS = 0.99  # little that is wrong before it notices; and what it learnt fades while it searches
 
 
 @dataclass(frozen=True)
 class LocalizerSettings:
     """What a self-localizer can be told."""
 
-    reach_m: float = 6.0
+    reach_m: float = 7.0
     points: int = 100
     least_points: int = 8
     search_points: int = 40
@@ -68,7 +69,8 @@ class SelfLocalizer:
         self.localized = False
         self.score = 0.0
         """Recent mean of how well the points lie on lines: 1 is perfect."""
-        self._compass_offset_rad = 0.0
+        self.compass_offset_rad = 0.0
+        """How much the compass says too much, learnt while localized."""
         self._rivals = 0
         self._frames = 0
         if start is not None:
@@ -95,7 +97,7 @@ class SelfLocalizer:
         if self.localized:
             self._track(points, compass_rad, motion.speed_m_s)
         elif compass_rad is not None:
-            self._seek(points, compass_rad - self._compass_offset_rad)
+            self._seek(points, compass_rad - self.compass_offset_rad)
 
     def _track(self, points: LinePoints, compass_rad: float | None, speed_m_s: float) -> None:
         settings = self._settings
@@ -104,12 +106,12 @@ class SelfLocalizer:
         if found.scores[0] > settings.lost_score:
             self._filter.correct(found.poses[0], self._match_covariance(found, speed_m_s))
         if compass_rad is not None:
-            deviation_rad = wrap(compass_rad - self._compass_offset_rad - float(self.pose[2]))
-            self._compass_offset_rad += (1 - _COMPASS_MEMORY) * deviation_rad
+            deviation_rad = wrap(compass_rad - self.compass_offset_rad - float(self.pose[2]))
+            self.compass_offset_rad += (1 - _COMPASS_MEMORY) * deviation_rad
             if abs(deviation_rad) > settings.compass_limit_rad or self.score < settings.lost_score:
                 self._lose()
             elif self._frames % settings.search_period == 0:
-                self._look_for_rivals(points, compass_rad - self._compass_offset_rad)
+                self._look_for_rivals(points, compass_rad - self.compass_offset_rad)
 
     def _look_for_rivals(self, points: LinePoints, heading_rad: float) -> None:
         thin = points.thinned(self._settings.search_points)
@@ -121,6 +123,7 @@ class SelfLocalizer:
             self._lose()
 
     def _seek(self, points: LinePoints, heading_rad: float) -> None:
+        self.compass_offset_rad *= _COMPASS_FORGETS
         thin = points.thinned(self._settings.search_points)
         turn_rad = _COMPASS_ERRORS_RAD[self._frames % len(_COMPASS_ERRORS_RAD)]
         others = self._search.best(thin, np.array([heading_rad + turn_rad]), 4)

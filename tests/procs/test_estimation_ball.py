@@ -187,7 +187,7 @@ def test_own_sight_wins_over_a_mate_of_the_same_accuracy_and_the_mate_counts_whe
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
         tracker.see(Sighting("me", True, own, np.eye(2) * 0.03**2))
         tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))
-    assert tracker.track.state[:2] == pytest.approx(own, abs=0.02)
+        assert tracker.track.state[:2] == pytest.approx(own, abs=0.02)
     for _ in range(10):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
         tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))

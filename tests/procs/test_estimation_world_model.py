@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from fwk.testing import Bench
 from lcmtypes.soccer import obstacle_t, team_message_t
 from procs.estimation.frames import rotation
+from procs.estimation.seen import Seen
 from procs.radio import Radio
 from procs.world_model import WorldModel
 
@@ -244,7 +245,7 @@ def test_without_any_radio_each_robot_relies_on_itself() -> None:
     assert fused == pytest.approx(np.sqrt(np.mean(np.square(alone))))
 
 
-def ball_nees(robots: int, runs: int = 40) -> float:
+def ball_nees(robots: int, runs: int = 20) -> float:
     """Mean normalised squared error of the position (2 for an honest covariance) of a ball at rest."""
     values = []
     for seed in range(runs):
@@ -313,3 +314,10 @@ def test_a_sighting_without_any_error_is_no_end_of_the_filter() -> None:
         robot.bench.port("obstacle_percepts").put(obstacles=[obstacle_t(), obstacle_t()])
         robot.bench.iterate()
     assert robot.world.ball.x_m == pytest.approx(2.0, abs=1e-3)
+
+
+def test_sightings_with_impossible_covariances_are_left_out() -> None:
+    spreads = np.array([np.eye(2), -np.eye(2), [[1.0, 2.0], [2.0, 1.0]], np.zeros((2, 2))])
+    seen = Seen.of(np.array([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]]), spreads, np.zeros(4))
+    assert seen.positions_m[:, 0].tolist() == [1.0, 4.0]
+    assert (np.linalg.eigvalsh(seen.covariances_m2) > 0).all()
