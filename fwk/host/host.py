@@ -114,6 +114,7 @@ class Host:
     def _init(self) -> None:
         for plan in self._own:
             self.figures[plan.name].state = "init"
+            self._report()
             with self._guard(plan.name, "init"):
                 runner = self._runner(plan)
                 self._runners[plan.name] = runner
@@ -279,5 +280,5 @@ class _Guard:
         pass
 
     def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, Exception) and not isinstance(error, BdbQuit):
+        if isinstance(error, Exception | SystemExit) and not isinstance(error, BdbQuit):
             raise self._host.fail(self._name, self._moment, error) from error

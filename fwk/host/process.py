@@ -22,6 +22,12 @@ def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
         os._exit(1)
 
 
+def wait_for_end(pid: int) -> str:
+    """Waits for a child that is ending; says how it ended."""
+    code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+    return f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+
+
 def raise_file_limit() -> None:
     """Allows as many open files as the system lets us: a socket a channel adds up."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)

@@ -4,6 +4,7 @@ import json
 import secrets
 import signal
 import sys
+from functools import partial
 
 from fwk.aspects.logging import Logger
 from fwk.aspects.vision import Ring
@@ -20,7 +21,7 @@ from fwk.supervisor.hosts import Hosts, StartFailure
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
-from fwk.supervisor.options import Outcome, RunOptions
+from fwk.supervisor.options import Outcome, RunBroken, RunOptions
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.status import StatusReport
 from fwk.supervisor.zygote import Zygote
@@ -46,8 +47,10 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     zygote = Zygote(plan, number, rings, debug)
     children = Children(plan, number, options)
     supervisor = Supervisor(plan, options, number, zygote, debug)
-    reason, failed = supervisor.work()
-    status = supervisor.stop()
+    reason, failed = supervisor.work(children)
+    status, failures = supervisor.stop()
+    if failures and not failed:
+        reason, failed = f"failed: {'; '.join(failures)}", True
     newest = decoded(plan, children.stop())
     zygote.close()
     lock.release()
@@ -98,8 +101,21 @@ class Supervisor:
         self._status = StatusReport(number, self._hosts.table, self.loop, self.pace)
         self.wall_s = 0.0
 
-    def work(self) -> tuple[str, bool]:
+    def work(self, children: Children) -> tuple[str, bool]:
         """Starts everything and runs the main loop; returns why it ended and whether that is a failure."""
+        self._mailbox.watch(children.control.fileno(), partial(self._on_gateway_end, children))
+        try:
+            return self._work()
+        except RunBroken as broken:
+            self.wall_s = self._status.wall_s
+            self.log.error(f"{broken}; the run cannot go on")
+            return f"broken: {broken}", True
+
+    def _on_gateway_end(self, children: Children) -> None:
+        self._mailbox.unwatch(children.control.fileno())
+        raise RunBroken(f"the gateway ended: {children.gateway_end()}")
+
+    def _work(self) -> tuple[str, bool]:
         try:
             self._hosts.start_all(self._interrupted)
         except StartFailure as failure:
@@ -118,14 +134,19 @@ class Supervisor:
             return f"failed: {'; '.join(broken)}", True
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
 
-    def stop(self) -> status_t:
-        """Stops every process; returns the last view of them."""
+    def stop(self) -> tuple[status_t, list[str]]:
+        """Stops every process; returns the last view of them, and which components failed in finalize and why."""
         self._control.close()
         status = self._publish_status()
-        for name in self._hosts.stop_all():
-            self.log.warning(f"{name} did not stop when asked; killed")
+        before = self._hosts.failed_components()
+        try:
+            for name in self._hosts.stop_all():
+                self.log.warning(f"{name} did not stop when asked; killed")
+        except RunBroken as broken:
+            self.log.error(f"{broken} while everything was being stopped")
         self._publish_status()
-        return status
+        after = self._hosts.failed_components()
+        return status, [f"{name}: {reason}" for name, reason in after.items() if name not in before]
 
     def _done(self) -> bool:
         ticks, time_s = self._options.ticks, self._options.time_s

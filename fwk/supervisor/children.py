@@ -11,7 +11,7 @@ from fwk.gateway import json_log, sinks
 from fwk.gateway.board import Board
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.json_log import JsonLog
-from fwk.host.process import die_with_parent, run_forked
+from fwk.host.process import die_with_parent, run_forked, wait_for_end
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
 from fwk.supervisor.options import RunOptions
@@ -43,18 +43,25 @@ class Children:
         gateway_control.close()
         display_feed.close()
 
+    def gateway_end(self) -> str:
+        """How the gateway ended, when its end of `control` was closed before ours."""
+        pid, self._gateway = self._gateway, 0
+        return wait_for_end(pid)
+
     def stop(self) -> dict[str, object]:
         """Lets both finish; returns the newest messages that the gateway saw, decoded."""
-        self.control.shutdown(socket.SHUT_WR)
         self.control.settimeout(5.0)
         newest: dict[str, object] = {}
         try:
+            self.control.shutdown(socket.SHUT_WR)
             while packet := self.control.recv(_PACKET_MAX):
                 channel, _, data = packet.partition(b"\0")
                 newest[channel.decode()] = data
         except OSError:
-            os.kill(self._gateway, signal.SIGKILL)
-        os.waitpid(self._gateway, 0)
+            if self._gateway:
+                os.kill(self._gateway, signal.SIGKILL)
+        if self._gateway:
+            os.waitpid(self._gateway, 0)
         os.waitpid(self._display, 0)
         return newest
 

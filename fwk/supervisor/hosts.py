@@ -9,6 +9,7 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.plan.model import Plan
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
+from fwk.supervisor.options import RunBroken
 from fwk.supervisor.output import Captured
 from fwk.supervisor.standin import StandIn
 from fwk.supervisor.table import HostEntry, host_table
@@ -99,6 +100,11 @@ class Hosts:
         """Whether something has to be maintained."""
         return any(entry.state in ("waiting", "starting", "stopping") for entry in self.table)
 
+    def failed_components(self) -> dict[str, str]:
+        """Names of components that have failed, and why."""
+        components = (component for entry in self.table for component in entry.components)
+        return {component.name: component.reason for component in components if component.state == "failed"}
+
     def stop_all(self) -> list[str]:
         """Asks all hosts to stop, kills those that do not; returns the names of those killed."""
         self._stopping = True
@@ -147,7 +153,14 @@ class Hosts:
             self.on_started(entry)
 
     def _on_zygote(self) -> None:
-        for event in self._zygote.events():
+        try:
+            events = self._zygote.events()
+        except RunBroken:
+            self._mailbox.unwatch(self._zygote.socket.fileno())
+            for entry in self.table:
+                entry.pid = 0  # the kernel kills them all
+            raise
+        for event in events:
             entry = self.table[event.host]
             if isinstance(event, Started):
                 entry.pid = event.pid

@@ -196,7 +196,7 @@ class MainLoop:
             self.recorded = max(self.recorded, done.tick)
             return
         entry = self._hosts.table[done.host]
-        if done.incarnation != entry.incarnation:
+        if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
             return
         if entry.busy == (done.tick, done.stage):
             entry.busy = None

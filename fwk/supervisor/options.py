@@ -31,6 +31,10 @@ class RunOptions:
     """Lines of text instead of the live display, on a terminal too."""
 
 
+class RunBroken(Exception):  # noqa: N818 - what happened to the run
+    """A process that no run can do without has ended; says which and how."""
+
+
 @dataclass(frozen=True)
 class Outcome:
     """How a run ended."""

@@ -1,5 +1,6 @@
 """The zygote: a process that has imported everything and forks hosts when asked, so that they start in no time."""
 
+import contextlib
 import gc
 import json
 import os
@@ -15,8 +16,9 @@ from fwk.aspects.vision import Ring
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
-from fwk.host.process import StopSignal, die_with_parent, run_forked
+from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
 from fwk.plan.model import Plan
+from fwk.supervisor.options import RunBroken
 from fwk.supervisor.preload import preload
 
 _PACKET_MAX = 1 << 20
@@ -76,15 +78,22 @@ class Zygote:
         self._send({"signal": number, "pid": pid})
 
     def events(self) -> list[Started | Ended]:
-        """What happened since the last call."""
+        """What happened since the last call.
+
+        Raises:
+            RunBroken: the zygote itself ended, and all hosts with it.
+        """
         found: list[Started | Ended] = []
         while True:
             try:
                 packet, descriptors, _, _ = socket.recv_fds(self.socket, _PACKET_MAX, 2)
             except BlockingIOError:
                 return found
+            except ConnectionResetError:  # it ended with requests unread
+                packet, descriptors = b"", []
             if not packet:
-                raise ChildProcessError("the zygote ended")
+                pid, self.pid = self.pid, 0
+                raise RunBroken(f"the zygote ended: {wait_for_end(pid)}")
             event = json.loads(packet)
             if event.pop("event") == "started":
                 found.append(Started(**event, output=descriptors[0], errors=descriptors[1]))
@@ -94,11 +103,13 @@ class Zygote:
     def close(self) -> None:
         """Ends the zygote; hosts that still run are killed."""
         self.socket.close()
-        os.waitpid(self.pid, 0)
+        if self.pid:
+            os.waitpid(self.pid, 0)
 
     def _send(self, request: dict[str, Any]) -> None:
         self.socket.setblocking(True)
-        self.socket.send(json.dumps(request).encode())
+        with contextlib.suppress(ConnectionError):  # it ended; its events say so
+            self.socket.send(json.dumps(request).encode())
         self.socket.setblocking(False)
 
 

@@ -8,9 +8,12 @@ import sys
 import time
 import uuid
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import psutil
+
+from fwk.host.process import die_with_parent
 
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
@@ -63,6 +66,7 @@ class Launched:
                 stdout=output,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
+                preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGTERM),  # when the test run is killed
             )
 
     @property
@@ -82,6 +86,10 @@ class Launched:
     def until(self, text: str) -> None:
         """Waits until it has printed something."""
         self.until_true(lambda: text in self.text, f"{text!r} in the output")
+
+    def until_count(self, text: str, count: int) -> None:
+        """Waits until it has printed something so often."""
+        self.until_true(lambda: self.text.count(text) >= count, f"{text!r} {count} times in the output")
 
     def until_true(self, condition: Callable[[], bool], what: str) -> None:
         """Waits until something has come true while it runs."""

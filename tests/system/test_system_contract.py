@@ -77,12 +77,12 @@ def test_whoever_is_killed_whenever_nothing_is_seen_twice_or_lost(launch: Launch
     run = launch(*RUN)
     luck = random.Random(1)
     for kills in range(KILLS):
-        run.until_true(lambda seen=kills: run.text.count(" runs again") == seen, "started again")
+        run.until_count(" runs again", kills)
         # Two ticks without a death: a message that its writer took along before a newcomer could ask for it is lost.
         run.until_ticks("f/player", 3)
         pause(luck.uniform(0.0, 0.1))
         os.kill(run.host(f"{luck.choice(PLAYERS)}/player"), signal.SIGKILL)
-    run.until_true(lambda: run.text.count(" runs again") == KILLS, "started again")
+    run.until_count(" runs again", KILLS)
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
     recording = Recording(folder / "log.lcm")
