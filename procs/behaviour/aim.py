@@ -15,6 +15,8 @@ _BALL_M_S = 9.0
 _TARGETS = 13
 LANE_RAD = 0.12
 """Room beside a pass's way that is enough."""
+_PASS_M_S = 4.0
+_LEAD_S = 0.5  # a mate is taken to drive on for so long
 _GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free way in rad
 _TURN_1_RAD = 0.1  # and a radian of turning costs this
 
@@ -68,19 +70,21 @@ def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot],
     """The team mate to whom a pass is worth most: a free way, ground gained, little turning of the player.
 
     Returns:
-        Where that mate is, and the room beside the way; None if nobody is 2 to 9 m away and not more than `back_m`
-        behind the player.
+        Where that mate will be in a moment, and the room beside the way; None if nobody will be 2 to 9 m away and not
+        more than `back_m` behind the player.
     """
     others = list(opponents)
     best: tuple[tuple[bool, float], Aim] | None = None
     for mate in mates:
-        gain_m = mate.place.x_m - player.place.x_m
-        if not 2.0 <= math.dist(player.place, mate.place) <= 9.0 or gain_m < -back_m:
+        lead_s = min(_LEAD_S, math.dist(player.place, mate.place) / _PASS_M_S)
+        place = Point(mate.place.x_m + lead_s * mate.velocity_m_s.x_m, mate.place.y_m + lead_s * mate.velocity_m_s.y_m)
+        gain_m = place.x_m - player.place.x_m
+        if not 2.0 <= math.dist(player.place, place) <= 9.0 or gain_m < -back_m:
             continue
-        free_rad = lane_rad(player.place, mate.place, others, ball_m_s=4.0)
-        turn_rad = abs(wrap_rad(bearing_rad(player.place, mate.place) - player.heading_rad))
+        free_rad = lane_rad(player.place, place, others, ball_m_s=_PASS_M_S)
+        turn_rad = abs(wrap_rad(bearing_rad(player.place, place) - player.heading_rad))
         worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad
         rank = (free_rad >= LANE_RAD, worth)
         if best is None or rank > best[0]:
-            best = rank, Aim(mate.place, free_rad)
+            best = rank, Aim(place, free_rad)
     return best[1] if best else None

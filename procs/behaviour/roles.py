@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from procs.behaviour import ballistics
 from procs.behaviour.formation import places
-from procs.behaviour.view import Robot, View
+from procs.behaviour.view import Ball, Robot, View
 from procs.field import Field, Point
 from procs.physics.teams import number_of
 
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 
+_HAS_BALL_M = 0.45
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless changing saves so much way
@@ -41,7 +42,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     if not team:
         return jobs
     course = ballistics.Course(view.ball)
-    times_s = {robot.name: course.meet(robot.place).time_s for robot in team}
+    times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
     attacker = min(team, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
@@ -51,6 +52,11 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, _flank(view, team), field), strict=True)]
     jobs.update(_fill(team, posts))
     return jobs
+
+
+def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
+    # Who dribbles takes the ball along; a mate ahead of it would else seem to meet it sooner.
+    return 0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place).time_s
 
 
 def _flank(view: View, team: Sequence[Robot]) -> float:

@@ -13,12 +13,14 @@ from procs.field import Field, Point
 
 _SHOT_RANGE_M = 9.0
 _OWN_HALF_M = 0.3  # a goal counts only if it is shot from beyond the halfway line
-_ROOM_M = 0.2  # beside a shot's way at the goal ...
-_ROOM_PRESSED_M = 0.1  # ... or less before the ball is lost
+_ROOM_M = 0.15  # beside a shot's way at the goal ...
+_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
 _BACK_M = 1.0  # a pass may lose so much ground
 _PRESSED_M = 1.3
+_DANGER_M = -4.0  # so near to the own goal a pressed robot rather clears the ball
 _PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
+_HELD_M = 0.5  # an opponent this near to the ball has it
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 0.8
 
@@ -99,7 +101,8 @@ class Tactics:
             order = self._shot(view, _ROOM_PRESSED_M) or self._pass_on(view, back_m=_BACK_M)
         else:
             order = self._shot(view, _ROOM_M)
-        if order is None and self._held_s > 2 * _PATIENCE_S:
+        in_danger = pressed and view.own.place.x_m < _DANGER_M
+        if order is None and (in_danger or self._held_s > 2 * _PATIENCE_S):
             order = self._clear(view)
         return order or self._dribble(view)
 
@@ -137,7 +140,8 @@ class Tactics:
             view.own.place.y_m - ball.place.y_m
         )
         distance_m = math.dist(view.own.place, ball.place)
-        if ball.speed_m_s > _FAST_BALL_M_S and towards > 0.7 * ball.speed_m_s * distance_m:
+        rolls_free = all(math.dist(other.place, ball.place) > _HELD_M for other in view.opponents)
+        if rolls_free and ball.speed_m_s > _FAST_BALL_M_S and towards > 0.7 * ball.speed_m_s * distance_m:
             return Order("intercept", ball.place, goal_rad, "intercept")
         return Order("get_ball", ball.place, goal_rad, "get ball")
 

@@ -48,6 +48,13 @@ def test_passes_go_forward_past_opponents() -> None:
     assert back.place == behind.place
 
 
+def test_a_pass_leads_a_running_mate() -> None:
+    runner = robot("cyan3", 4.0, 0.0)._replace(velocity_m_s=Point(0.0, 2.0))
+    best = aim.best_pass(robot("cyan2", 0.0, 0.0), [runner], [])
+    assert best is not None
+    assert best.place == (4.0, 1.0)
+
+
 def test_nobody_at_a_useful_distance_gets_no_pass() -> None:
     player = robot("cyan2", 0.0, 0.0)
     assert aim.best_pass(player, [robot("cyan3", 1.0, 0.0), robot("cyan4", 10.0, 0.0)], []) is None

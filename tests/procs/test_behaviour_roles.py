@@ -61,6 +61,19 @@ def test_who_meets_a_rolling_ball_first_attacks() -> None:
     assert jobs["cyan3"].role == ATTACKER
 
 
+def test_who_dribbles_stays_attacker_although_the_ball_rolls_towards_a_mate() -> None:
+    dribbler, ahead = robot("cyan2", 0.0, 0.0, role=ATTACKER), robot("cyan3", 1.5, 0.2)
+    jobs = assign(view(dribbler, ball(0.33, 0.0, 2.0, 0.0), (ahead, TEAM[0])), FIELD)
+    assert jobs["cyan2"].role == ATTACKER
+
+
+def test_the_supporter_changes_its_flank_only_when_the_ball_is_well_on_it() -> None:
+    supporter = robot("cyan5", 3.0, 3.0, role=SUPPORTER)
+    for y_m, flank in ((0.5, 1.0), (2.5, -1.0)):
+        jobs = assign(view(supporter, ball(0.0, y_m), (TEAM[0], TEAM[1])), FIELD)
+        assert jobs["cyan5"].place.y_m * flank > 0
+
+
 def test_a_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
     lost = View(localized=False, own=TEAM[1], ball=ball(0.0, 0.0), mates=(TEAM[0], TEAM[2]))
     assert set(assign(lost, FIELD)) == {"cyan1", "cyan3"}

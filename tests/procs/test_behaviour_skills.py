@@ -73,6 +73,18 @@ def test_a_set_pieces_ball_is_taken_from_behind() -> None:
     assert not drive(GetBall().step(scene(behind, set_piece=True))).avoid_ball
 
 
+def test_an_opponents_ball_is_attacked_from_the_side_of_the_own_goal() -> None:
+    seen = view(robot("cyan2", 1.0, 2.0), ball(0.0, 0.0), (), (robot("", 0.33, 0.0),))
+    tackle = drive(GetBall().step(scene(seen)))
+    assert tackle.place.x_m < -0.2
+    assert tackle.heading_rad == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_rolling_ball_is_faced_where_it_comes_from() -> None:
+    seen = view(robot("cyan2", 0.0, 0.0), ball(3.0, 1.0, 0.0, -2.0))
+    assert drive(GetBall().step(scene(seen))).heading_rad == pytest.approx(math.atan2(1.0, 3.0))
+
+
 def test_intercept_waits_on_the_balls_way_facing_it() -> None:
     wait = drive(Intercept().step(scene(view(robot("cyan2", -1.0, 0.6), ball(4.0, 0.0, -3.0, 0.0)))))
     assert wait.place == pytest.approx((-1.0, 0.0))

@@ -140,6 +140,24 @@ def test_a_defender_marks_a_free_opponent_nearby() -> None:
     assert (order.skill, order.place) == ("mark", (-4.0, 2.0))
 
 
+def test_a_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
+    opponents = (robot("", 2.0, 0.0), robot("", -4.0, 2.0))
+    nearer = robot("cyan4", -4.8, 2.0, role=DEFENDER)
+    order = decide(view(robot("cyan3", -5.0, 2.0), ball(1.8, 0.0), (nearer,), opponents), role=DEFENDER)
+    assert order.skill == "goto"
+
+
+def test_before_the_own_goal_a_pressed_robot_clears_the_ball() -> None:
+    beside = robot("", -6.0, 1.0)
+    assert decide(with_ball(-6.0, 0.0, beside), holds_ball=True).skill == "shoot"
+    assert decide(with_ball(-6.0, 0.0), holds_ball=True).skill == "dribble"
+
+
+def test_a_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
+    seen = view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -2.0, 0.0), (), (robot("", 3.33, 0.0),))
+    assert decide(seen).skill == "get_ball"
+
+
 def test_without_a_ball_to_be_seen_the_formation_is_taken() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
     order = decide(seen)

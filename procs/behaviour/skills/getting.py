@@ -12,6 +12,7 @@ _PUSH_M = 0.27  # middles of robot and ball when the ball is pressed into the mo
 _STAGING_M = 0.75
 _ALIGNED_RAD = 0.35
 _ENTRY_M_S = 0.5
+_HELD_M = 0.5  # an opponent this near to the ball has it
 _SURE_S = 0.1  # the light barrier must see the ball so long
 
 
@@ -37,16 +38,23 @@ class _Capture(Skill):
 
 
 class GetBall(_Capture):
-    """Drives to the ball, mouth first. A set piece's ball it takes from behind, so that it can play at once."""
+    """Drives to the ball, mouth first; if an opponent has it, from the side of the own goal, to stop it.
+
+    A set piece's ball it takes from behind, so that it can play at once.
+    """
 
     def _approach(self, scene: Scene) -> Drive:
         own, ball = scene.view.own.place, scene.view.ball
         meeting = ballistics.meet(ball, own).place
+        if not scene.holds_ball and any(math.dist(other.place, ball.place) < _HELD_M for other in scene.view.opponents):
+            goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
+            return Drive(ahead(meeting, goal_rad, _PUSH_M), wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S)
         way_rad = bearing_rad(own, meeting)
         off_rad = abs(wrap_rad(way_rad - scene.heading_rad))
         if scene.set_piece and off_rad > _ALIGNED_RAD:
             return Drive(ahead(meeting, scene.heading_rad, -_STAGING_M), scene.heading_rad, avoid_ball=True)
-        return Drive(ahead(meeting, way_rad, -_PUSH_M), way_rad, scene.speed_m_s, _ENTRY_M_S)
+        facing_rad = bearing_rad(own, ball.place)  # a rolling ball comes from there, wherever it is met
+        return Drive(ahead(meeting, facing_rad, -_PUSH_M), facing_rad, scene.speed_m_s, _ENTRY_M_S)
 
 
 class Intercept(_Capture):
