@@ -12,14 +12,14 @@ from fwk.control.address import supervisor_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
-from fwk.control.steering import Steering
-from fwk.control.view import component_view
 from fwk.plan.model import Plan
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import RunOptions
+from fwk.supervisor.steering import Steering
 from fwk.supervisor.table import HostEntry
+from fwk.supervisor.view import component_view
 from lcmtypes.core import status_t
 
 _FRESH_US = 2 * US_PER_S  # rates older than this say nothing

@@ -3,7 +3,7 @@
 import pytest
 
 from fwk.plan.model import RestartPolicy, RestartWhen
-from fwk.supervisor.table import HostEntry
+from fwk.supervisor.table import Change, HostEntry
 
 
 def entry(when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10, backoff_s: float = 0.5) -> HostEntry:
@@ -69,3 +69,88 @@ def test_the_reason_names_the_signal() -> None:
     host.starting(0)
     host.ended(-9, 1, stopping=False)
     assert host.reason == "killed by signal 9"
+
+
+def running(when: RestartWhen = "on-failure") -> HostEntry:
+    host = entry(when)
+    host.starting(0)
+    host.state, host.pid = "running", 100
+    return host
+
+
+def test_asked_to_stop_it_leaves_and_stays_away() -> None:
+    host = running("always")
+    host.want_stop(10)
+    assert host.leaves
+    assert host.expected  # until the boundary
+    host.leaving(20)
+    assert not host.expected
+    host.ended(-15, 30, stopping=False)
+    assert host.state == "stopped"
+    assert host.settled
+    assert not host.joins
+
+
+def test_a_restart_is_a_number_that_goes_up() -> None:
+    host = running()
+    host.want_restart(10)
+    assert (host.desired_run, host.actual_run) == (2, 1)
+    assert host.leaves
+    host.leaving(20)
+    assert host.expected  # the loop waits for it
+    host.ended(0, 30, stopping=False)
+    assert host.state == "waiting"
+    assert host.restart_us == 30
+    assert host.joins
+    assert host.starting(40) == 2
+    host.state = "running"
+    assert host.settled
+
+
+def test_what_was_given_up_starts_again_when_asked() -> None:
+    host = entry("never")
+    host.starting(0)
+    host.ended(1, 10, stopping=False)
+    assert host.state == "failed"
+    host.want_start(20)
+    assert host.joins
+    host.starting(30)
+    assert host.alive
+    assert not host.leaves
+
+
+def test_start_leaves_what_runs_alone() -> None:
+    host = running()
+    host.want_start(10)
+    assert not host.leaves
+    assert host.settled
+
+
+def test_asked_restarts_forget_failures_of_before() -> None:
+    host = entry(limit=1)
+    for moment in (0, 10):
+        host.starting(moment)
+        host.ended(1, moment + 5, stopping=False)
+    assert host.state == "failed"
+    host.want_restart(20)
+    host.starting(30)
+    host.ended(1, 40, stopping=False)
+    assert host.state == "waiting"
+
+
+def test_what_shall_stop_and_dies_before_is_not_started_again() -> None:
+    host = running("always")
+    host.want_stop(10)
+    host.ended(-9, 20, stopping=False)
+    assert host.state == "stopped"
+
+
+def test_changes_of_settings_wait_until_their_tick_is_answered() -> None:
+    host = running()
+    host.changes = [Change(0, 1, "{}", step=5), Change(0, 2, "{}", step=8)]
+    host.seen = 5
+    host.told()
+    assert [change.number for change in host.changes] == [2]
+    host.want_restart(10)
+    host.leaving(20)
+    assert host.changes == []  # the new process is started with them

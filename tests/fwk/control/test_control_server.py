@@ -1,0 +1,223 @@
+"""Whoever asks what: the server answers, refuses, and never waits."""
+
+import json
+import os
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as some
+
+from fwk.control import address, server
+from fwk.control.client import Client, ControlError, RefusedError
+from fwk.control.requests import RequestError, parsed, to_gateway, to_supervisor
+from fwk.control.server import Connection, Server
+
+Connect = Callable[[], socket.socket]
+ADDRESS = f"\0fwk-test-control-{os.getpid()}"
+
+
+def echo(line: bytes, connection: Connection) -> None:
+    try:
+        request = parsed(to_supervisor, line)
+    except RequestError as error:
+        connection.refuse(str(error))
+        return
+    connection.reply({"ok": True, **request.model_dump()})
+
+
+@pytest.fixture
+def listening() -> Iterator[Server]:
+    made = Server(ADDRESS, echo)
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def connect(listening: Server) -> Iterator[Connect]:
+    made: list[socket.socket] = []
+
+    def start() -> socket.socket:
+        made.append(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
+        made[-1].connect(ADDRESS)
+        made[-1].settimeout(0.2)
+        return made[-1]
+
+    yield start
+    for each in made:
+        each.close()
+
+
+def answers(listening: Server, connection: socket.socket) -> list[dict[str, Any]]:
+    """Lets the server work until nothing more comes."""
+    data = b""
+    while True:
+        for _ in range(4):
+            listening.handle()
+        try:
+            received = connection.recv(1 << 20)
+        except (TimeoutError, ConnectionError):
+            break
+        data += received
+        if not received:
+            break
+    return [json.loads(line) for line in data.splitlines()]
+
+
+def test_a_request_in_pieces_is_answered_once(listening: Server, connect: Connect) -> None:
+    connection = connect()
+    for piece in (b'{"verb"', b':"ru', b'n"}\n'):
+        connection.sendall(piece)
+        listening.handle()
+    assert answers(listening, connection) == [{"ok": True, "verb": "run"}]
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        (b"hello", "no request: Invalid JSON"),
+        (b"[]", "no request"),
+        (b"{}", "verb"),
+        (b'{"verb": "explode"}', "does not match any of the expected tags"),
+        (b'{"verb": "steer", "action": "explode", "names": []}', "steer.action: Input should be 'start', 'stop'"),
+        (b'{"verb": "steer", "action": "stop"}', "steer.names: Field required"),
+        (b'{"verb": "status", "name": "x"}', "Extra inputs are not permitted"),
+        (b'{"verb": "status", "names": "x"}', "Input should be a valid array"),
+        (b'{"verb": "status", "names": ["' + b"x" * 300 + b'"]}', "at most 200 characters"),
+        (b"\xff\xfe", "no request"),
+        (b"[" * 60_000, "no request"),
+    ],
+)
+def test_what_is_no_request_is_refused_and_the_next_one_answered(
+    listening: Server, connect: Connect, line: bytes, error: str
+) -> None:
+    connection = connect()
+    connection.sendall(line + b'\n{"verb":"run"}\n')
+    refused, answered = answers(listening, connection)
+    assert not refused["ok"]
+    assert error in refused["error"]
+    assert answered == {"ok": True, "verb": "run"}
+
+
+@given(some.lists(some.binary(max_size=200), max_size=5))
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_no_bytes_break_a_request_reader(garbage: list[bytes]) -> None:
+    for line in garbage:
+        with pytest.raises(RequestError):
+            parsed(to_supervisor, line)
+        with pytest.raises(RequestError):
+            parsed(to_gateway, line)
+
+
+def test_an_endless_request_ends_the_connection(listening: Server, connect: Connect) -> None:
+    connection = connect()
+    connection.settimeout(None)
+    sender = threading.Thread(target=lambda: _flood(connection, b"x" * (4 * server.REQUEST_MAX)))
+    sender.start()
+    while sender.is_alive():
+        listening.handle()
+    sender.join()
+    connection.settimeout(0.2)
+    assert "at most" in answers(listening, connection)[-1]["error"]
+
+
+def test_too_many_requests_at_once_end_the_connection(listening: Server, connect: Connect) -> None:
+    connection = connect()
+    connection.sendall(b'{"verb":"run"}\n' * (server.REQUESTS_MAX + 1))
+    (answer,) = answers(listening, connection)
+    assert "may come at once" in answer["error"]
+
+
+def test_one_who_does_not_read_is_left_and_others_are_answered(listening: Server, connect: Connect) -> None:
+    held: list[Connection] = []
+    listening._answer = lambda _, connection: held.append(connection)
+    silent = connect()
+    silent.sendall(b"x\n")
+    for _ in range(4):
+        listening.handle()
+    for _ in range(20):
+        held[0].reply({"ballast": "x" * (1 << 20)})
+    assert not held[0].open
+    listening._answer = echo
+    other = connect()
+    other.sendall(b'{"verb":"run"}\n')
+    assert answers(listening, other) == [{"ok": True, "verb": "run"}]
+
+
+def test_a_stream_leaves_out_what_is_not_read_and_counts_it(listening: Server, connect: Connect) -> None:
+    held: list[Connection] = []
+    listening._answer = lambda _, connection: held.append(connection)
+    slow = connect()
+    slow.sendall(b"x\n")
+    for _ in range(4):
+        listening.handle()
+    for number in range(30):
+        held[0].stream({"number": number, "ballast": "x" * 100_000})
+    before = held[0].skipped
+    assert before > 0
+    first = answers(listening, slow)
+    held[0].stream({"number": 30})
+    (last,) = answers(listening, slow)
+    assert last == {"number": 30, "skipped": before}
+    assert len(first) + before == 30
+
+
+def test_only_so_many_may_be_connected(listening: Server, connect: Connect) -> None:
+    many = [connect() for _ in range(server.CONNECTIONS_MAX + 1)]
+    for _ in range(2 * len(many)):
+        listening.handle()
+    (answer,) = answers(listening, many[-1])
+    assert "connections already" in answer["error"]
+
+
+def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "user_of", lambda _: os.geteuid() + 1)
+    connection = connect()
+    connection.sendall(b'{"verb":"run"}\n')
+    (answer,) = answers(listening, connection)
+    assert answer["ok"] is False
+    assert "only its own user and root are obeyed" in answer["error"]
+
+
+def test_the_kernel_says_who_asks() -> None:
+    one, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
+    assert address.user_of(one) == os.geteuid()
+    one.close()
+    other.close()
+    assert address.obeys(0)
+    assert address.obeys(os.geteuid())
+    assert not address.obeys(os.geteuid() + 1)
+
+
+def test_a_client_gives_up_after_its_time(listening: Server) -> None:
+    with Client(ADDRESS, 0.05) as client, pytest.raises(ControlError, match=r"not answered within 0\.05 s"):
+        client.ask("run")
+
+
+def test_a_client_says_what_was_refused(listening: Server) -> None:
+    done = threading.Event()
+
+    def work() -> None:
+        while not done.is_set():
+            listening.handle()
+
+    worker = threading.Thread(target=work)
+    worker.start()
+    try:
+        with Client(ADDRESS) as client:
+            assert client.ask("run") == {"ok": True, "verb": "run"}
+            with pytest.raises(RefusedError, match="expected tags"):
+                client.ask("explode")
+    finally:
+        done.set()
+        worker.join()
+
+
+def _flood(connection: socket.socket, data: bytes) -> None:
+    try:
+        connection.sendall(data)
+    except OSError:
+        return

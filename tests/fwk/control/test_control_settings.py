@@ -1,0 +1,141 @@
+"""Settings of a run: checked as in a launch file, shown with origin, type and meaning."""
+
+import re
+from collections.abc import Sequence
+
+import pytest
+
+from fwk import Component, Config, Writes
+from fwk.control.requests import RequestError
+from fwk.control.settings import RunSettings
+from fwk.testing.plans import plan_of
+from lcmtypes.robot import imu_t
+
+
+class Inner(Config):
+    deep: int = 1
+    """How deep."""
+
+
+class TurnerConfig(Config):
+    gain: float = 0.3
+    """How fast."""
+    inner: Inner = Inner()
+    names: list[str] = []
+
+
+class Turner(Component):
+    stage = "think"
+    config: TurnerConfig
+    imu: Writes[imu_t]
+
+
+class Plain(Component):
+    stage = "think"
+    imu: Writes[imu_t]
+
+
+@pytest.fixture
+def settings() -> RunSettings:
+    plan = plan_of({"a/turner": Turner, "b/turner": Turner, "c/plain": Plain})
+    for component in plan.components[:2]:
+        component.origins.update({"gain": "soccer.yaml:4", "inner.deep": "default", "names": "default"})
+    return RunSettings(plan)
+
+
+def apply(settings: RunSettings, *sets: str) -> None:
+    for new in settings.check(sets):
+        settings.take(new, "test")
+
+
+def values(settings: RunSettings, pattern: str) -> dict[str, object]:
+    return {f"{row['component']}.{row['setting']}": row["value"] for row in settings.rows([pattern])}
+
+
+def test_a_row_says_everything(settings: RunSettings) -> None:
+    assert settings.rows(["a/turner.gain"]) == [
+        {
+            "component": "a/turner",
+            "setting": "gain",
+            "value": 0.3,
+            "origin": "soccer.yaml:4",
+            "type": "float",
+            "meaning": "How fast.",
+            "editable": True,
+        }
+    ]
+    (deep,) = settings.rows(["b/turner.inner"])
+    assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "How deep.")
+
+
+def test_new_values_are_shown_with_their_origin_once_taken(settings: RunSettings) -> None:
+    found = settings.check(["*/turner.gain=1", "b/turner.inner.deep=7"])
+    assert [new.said for new in found] == [{"gain": 1.0}, {"gain": 1.0, "inner.deep": 7}]
+    assert values(settings, "*.gain") == {"a/turner.gain": 0.3, "b/turner.gain": 0.3}
+    for new in found:
+        settings.take(new, "test")
+    assert values(settings, "b") == {"b/turner.gain": 1.0, "b/turner.inner.deep": 7, "b/turner.names": []}
+    origins = {f"{row['component']}.{row['setting']}": row["origin"] for row in settings.rows([])}
+    assert origins["a/turner.gain"] == origins["b/turner.inner.deep"] == "test"
+    assert origins["a/turner.inner.deep"] == "default"
+
+
+def test_what_is_asked_for_before_the_boundary_adds_up(settings: RunSettings) -> None:
+    (first,) = settings.check(["a/turner.gain=1"])
+    settings.ask(first)
+    (second,) = settings.check(["a/turner.inner.deep=2"])
+    assert second.values["gain"] == 1.0
+    assert second.said == {"inner.deep": 2}
+
+
+def test_a_restarted_process_is_told_what_differs_from_the_plan(settings: RunSettings) -> None:
+    assert settings.changed([0, 1]) == {}
+    apply(settings, "b/turner.gain=2")
+    assert list(settings.changed([0, 1])) == ["b/turner"]
+    assert '"gain": 2.0' in settings.changed([1])["b/turner"]
+
+
+@pytest.mark.parametrize(
+    ("sets", "error"),
+    [
+        (["a/turner.gian=1"], "a/turner: no setting 'gian'; did you mean 'gain'?"),
+        (["a/turner.inner.dep=1"], "a/turner: no setting 'inner.dep'; did you mean 'deep'?"),
+        (["a/turner.gain=fast"], "a/turner: 'gain' is 'fast'; it should be a valid number"),
+        (["a/turner.gain=true"], "it should be a number"),
+        (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
+        (["c/plain.gain=1"], "c/plain: it has no settings"),
+        (["speed=2"], "'speed=2' is no NAME.SETTING=VALUE"),
+        (["a/turner.gain"], "'a/turner.gain' is no PATH=VALUE"),
+        (["a/turner.gain=[1"], "'[1' is no YAML value"),
+        (["a/turner.gain=1", "b/turner.names=[x, 1]"], "b/turner: 'names.1' is 1; it should be a valid string"),
+        ([f"a/turner.names=[{'x' * 40_000}]"], "set fewer at once"),
+    ],
+)
+def test_mistakes_are_named_and_nothing_changes(settings: RunSettings, sets: Sequence[str], error: str) -> None:
+    before = settings.rows([])
+    with pytest.raises(RequestError, match=re.escape(error)):
+        settings.check(sets)
+    assert settings.rows([]) == before
+
+
+def test_all_mistakes_come_at_once(settings: RunSettings) -> None:
+    with pytest.raises(RequestError) as raised:
+        settings.check(["a/turner.gian=1", "nobody.x=2", "seed=3"])
+    assert len(str(raised.value).splitlines()) == 3
+
+
+@pytest.mark.parametrize(
+    ("pattern", "error"),
+    [("a/turnr", "did you mean 'a/turner'?"), ("a/turner.gian", "did you mean 'gain'?"), ("x.y", "no setting 'x.y'")],
+)
+def test_an_unknown_setting_is_named_with_the_nearest(settings: RunSettings, pattern: str, error: str) -> None:
+    with pytest.raises(RequestError, match=re.escape(error)):
+        settings.rows([pattern])
+
+
+def test_a_config_takes_over_in_place() -> None:
+    config = TurnerConfig()
+    inner = config.inner
+    config.take_over(TurnerConfig(gain=2, inner=Inner(deep=5), names=["x"]))
+    assert (config.gain, config.names, inner.deep) == (2.0, ["x"], 5)
+    assert config.inner is inner

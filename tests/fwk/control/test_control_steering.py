@@ -1,0 +1,110 @@
+"""Wishes for components become wishes for processes, or are refused with who stands against them."""
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fwk import Component, Image, VisionMaster, Writes
+from fwk.control.requests import Action, RequestError
+from fwk.supervisor.steering import Steering
+from fwk.supervisor.table import HostEntry, host_table
+from fwk.testing.plans import plan_of
+from lcmtypes.robot import imu_t
+
+
+class Camera(Component):
+    stage = "sensor_acquire"
+    image: VisionMaster
+
+    def loop(self) -> None:
+        self.image.publish(np.zeros((2, 2), np.uint8))
+
+
+class Finder(Component):
+    stage = "sensor_prepare"
+    image: Image
+
+
+class Base(Component):
+    stage = "act"
+    imu: Writes[imu_t]
+
+
+@pytest.fixture
+def table() -> list[HostEntry]:
+    return []
+
+
+@pytest.fixture
+def steering(table: list[HostEntry]) -> Steering:
+    components = {"r/camera": Camera, "r/finder": Finder, "r/base": Base, "s/base": Base}
+    plan = plan_of(components, groups=[["r/base", "s/base"]])
+    planned = list(plan.components)
+    planned[1] = replace(planned[1], needs=(2,))  # the finder needs r/base too
+    plan = replace(plan, components=tuple(planned))
+    table += host_table(plan)
+    for entry in table:
+        entry.starting(0)
+        entry.state = "running"
+    return Steering(plan, table)
+
+
+def state(table: list[HostEntry], name: str, *, running: bool) -> None:
+    entry = next(entry for entry in table if entry.name == name)
+    entry.state, entry.wanted = ("running", True) if running else ("stopped", False)
+
+
+def names(entries: list[HostEntry]) -> list[str]:
+    return [entry.name for entry in entries]
+
+
+@pytest.mark.parametrize(
+    ("action", "patterns", "error"),
+    [
+        ("stop", ["r/camra"], "no component 'r/camra'; did you mean 'r/camera'?"),
+        ("stop", [], "stop what?"),
+        ("unload", ["r/camera"], "r/camera is needed by r/finder; unload them too: fwk unload r/camera r/finder"),
+        ("unload", ["*/base"], "r/base is needed by r/finder"),
+        ("restart", ["s/base"], "the process 'r/base+s/base' holds r/base as well; restart all of them"),
+    ],
+)
+def test_what_cannot_be_is_refused(steering: Steering, action: Action, patterns: list[str], error: str) -> None:
+    with pytest.raises(RequestError, match=re.escape(error)):
+        steering.hosts(action, patterns)
+
+
+def test_a_user_does_not_start_without_its_vision_master(steering: Steering, table: list[HostEntry]) -> None:
+    for name in ("r/camera", "r/finder"):
+        state(table, name, running=False)
+    with pytest.raises(RequestError, match=r"r/finder needs r/camera, which does not run; 'fwk load r/finder'"):
+        steering.hosts("start", ["r/finder"])
+    assert names(steering.hosts("start", ["r/finder", "r/camera"])) == ["r/camera", "r/finder"]
+
+
+def test_load_brings_what_is_needed_and_does_not_run(steering: Steering, table: list[HostEntry]) -> None:
+    for name in ("r/camera", "r/finder"):
+        state(table, name, running=False)
+    assert names(steering.hosts("load", ["r/finder"])) == ["r/camera", "r/finder"]
+
+
+def test_a_master_is_unloaded_once_nobody_uses_it(steering: Steering, table: list[HostEntry]) -> None:
+    state(table, "r/finder", running=False)
+    assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
+    state(table, "r/finder", running=True)
+    assert names(steering.hosts("unload", ["r/camera", "r/finder"])) == ["r/camera", "r/finder"]
+
+
+def test_a_namespace_means_all_in_it(steering: Steering) -> None:
+    assert names(steering.hosts("restart", ["r", "s"])) == ["r/camera", "r/finder", "r/base+s/base"]
+
+
+def test_reload_looks_at_the_code_first(steering: Steering, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    broken = tmp_path / "broken.py"
+    broken.write_text("x = 1\ndef (:\n")
+    monkeypatch.setattr(sys.modules[Camera.__module__], "__file__", str(broken))
+    with pytest.raises(RequestError, match=r"broken\.py:2: r/camera runs on"):
+        steering.hosts("reload", ["r/camera"])

@@ -1,0 +1,68 @@
+"""One value in a YAML text changes, everything else stays as people wrote it."""
+
+import pytest
+
+from fwk.control.yaml_edit import EditError, read, with_value
+
+GAIN = ("config", "a/b", "gain")
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("", "config:\n  a/b:\n    gain: 0.5\n"),
+        ("# mine\n", "# mine\nconfig:\n  a/b:\n    gain: 0.5\n"),
+        ("speed: 2  # slow", "speed: 2  # slow\nconfig:\n  a/b:\n    gain: 0.5\n"),
+        ("config:\n", "config: {a/b: {gain: 0.5}}\n"),
+        ("config: {}\n", "config: {a/b: {gain: 0.5}}\n"),
+        ("config: {c/d: {x: 1}}\n", "config: {c/d: {x: 1}, a/b: {gain: 0.5}}\n"),
+        (
+            "config:\n  a/b:\n    gain: 1  # why\n  # end\nspeed: 1\n",
+            "config:\n  a/b:\n    gain: 0.5  # why\n  # end\nspeed: 1\n",
+        ),
+        ("config:\n  a/b: {gain: 1, x: 2}\n\nspeed: 3", "config:\n  a/b: {gain: 0.5, x: 2}\n\nspeed: 3"),
+        (
+            "config:\n  a/b:\n    x: 1  # one\n\n  c/d:\n    y: 2\n",
+            "config:\n  a/b:\n    x: 1  # one\n    gain: 0.5\n\n  c/d:\n    y: 2\n",
+        ),
+        (
+            "config:\n  a/b:\n    xs:\n    - 1\n    - 2\nspeed: 1\n",
+            "config:\n  a/b:\n    xs:\n    - 1\n    - 2\n    gain: 0.5\nspeed: 1\n",
+        ),
+        (
+            "config:\n  a/b:\n    t: |\n      one\n      two\nspeed: 1\n",
+            "config:\n  a/b:\n    t: |\n      one\n      two\n    gain: 0.5\nspeed: 1\n",
+        ),
+        ("config:\n  a/b:\n    gain:\n    x: 1\n", "config:\n  a/b:\n    gain: 0.5\n    x: 1\n"),
+    ],
+)
+def test_the_value_goes_where_a_person_would_put_it(before: str, after: str) -> None:
+    assert with_value(before, GAIN, 0.5) == after
+
+
+@pytest.mark.parametrize(
+    "before",
+    [
+        "config:\n  a/b:\n    gain: [1,\n      2]\n    x: 1\n",
+        "config:\n  a/b:\n    gain:\n    - 1\n    - 2\n    x: 1\n",
+        "config:\n  a/b:\n    gain:\n      deep: 1\n      deeper: 2\n    x: 1\n",
+        "config:\n  a/b:\n    gain: |\n      long\n      text\n    x: 1\n",
+        "config:\n  a/b:\n    gain: 'quoted'  # kept\n    x: 1\n",
+    ],
+)
+@pytest.mark.parametrize("value", [0.5, "te: xt", [1, 2.5], {"deep": 1, "*": False}, float("inf"), 1e-7, None, "é\n"])
+def test_any_value_replaces_any_other(before: str, value: object) -> None:
+    changed = read(with_value(before, GAIN, value))
+    assert changed == {"config": {"a/b": {"gain": value, "x": 1}}}
+
+
+def test_a_pattern_is_quoted() -> None:
+    text = with_value("", ("config", "*/camera", "noise"), 2)
+    assert '"*/camera":' in text
+    assert read(text) == {"config": {"*/camera": {"noise": 2}}}
+
+
+@pytest.mark.parametrize("text", ["config:\n  a/b: &x {gain: 1}\n  c/d: *x\n", "config: [\n", "a: 1\na: 2\n"])
+def test_what_would_be_spoiled_is_refused(text: str) -> None:
+    with pytest.raises(EditError):
+        with_value(text, GAIN, 0.5)
