@@ -9,6 +9,7 @@ _SET_UP = (
     "ip link set lo up",
     "ip link set lo multicast on",
     "ip route add 224.0.0.0/4 dev lo",
+    "mount -t tmpfs bench /dev/shm",  # what killed processes leave behind goes with the namespace
 )
 
 
@@ -32,7 +33,7 @@ def command() -> list[str]:
 
 
 def set_up(loss: float) -> None:
-    """Inside the new namespace: brings up loopback with multicast; drops a share `loss` of all IP packets on arrival.
+    """Inside the new namespace: loopback with multicast, an empty /dev/shm, and a share `loss` of all IP packets lost.
 
     Raises:
         NoNamespace: ip or iptables is missing or refuses.
