@@ -9,7 +9,7 @@ from fwk.config import Config
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
-from procs.behaviour.geometry import wrap_rad
+from procs.behaviour.geometry import plausible, wrap_rad
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
 from procs.behaviour.path import Way, find_way
 from procs.field import Field, Point
@@ -52,10 +52,11 @@ class Navigator(Component):
         target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
         state.target_id = target.target_id
         state.error = navigator_state_t.OK
-        if not self._fresh(self.world_model) or not model.localized:
+        here = plausible(model.x_m, model.y_m, model.heading_rad)
+        if not here or not model.localized or not self._fresh(self.world_model):
             state.error, state.arrived, state.distance_m = navigator_state_t.LOST, False, 0.0
-            self._stop(model.heading_rad)
-        elif not self._fresh(self.drive_target) or target.stop:
+            self._stop(model.heading_rad if here else 0.0)
+        elif target.stop or not self._fresh(self.drive_target) or not _makes_sense(target):
             state.arrived, state.distance_m = target.stop, 0.0
             self._stop(model.heading_rad)
         else:
@@ -86,6 +87,8 @@ class Navigator(Component):
     def _pose(self, model: world_model_t) -> Pose:
         measured = self.odometry.value
         velocity = Velocity(measured.vx_m_s, measured.vy_m_s, measured.omega_rad_s)
+        if not plausible(*velocity):
+            velocity = STANDSTILL
         return motion.ahead_in_time(
             Pose(Point(model.x_m, model.y_m), model.heading_rad), velocity, self.config.limits.latency_s
         )
@@ -116,3 +119,7 @@ class Navigator(Component):
         command.omega_rad_s = self._before.omega_rad_s
         command.enabled = True
         self.motor_command.write()
+
+
+def _makes_sense(target: drive_target_t) -> bool:
+    return plausible(target.x_m, target.y_m, target.heading_rad, target.speed_m_s, target.end_speed_m_s)

@@ -8,6 +8,7 @@ from fwk.config import Config
 from lcmtypes.robot import kick_command_t, kicker_state_t
 from lcmtypes.soccer import drive_target_t, game_state_t, skill_command_t, skill_status_t, world_model_t
 from procs.behaviour.game import Whose, game_of
+from procs.behaviour.geometry import plausible
 from procs.behaviour.restarts import team_number
 from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
@@ -47,7 +48,7 @@ class Skiller(Component):
     def loop(self) -> None:
         command = self.skill_command.value
         step = Step(status=Status.INACTIVE)
-        if self.skill_command.has_value:
+        if self.skill_command.has_value and plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
             step = self._machine.step(command.command_id, command.skill, self._scene(command))
         self._report(command, step)
         self._drive(step.drive)

@@ -4,6 +4,7 @@ from enum import Enum
 from typing import NamedTuple
 
 from lcmtypes.soccer import game_state_t
+from procs.behaviour.geometry import plausible
 from procs.behaviour.restarts import State, Team
 from procs.behaviour.view import Frame
 from procs.field import Point
@@ -45,5 +46,6 @@ def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
     whose = Whose.NOBODYS
     if message.state_team in (Team.CYAN, Team.MAGENTA):
         whose = Whose.OURS if message.state_team == team else Whose.THEIRS
-    spot = frame.point(message.ball_x_m, message.ball_y_m)
+    x_m, y_m = message.ball_x_m, message.ball_y_m
+    spot = frame.point(x_m, y_m) if plausible(x_m, y_m) else Point(0.0, 0.0)
     return Game(_STATES.get(message.state, State.FROZEN), message.stopped, whose, spot)

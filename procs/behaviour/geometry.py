@@ -4,6 +4,8 @@ import math
 
 from procs.field import Point
 
+_ASTRONOMICAL = 1e6
+
 
 def wrap_rad(angle_rad: float) -> float:
     """The same angle between -pi and pi."""
@@ -30,11 +32,6 @@ def between(start: Point, end: Point, share: float) -> Point:
     return Point(start.x_m + share * (end.x_m - start.x_m), start.y_m + share * (end.y_m - start.y_m))
 
 
-def distance_to_segment_m(point: Point, start: Point, end: Point) -> float:
-    """How far a point is from the nearest point of a straight line from start to end."""
-    dx, dy = end.x_m - start.x_m, end.y_m - start.y_m
-    length_m2 = dx * dx + dy * dy
-    if length_m2 == 0.0:
-        return math.dist(point, start)
-    share = clamp(((point.x_m - start.x_m) * dx + (point.y_m - start.y_m) * dy) / length_m2, 0.0, 1.0)
-    return math.hypot(point.x_m - start.x_m - share * dx, point.y_m - start.y_m - share * dy)
+def plausible(*values: float) -> bool:
+    """Whether all are numbers that a robot can meet with: no NaN, nothing infinite or astronomical."""
+    return all(abs(value) < _ASTRONOMICAL for value in values)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
-from procs.behaviour.geometry import clamp
+from procs.behaviour.geometry import clamp, plausible
 from procs.behaviour.path import Disc
 from procs.field import SIDES, Field, Point
 
@@ -25,7 +25,7 @@ def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bo
     ]
     if avoid_robots:
         found += _robots(model.mates, own) + _robots(model.opponents, own)
-    if avoid_ball and model.ball.known:
+    if avoid_ball and model.ball.known and plausible(model.ball.x_m, model.ball.y_m):
         ball = Point(model.ball.x_m, model.ball.y_m)
         found.append(Disc(ball, _ROBOT_M + _BALL_M + _BALL_MARGIN_M))
     return [disc for disc in found if math.dist(disc.middle, own) < _NEAR_M]
@@ -43,6 +43,8 @@ def reachable(place: Point, field: Field) -> Point:
 def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:
     found = []
     for robot in estimates:
+        if not plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s):
+            continue
         ahead_s = min(_FORESIGHT_S, math.dist(own, (robot.x_m, robot.y_m)) / _MEETING_M_S)
         middle = Point(robot.x_m + robot.vx_m_s * ahead_s, robot.y_m + robot.vy_m_s * ahead_s)
         found.append(Disc(middle, 2 * _ROBOT_M + _MARGIN_M, 2 * _ROBOT_M))

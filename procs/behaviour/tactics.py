@@ -11,8 +11,7 @@ from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
 from procs.field import Field, Point
 
-_SHOT_RANGE_M = 9.0
-_OWN_HALF_M = 0.3  # a goal counts only if it is shot from beyond the halfway line
+_SHOT_RANGE_M = 9.0  # less than half the field: a goal from the own half would not count
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
 _ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
 _BACK_M = 1.0  # a pass may lose so much ground
@@ -113,7 +112,7 @@ class Tactics:
 
     def _shot(self, view: View, room_m: float) -> Order | None:
         start = view.ball.place
-        if start.x_m < _OWN_HALF_M or math.dist(start, self.field.goal_centre(1.0)) > _SHOT_RANGE_M:
+        if math.dist(start, self.field.goal_centre(1.0)) > _SHOT_RANGE_M:
             return None
         best = aim.best_shot(start, _others(view), self.field)
         if self._last.skill == "shoot":

@@ -7,8 +7,8 @@ it, so that both teams run the same code and play alike.
 import math
 from typing import NamedTuple
 
-from lcmtypes.soccer import robot_estimate_t, world_model_t
-from procs.behaviour.geometry import wrap_rad
+from lcmtypes.soccer import ball_estimate_t, robot_estimate_t, world_model_t
+from procs.behaviour.geometry import plausible, wrap_rad
 from procs.field import Point
 
 
@@ -61,23 +61,33 @@ class View(NamedTuple):
 
 
 def view_of(model: world_model_t, name: str, role: str, frame: Frame, mate_timeout_s: float = 2.0) -> View:
-    """Turns the world model into the attack frame; mates that were silent for the time-out are left out."""
-    own = Robot(
-        name,
-        frame.point(model.x_m, model.y_m),
-        frame.heading_rad(model.heading_rad),
-        frame.point(model.vx_m_s, model.vy_m_s),
-        role,
-    )
-    ball = model.ball
+    """Turns the world model into the attack frame.
+
+    Mates that were silent for the time-out are left out, and so is everything whose numbers make no sense.
+    """
+    here = plausible(model.x_m, model.y_m, model.heading_rad, model.vx_m_s, model.vy_m_s)
+    own = Robot(name, Point(0.0, 0.0), role=role)
+    if here:
+        place, velocity_m_s = frame.point(model.x_m, model.y_m), frame.point(model.vx_m_s, model.vy_m_s)
+        own = Robot(name, place, frame.heading_rad(model.heading_rad), velocity_m_s, role)
     mates = zip(model.mates, model.mate_roles, strict=True)
     return View(
-        model.localized,
+        here and model.localized,
         own,
-        Ball(ball.known, frame.point(ball.x_m, ball.y_m), frame.point(ball.vx_m_s, ball.vy_m_s)),
-        tuple(_robot(mate, said, frame) for mate, said in mates if mate.age_s <= mate_timeout_s),
-        tuple(_robot(other, "", frame) for other in model.opponents),
+        _ball(model.ball, frame),
+        tuple(_robot(mate, said, frame) for mate, said in mates if mate.age_s <= mate_timeout_s and _sane(mate)),
+        tuple(_robot(other, "", frame) for other in model.opponents if _sane(other)),
     )
+
+
+def _sane(robot: robot_estimate_t) -> bool:
+    return plausible(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)
+
+
+def _ball(ball: ball_estimate_t, frame: Frame) -> Ball:
+    if not plausible(ball.x_m, ball.y_m, ball.vx_m_s, ball.vy_m_s):
+        return Ball(known=False)
+    return Ball(ball.known, frame.point(ball.x_m, ball.y_m), frame.point(ball.vx_m_s, ball.vy_m_s))
 
 
 def _robot(estimate: robot_estimate_t, role: str, frame: Frame) -> Robot:

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from fwk.component import Component
 from fwk.testing import Bench
 from lcmtypes.soccer import (
     ball_estimate_t,
@@ -16,6 +17,7 @@ from lcmtypes.soccer import (
 )
 from procs.agent import Agent
 from procs.navigator import Navigator
+from procs.referee import Referee
 from procs.skiller import Skiller
 
 
@@ -170,3 +172,41 @@ def test_kicks_are_numbered_on_from_the_kickers_newest() -> None:
     kicks = [(kick.kick_id, kick.speed_m_s > 0) for kick in bench.port("kick_command").sent]
     assert (7, True) in kicks
     assert sum(fires for _, fires in kicks) == 1
+
+
+def senseless(value: float, message: Any) -> Any:
+    """Fills every number with a fraction, also those of what the message contains."""
+    for name, kind, dimensions in zip(message.__slots__, message.__typenames__, message.__dimensions__, strict=True):
+        if kind == "double" and dimensions is None:
+            setattr(message, name, value)
+        elif kind == "boolean":
+            setattr(message, name, name != "stop")
+        elif name == "ball":
+            senseless(value, getattr(message, name))
+        elif kind.endswith("robot_estimate_t"):
+            setattr(message, name, [senseless(value, robot_estimate_t()) for _ in range(3)])
+    if hasattr(message, "mates"):
+        message.mate_roles = ["attacker"] * 3
+        message.localized = True
+    return message
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1e300, -1e300, 1e5])
+@pytest.mark.parametrize("component", [Navigator, Skiller, Agent, Referee])
+def test_senseless_numbers_do_no_harm(component: type[Component], value: float) -> None:
+    bench = Bench(component, "cyan2/component")
+    for skill in ("get_ball", "intercept", "shoot", "pass", "dribble", "keep_goal", "mark", "goto"):
+        for declared in bench.declaration.ports:
+            if not declared.writes:
+                message = senseless(value, bench.port(declared.attribute).message_type())
+                message.header.time_us = bench.time_us
+                if declared.attribute == "skill_command":
+                    message.skill, message.command_id = skill, bench.tick
+                if declared.attribute == "game_state":
+                    message.state, message.stopped = game_state_t.PLAY, False
+                bench.port(declared.attribute).put(message)
+        bench.iterate()
+        if component is Navigator:
+            command = newest(bench, "motor_command")
+            assert math.hypot(command.vx_m_s, command.vy_m_s) <= 3.1
+            assert abs(command.omega_rad_s) <= 5.1

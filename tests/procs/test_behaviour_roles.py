@@ -40,6 +40,13 @@ def test_every_robot_computes_the_same_jobs_in_whatever_order_it_knows_its_mates
     }
 
 
+def test_of_two_robots_at_one_place_all_send_the_same_one_forward() -> None:
+    twins = (robot("cyan3", -4.0, 0.0), robot("cyan4", -4.0, 0.0))
+    orders = [(TEAM[0], TEAM[1], *pair) for pair in (twins, twins[::-1])]
+    first, second = (assign(view(TEAM[4], ball(0.0, 0.0), order), FIELD) for order in orders)
+    assert first == second
+
+
 def test_a_robot_alone_attacks_and_of_two_the_lower_number_keeps_the_goal() -> None:
     alone = assign(view(TEAM[0], ball(0.0, 0.0)), FIELD)
     assert alone["cyan1"].role == ATTACKER

@@ -2,14 +2,13 @@
 
 import math
 
-from procs.behaviour.geometry import bearing_rad, wrap_rad
+from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step
 from procs.field import Point
 
 _NEAR_M = 0.1
 _NEAR_RAD = 0.1
 _MARK_M = 0.9
-_CLOSE_TO_BALL_M = 1.0
 
 
 class Stop(Skill):
@@ -37,12 +36,7 @@ class Mark(Skill):
 
     def step(self, scene: Scene) -> Step:
         goal = scene.field.goal_centre(-1.0)
-        distance_m = math.dist(scene.place, goal)
-        share = min(1.0, _MARK_M / distance_m) if distance_m else 0.0
-        place = Point(
-            scene.place.x_m + share * (goal.x_m - scene.place.x_m),
-            scene.place.y_m + share * (goal.y_m - scene.place.y_m),
-        )
+        place = ahead(scene.place, bearing_rad(scene.place, goal), min(_MARK_M, math.dist(scene.place, goal)))
         return _stand(scene, place, bearing_rad(place, scene.view.ball.place))
 
 
