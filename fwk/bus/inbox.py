@@ -60,6 +60,10 @@ class Box:
             self._held[number] = b""
         return len(lost)
 
+    def held(self, first: int, last: int) -> list[tuple[int, bytes]]:
+        """What is here and was not taken yet, of these numbers, oldest first."""
+        return sorted((number, data) for number, data in self._held.items() if first <= number <= last and data)
+
     def void(self, above: int, before_incarnation: int) -> None:
         """Forgets what a writer that died had sent beyond the marks."""
         for number in [number for number in self._held if number > above]:
@@ -69,7 +73,7 @@ class Box:
 
 
 class Inbox(Box):
-    """A channel that comes from another process.
+    """A channel that comes from another process, or has messages of a predecessor of this process.
 
     Its messages wait in the socket until `collect` is asked for them, so their arrival wakes nobody.
     """
@@ -90,8 +94,13 @@ class Inbox(Box):
         return self._socket.fileno()
 
     def close(self) -> None:
-        """Gives the socket back."""
+        """Gives the socket back; from then on only what is put here is here."""
         self._socket.close()
+
+    @property
+    def closed(self) -> bool:
+        """Whether nothing comes from other processes any more."""
+        return self.fileno() < 0
 
     def collect(self) -> bool:
         """Takes from the socket what is needed up to the mark; says whether all of it is here."""
@@ -100,20 +109,32 @@ class Inbox(Box):
                 return False
         if super().collect():
             return True
-        while self._receive():
-            pass
+        self._drain()
         return super().collect()
+
+    def held(self, first: int, last: int) -> list[tuple[int, bytes]]:
+        """What is here and was not taken yet, of these numbers, oldest first; also what waits in the socket."""
+        self._drain()
+        return super().held(first, last)
+
+    def give_up(self, first: int, last: int) -> int:
+        """The writer no longer has these; what waits in the socket is not lost."""
+        self._drain()
+        return super().give_up(first, last)
 
     def void(self, above: int, before_incarnation: int) -> None:
         """Forgets what a writer that died had sent beyond the marks, also what still waits in the socket."""
+        self._drain()
+        super().void(above, before_incarnation)
+
+    def _drain(self) -> None:
         while self._receive():
             pass
-        super().void(above, before_incarnation)
 
     def _receive(self) -> bool:
         try:
             datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
-        except BlockingIOError:
+        except OSError:  # nothing there, or closed
             return False
         if address[1] not in self._senders:
             self._complain(self.plan.name, f"datagram from port {address[1]}, which is not the writer's; refused")

@@ -193,21 +193,30 @@ class Gateway:
         return self._open
 
     def _answer_for(self, fetch: fetch_t) -> None:
-        """Answers in place of a writer that has left the run: its newest message is here, older ones are gone."""
-        gone = gone_t()
-        gone.run, gone.channel = fetch.run, fetch.channel
-        gone.first_sequence, gone.last_sequence = fetch.first_sequence, fetch.last_sequence
-        if fetch.host == self._ports.gateway:
-            self._give_up(gone)
-            return
+        """Answers in place of a writer that has left the run, or was started again and asked for what was before.
+
+        Here are the newest message of the recorded ticks and all since. The answer is final: the tick that the reader
+        takes part in, and with it the next record, may be waiting for it.
+        """
         box = self._inputs.box(fetch.channel)
-        if box.floor < fetch.last_sequence:  # not there yet; the reader asks again
-            return
+        found = box.held(fetch.first_sequence, fetch.last_sequence)
         newest = self._newest.get(fetch.channel)
         if newest and fetch.first_sequence <= sequence_of(newest) <= fetch.last_sequence:
-            self._sender.publish(box.plan.name.encode(), newest, self._ports.channel(fetch.channel))
-            gone.last_sequence = sequence_of(newest) - 1
-        if gone.last_sequence >= gone.first_sequence:
+            found.insert(0, (sequence_of(newest), newest))
+        expected = fetch.first_sequence
+        for number, data in [*found, (fetch.last_sequence + 1, b"")]:
+            if number > expected:
+                self._tell_gone(fetch, expected, number - 1)
+            if data and fetch.host != self._ports.gateway:
+                self._sender.publish(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
+            expected = number + 1
+
+    def _tell_gone(self, fetch: fetch_t, first: int, last: int) -> None:
+        gone = gone_t()
+        gone.run, gone.channel, gone.first_sequence, gone.last_sequence = fetch.run, fetch.channel, first, last
+        if fetch.host == self._ports.gateway:
+            self._give_up(gone)
+        else:
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
 
     def _give_up(self, gone: gone_t) -> None:

@@ -70,7 +70,16 @@ class Host:
         written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
         read = [channel for channel in plan.channels if indices & set(channel.readers)]
         local = [channel for channel in read if channel.name in written]
-        self.inputs = Inputs(plan, read, local, assignment.host, assignment.run, self._sender, self._complaints)
+        self.inputs = Inputs(
+            plan,
+            read,
+            local,
+            assignment.host,
+            assignment.run,
+            self._sender,
+            self._complaints,
+            restarted=assignment.incarnation > 1,
+        )
         self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.sequences)
         stages = sorted({stage for component in self._own for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
@@ -171,6 +180,8 @@ class Host:
             self.inputs.newest_only()
         if not self.inputs.wait(moved, self._handle_own):
             return
+        if self._answered[0] == 0:
+            self.inputs.forget_predecessor()
         self._deliver(moved)
         self._configure(tick.changes)
         self._iterate(tick, stage)

@@ -15,7 +15,11 @@ LONGEST_WAIT_MS = 100
 
 
 class Inputs:
-    """The channels that a process reads, whether from other processes (`inboxes`) or from itself (`local`)."""
+    """The channels that a process reads, whether from other processes or from itself (`local`).
+
+    A process that was started in the place of another (`restarted`) may have to ask for messages of its own channels,
+    too: those of its predecessor.
+    """
 
     def __init__(
         self,
@@ -26,6 +30,7 @@ class Inputs:
         run: int,
         sender: Sender,
         complain: Complain,
+        restarted: bool = False,
     ) -> None:
         ports = Ports.of(plan)
         self._sender = sender
@@ -36,12 +41,15 @@ class Inputs:
             channel.index: ports.gateway if channel.writer == NOBODY else plan.components[channel.writer].host
             for channel in read
         }
-        self.local = {channel.name: Box(channel) for channel in local}
-        self._boxes: dict[int, Box] = {box.plan.index: box for box in self.local.values()}
+        own = {channel.name for channel in local}
+        self._boxes: dict[int, Box] = {}
         for channel in read:
-            if channel.name not in self.local:
+            if channel.name in own and not restarted:
+                self._boxes[channel.index] = Box(channel)
+            else:
                 senders = (ports.host(self._writer_host[channel.index]), ports.host(ports.gateway))
                 self._boxes[channel.index] = Inbox(channel, ports.channel(channel.index), senders, complain)
+        self.local = {channel.name: self._boxes[channel.index] for channel in local}
         self.fetched = 0  # messages that were lost and came after asking
         self.lost = 0  # messages that could not be had any more
 
@@ -74,6 +82,12 @@ class Inputs:
         for box in self._boxes.values():
             box.skip_to(box.mark - 1)
 
+    def forget_predecessor(self) -> None:
+        """From now on what this process reads of itself never comes from outside."""
+        for box in self.local.values():
+            if isinstance(box, Inbox):
+                box.close()
+
     def wait(self, boxes: Sequence[Box], serve: Callable[[], bool]) -> bool:
         """Waits until everything visible in `boxes` is here; false if `serve` says that waiting is over.
 
@@ -85,7 +99,7 @@ class Inputs:
         poller = select.poll()
         poller.register(self._sender.socket, select.POLLIN)
         for box in lacking:
-            if isinstance(box, Inbox):
+            if isinstance(box, Inbox) and not box.closed:
                 poller.register(box, select.POLLIN)
         wait_ms, ask_us, asked = FIRST_WAIT_MS, monotonic_us() + FIRST_WAIT_MS * 1000, 0
         while lacking:

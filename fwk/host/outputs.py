@@ -54,7 +54,7 @@ class Outputs:
             return
         before = self._before[fetch.channel]
         if fetch.first_sequence <= before:
-            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(self._ports.gateway))
+            self._pass_on(fetch, min(fetch.last_sequence, before))
             fetch.first_sequence = before + 1
         name, port, history = self._by_index[fetch.channel]
         kept = history.between(fetch.first_sequence, fetch.last_sequence)
@@ -66,3 +66,9 @@ class Outputs:
             gone.run, gone.channel = fetch.run, fetch.channel
             gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
+
+    def _pass_on(self, fetch: fetch_t, last_sequence: int) -> None:
+        passed = fetch_t()
+        passed.run, passed.host, passed.channel = fetch.run, fetch.host, fetch.channel
+        passed.first_sequence, passed.last_sequence = fetch.first_sequence, last_sequence
+        self._sender.send(b"fwk/fetch", passed.encode(), self._ports.host(self._ports.gateway))

@@ -1,7 +1,8 @@
 """Says from the contract's words alone what every iteration of the orchestra must have seen, and finds who did not.
 
 Visible to an iteration (tick, stage) is every message of an earlier (tick, stage), and no other. An iteration sees what
-became visible since the last one of its process; the first one of a player that was started again sees the newest only.
+became visible since the last one of its process; the first one of a player that was started again sees what was newest
+when its process joined the loop, and all since.
 """
 
 import zlib
@@ -38,7 +39,7 @@ def _of_player(recording: Recording, player: str) -> Iterator[str]:
             visible = sum(at < (header.tick, header.stage) for at in written[channel])
             first = seen[channel] + 1
             if again and "#" in writer:
-                first = visible if heard.count else visible + 1  # its writer may have died, too
+                first = heard.first if heard.count else visible + 1  # its writer may have died, too
             seen[channel] = visible
             yield from _compare(f"{where} heard of {channel}", heard, first, visible, written[channel])
             fresh = recording.messages[channel][first - 1 : visible]

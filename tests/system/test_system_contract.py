@@ -68,6 +68,24 @@ def test_what_a_dying_iteration_wrote_nobody_has_seen(launch: Launch, folder: Pa
     assert writers == ["d/player"] * 14 + ["d/player#2"] * 16
 
 
+@pytest.mark.parametrize("hosting", ["process", "robot", "single"])
+def test_who_dies_between_its_stages_goes_on_with_what_it_last_said_itself(
+    launch: Launch, folder: Path, hosting: str
+) -> None:
+    trouble = {"trouble": "loop:kill after publish", "trouble_tick": 15, "trouble_stage": "act"}
+    sets = [word for key, value in trouble.items() for word in ("--set", f"a/player.{key}={value}")]
+    run = launch(*RUN, "--ticks", "20", "--hosting", hosting, *sets)
+    assert run.wait() == 0, run.text
+    assert "lost 0" in run.text
+    recording = Recording(folder / "log.lcm")
+    assert contradictions(recording) == []
+    assert recording.gaps() == {}
+    first = next(note for note in recording.decoded("a/note") if note.header.writer == "a/player#2")
+    own = next(heard for heard in first.heard if heard.channel == "a/note")
+    assert (first.header.tick, first.header.stage) == (15, STAGES["a"][1])
+    assert (own.count, own.newest_tick, own.newest_stage) == (1, 15, STAGES["a"][0])
+
+
 @pytest.mark.slow
 def test_whoever_is_killed_whenever_nothing_is_seen_twice_or_lost(launch: Launch, folder: Path) -> None:
     (folder / "traces").mkdir()
