@@ -4,12 +4,14 @@ import math
 
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.geometry import ahead, bearing_rad, between, clamp
+from procs.behaviour.path import Disc, find_way
 from procs.behaviour.restarts import State
 from procs.field import Field, Point
 
 _OWN_SET_PIECE_M = 2.3
 _THEIR_SET_PIECE_M = 3.3
 _DROPPED_BALL_M = 1.3
+_STEP_M = 1.5  # far enough ahead that the robot does not brake
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
 
@@ -57,6 +59,17 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
         y_m = math.copysign(max(abs(place.y_m), aside_m), place.y_m)
         place = Point(-_HALFWAY_M, y_m)
     return place
+
+
+def next_step(own: Point, place: Point, game: Game) -> Point:
+    """The place, or where to go first so that the way there keeps the distance to a set piece's ball."""
+    if game.free_play:
+        return place
+    circle = Disc(game.spot, _keep_off_m(game) - 0.1)
+    if math.dist(own, game.spot) < circle.radius_m:
+        return ahead(game.spot, bearing_rad(game.spot, own), circle.radius_m + 0.1)
+    way = find_way(own, place, [circle])
+    return place if way.length_m <= math.dist(own, place) else ahead(own, way.direction_rad, min(way.length_m, _STEP_M))
 
 
 def _keep_off_m(game: Game) -> float:

@@ -28,7 +28,7 @@ class Rules(BaseModel):
     """Length of a half, stoppages included."""
     half_time_s: NonNegativeFloat = 5.0
     """Break between the halves."""
-    kick_off_stoppage_s: NonNegativeFloat = 5.0
+    kick_off_stoppage_s: NonNegativeFloat = 6.0
     """From a goal or the beginning of a half until the kick-off may be taken."""
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""

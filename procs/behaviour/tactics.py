@@ -76,9 +76,11 @@ class Tactics:
 
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
         if job.role != ATTACKER:
-            return self._stand(view, formation.allowed(job.place, game, self.field), "take position")
+            place = formation.allowed(job.place, game, self.field)
+            return self._stand(view, formation.next_step(view.own.place, place, game), "take position")
         if game.whose is not Whose.OURS:
-            return self._stand(view, formation.first_opponent_place(game, self.field), "keep distance")
+            place = formation.first_opponent_place(game, self.field)
+            return self._stand(view, formation.next_step(view.own.place, place, game), "keep distance")
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
         receiver = aim.best_pass(taker, _field_players(view), view.opponents, back_m=math.inf)
         target = receiver.place if receiver else self.field.goal_centre(1.0)

@@ -61,7 +61,7 @@ def test_two_alone_both_score() -> None:
 
 def test_ten_robots_play_by_the_rules_and_score() -> None:
     system = match(team("cyan", 5) + team("magenta", 5), 7, NOISE)
-    stopped, _ = play(system, 5.0)
+    stopped, _ = play(system, 6.0)
     assert stopped[-1].stopped
     truth = system.newest("world/ground_truth")
     for robot in truth.robots:

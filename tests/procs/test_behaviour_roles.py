@@ -108,6 +108,23 @@ def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot
         assert state is not State.KICK_OFF or place.x_m <= -0.25
 
 
+@pytest.mark.parametrize("own", [Point(-2.0, 5.0), Point(-1.0, 1.0), Point(2.0, 0.0)])
+def test_the_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(0.0, 0.0))
+    place = Point(-2.0, -5.0)
+    distances_m = [math.dist(own, game.spot)]
+    for _ in range(400):
+        step = formation.next_step(own, place, game)
+        way_m = math.dist(own, step)
+        share = min(1.0, 0.1 / way_m) if way_m else 1.0
+        own = Point(own.x_m + share * (step.x_m - own.x_m), own.y_m + share * (step.y_m - own.y_m))
+        distances_m.append(math.dist(own, game.spot))
+    assert own == pytest.approx(place)
+    outside = next(index for index, distance_m in enumerate(distances_m) if distance_m > 3.0)
+    assert outside < 40
+    assert min(distances_m[outside:]) > 3.0
+
+
 def test_defenders_stand_between_ball_and_goal_outside_the_penalty_area() -> None:
     for where in (Point(4.0, 3.0), Point(-6.0, -3.0), Point(-10.0, 0.5)):
         _, stopper, sweeper, _ = formation.places(where, ours=False, flank=1.0, field=FIELD)
