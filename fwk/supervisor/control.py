@@ -125,6 +125,7 @@ class Control:
             "seed": self._plan.seed,
             "clock": self._plan.clock,
             "period_us": self._plan.period_us,
+            "watching": len(self._watching),
         }
 
     def _now(self) -> dict[str, Any]:
