@@ -1,13 +1,14 @@
-"""Ticks and dones to bytes and back: the same bytes as lcm-gen's code makes, several times faster.
+"""Ticks, dones and tick records to bytes and back: the same bytes as lcm-gen's code makes, several times faster.
 
-These two messages are most of the framework's own traffic: two for each component and tick.
+These messages are most of the framework's own traffic.
 """
 
 import struct
+from collections.abc import Sequence
 
 from fwk import messages
 from fwk.messages import MessageError
-from lcmtypes.core import change_t, done_t, tick_t, void_t
+from lcmtypes.core import change_t, done_t, tick_record_t, tick_t, void_t
 
 TICK = b"fwk/tick"
 DONE = b"fwk/done"
@@ -17,6 +18,11 @@ _DONE_HEAD = struct.Struct(">8sqiiqhqqi")
 _VOID = struct.Struct(">iqi")
 _CHANGE = struct.Struct(">iqi")  # component, number, length of the text with its zero byte
 _COUNT = struct.Struct(">i")
+_EVENT = struct.Struct(">biqh")
+_EVENTS_AT = 32  # where a tick record's count of events stands
+
+Event = tuple[int, int, int, int]
+"""Kind, index, tick and stage, as in core.tick_event_t."""
 _TICK_FINGERPRINT = messages.fingerprint(tick_t)
 _DONE_FINGERPRINT = messages.fingerprint(done_t)
 
@@ -119,3 +125,24 @@ def decode_done(data: bytes) -> done_t:
         raise MessageError(f"truncated core.done_t of {len(data)} bytes") from error
     done.channel, done.sequence = list(values[: done.n_marks]), list(values[done.n_marks :])
     return done
+
+
+def encode_record(record: tick_record_t, events: Sequence[Event]) -> bytes:
+    """The bytes of a tick record with these events; those in `record` have to be none."""
+    data = record.encode()
+    packed = [_EVENT.pack(*event) for event in events]
+    return b"".join([data[:_EVENTS_AT], _COUNT.pack(len(events)), *packed, data[_EVENTS_AT + _COUNT.size :]])
+
+
+def decode_record(data: bytes) -> tick_record_t:
+    """A tick record without its events, which only replay wants to know.
+
+    Raises:
+        MessageError: the bytes are no tick record, or end too early.
+    """
+    try:
+        (events,) = _COUNT.unpack_from(data, _EVENTS_AT)
+        rest = data[_EVENTS_AT + _COUNT.size + events * _EVENT.size :]
+        return tick_record_t.decode(data[:_EVENTS_AT] + _COUNT.pack(0) + rest)
+    except (struct.error, ValueError, OverflowError) as error:
+        raise MessageError(f"{len(data)} bytes that are no core.tick_record_t") from error

@@ -55,7 +55,7 @@ class Gateway:
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
         self._newest: dict[int, bytes] = {}  # newest message of each channel
-        self._waiting: dict[int, tick_record_t] = {}
+        self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
         self._open = True
         self._handlers: list[Callable[[], None]] = []
@@ -89,19 +89,19 @@ class Gateway:
 
     def _receive_records(self) -> None:
         for data in self._drain(self._records, b"fwk/record"):
-            record = tick_record_t.decode(data)
+            record = sync.decode_record(data)
             if record.run == self._run and record.tick >= self._next:
-                self._waiting[record.tick] = record
+                self._waiting[record.tick] = (record, data)
             elif record.run == self._run:
                 self._acknowledge()
         while self._next in self._waiting:
-            record = self._waiting.pop(self._next)
-            if not self._take(record):
+            record, data = self._waiting.pop(self._next)
+            if not self._take(record, data):
                 return
             self._next += 1
             self._acknowledge()
 
-    def _take(self, record: tick_record_t) -> bool:
+    def _take(self, record: tick_record_t, recorded: bytes) -> bool:
         self._clock.tick, self._clock.now_us = record.tick, record.time_us
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         if not self._inputs.wait(moved, self._handle_own):
@@ -116,7 +116,7 @@ class Gateway:
         for sink in self.sinks:
             for *_, channel, data in collected:
                 sink.message(channel, data, record.time_us)
-            sink.message("fwk/record", record.encode(), record.time_us)
+            sink.message("fwk/record", recorded, record.time_us)
             sink.tick()
         return True
 

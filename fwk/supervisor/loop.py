@@ -18,7 +18,7 @@ from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t,
 
 REPEAT_US = 2_000  # a tick is repeated after so much more than the stage usually takes; doubles with each time
 REPEAT_LONGEST_US = 100_000
-UNSETTLED_US = 20_000  # how often to look after hosts that are being started again
+LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
 STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 
@@ -66,7 +66,7 @@ class MainLoop:
         self._step = 0
         self._outstanding: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
-        self._events: list[tick_event_t] = []
+        self._events: list[sync.Event] = []
         self._changed: dict[int, int] = {}
         self._changes: list[Change] = []  # that this tick began with
         self._records: deque[tuple[int, bytes]] = deque(maxlen=4 * WINDOW)
@@ -129,14 +129,15 @@ class MainLoop:
         self._broadcast(members, time_us)
         began_us = sent_us = monotonic_us()
         first_us = REPEAT_US + 3 * self._usual_us[stage]
-        repeat_us = first_us
+        repeat_us, look_us = first_us, began_us
+        now_us = began_us
         while self._outstanding and not self._interrupted():
-            now_us = monotonic_us()
-            due_us = sent_us + repeat_us
+            if now_us >= look_us:
+                self._look_after(members)
+                look_us = now_us + LOOK_US
+            due_us = min(sent_us + repeat_us, look_us)
             if not self._lockstep:
                 due_us = min(due_us, began_us + self._stage_time_us)
-            if self._hosts.unsettled:
-                due_us = min(due_us, now_us + UNSETTLED_US)
             self._mailbox.pump(due_us - now_us)
             now_us = monotonic_us()
             if not self._outstanding:
@@ -145,16 +146,19 @@ class MainLoop:
             if not self._lockstep and now_us >= began_us + self._stage_time_us:
                 self._leave_behind(members, stage)
                 return
-            self._break_off(now_us)
-            if self._hosts.unsettled:
-                self._hosts.maintain()
-                self._outstanding &= {entry.index for entry in members if entry.expected}
             if self._again or now_us >= sent_us + repeat_us:
                 self.repeated += not self._again
                 repeat_us = first_us if self._again else min(2 * repeat_us, max(first_us, REPEAT_LONGEST_US))
                 self._again = False
                 self._broadcast(members, time_us)
                 sent_us = monotonic_us()
+
+    def _look_after(self, members: list[HostEntry]) -> None:
+        """Starts again who has to be, and does not wait for those who will not come back."""
+        self._break_off(monotonic_us())
+        if self._hosts.unsettled:
+            self._hosts.maintain()
+            self._outstanding &= {entry.index for entry in members if entry.expected}
 
     def _broadcast(self, members: list[HostEntry], time_us: int) -> None:
         told = [entry for entry in members if entry.index in self._outstanding and entry.state == "running"]
@@ -243,23 +247,19 @@ class MainLoop:
         self._event(tick_event_t.STOPPED, entry.index)
 
     def _event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
-        event = tick_event_t()
-        event.kind, event.index, event.tick, event.stage = kind, index, tick, stage
-        self._events.append(event)
+        self._events.append((kind, index, tick, stage))
 
     def _record(self, time_us: int) -> None:
         record = tick_record_t()
         record.run, record.tick, record.time_us = self._run, self.tick, time_us
-        record.events, self._events = self._events, []
-        record.n_events = len(record.events)
         record.channel, record.sequence = list(self._changed), list(self._changed.values())
         record.n_marks = len(record.channel)
         record.voids = self._voids(self._step - 4 * len(self._by_stage))
         record.n_voids = len(record.voids)
         record.changes = [_message(change) for change in self._changes]
         record.n_changes = len(record.changes)
-        self._changed, self._changes = {}, []
-        data = record.encode()
+        data = sync.encode_record(record, self._events)
+        self._changed, self._changes, self._events = {}, [], []
         self._records.append((self.tick, data))
         self._sender.publish(b"fwk/record", data, self._ports.record)
 

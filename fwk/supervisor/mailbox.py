@@ -71,14 +71,15 @@ class Mailbox:
         os.read(self._wakeup, 1024)
 
     def _receive(self) -> None:
-        try:
-            datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
-        except BlockingIOError:
-            return
-        try:
-            self._dispatch(datagram, address[1])
-        except (MessageError, ValueError, struct.error) as error:
-            self._complain("fwk/sync", f"{error}; refused")
+        while True:
+            try:
+                datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
+            except BlockingIOError:
+                return
+            try:
+                self._dispatch(datagram, address[1])
+            except (MessageError, ValueError, struct.error) as error:
+                self._complain("fwk/sync", f"{error}; refused")
 
     def _dispatch(self, datagram: bytes, source: int) -> None:
         channel, data = self._assembler.feed(datagram, source) or (b"", b"")

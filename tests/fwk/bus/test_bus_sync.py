@@ -6,7 +6,7 @@ from hypothesis import strategies as some
 
 from fwk.bus import sync
 from fwk.messages import MessageError, to_dict
-from lcmtypes.core import change_t, done_t, tick_t, void_t
+from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
 INT16, INT32, INT64 = (some.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (16, 32, 64))
 
@@ -57,6 +57,21 @@ def test_a_done_has_the_bytes_of_lcm_gen(done: done_t) -> None:
     assert to_dict(sync.decode_done(data)) == to_dict(done_t.decode(data))
 
 
+@given(some.lists(some.tuples(some.integers(-128, 127), INT32, INT64, INT16), max_size=30), INT64, dones())
+def test_a_record_has_the_bytes_of_lcm_gen(events: list[sync.Event], tick: int, marks: done_t) -> None:
+    record = tick_record_t()
+    record.tick, record.n_marks = tick, marks.n_marks
+    record.channel, record.sequence = marks.channel, marks.sequence
+    data = sync.encode_record(record, events)
+    assert to_dict(sync.decode_record(data)) == to_dict(tick_record_t.decode(record.encode()))
+    for kind, index, at, stage in events:
+        event = tick_event_t()
+        event.kind, event.index, event.tick, event.stage = kind, index, at, stage
+        record.events.append(event)
+    record.n_events = len(events)
+    assert data == record.encode()
+
+
 @given(ticks(), some.integers(0, 200))
 def test_a_truncated_tick_is_refused(tick: tick_t, cut: int) -> None:
     data = tick.encode()
@@ -73,7 +88,8 @@ def test_a_truncated_done_is_refused(done: done_t, cut: int) -> None:
 
 @given(some.binary(max_size=300))
 def test_any_bytes_give_a_message_or_a_clear_error(data: bytes) -> None:
-    for decode, kind in ((sync.decode_tick, tick_t), (sync.decode_done, done_t)):
+    kinds = ((sync.decode_tick, tick_t), (sync.decode_done, done_t), (sync.decode_record, tick_record_t))
+    for decode, kind in kinds:
         for prefix in (b"", kind._get_packed_fingerprint()):
             try:
                 decode(prefix + data)
