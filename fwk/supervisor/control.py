@@ -149,6 +149,7 @@ class Control:
         entries = self._steering.hosts(request.action, request.names)
         for entry in entries:
             self._steering.wish(request.action, entry, monotonic_us())
+            self._hosts.asked.add(entry.index)
         names = [entry.name for entry in entries]
         self._log.info(f"asked to {request.action} {', '.join(names)}")
         self._wait(connection, lambda: self._settled(entries))

@@ -31,6 +31,8 @@ class Hosts:
         self.on_started: Callable[[HostEntry], None] = lambda _: None
         self.on_lost: Callable[[HostEntry], None] = lambda _: None
         self.on_stopped: Callable[[HostEntry], None] = lambda _: None
+        self.asked: set[int] = set()
+        """Hosts whose desired state was changed and that do not have it yet."""
         self.settings_of: Callable[[HostEntry], dict[str, str]] = lambda _: {}
         self._plan = plan
         self._zygote = zygote
@@ -78,8 +80,12 @@ class Hosts:
 
     def steer(self) -> None:
         """Between two ticks: what is asked to leave the loop leaves it, what is asked to join it is started."""
-        for entry in self.table:
-            if entry.leaves:
+        if not self.asked:
+            return
+        for entry in [entry for entry in self.table if entry.index in self.asked]:
+            if entry.settled:
+                self.asked.discard(entry.index)
+            elif entry.leaves:
                 entry.leaving(monotonic_us())
                 self.on_stopped(entry)
                 if entry.pid:
