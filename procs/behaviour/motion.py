@@ -44,9 +44,9 @@ class Limits(BaseModel):
     """Limit of its change."""
     angular_braking_rad_s2: PositiveFloat = 9.0
     """What is counted on for stopping at the heading."""
-    ball_omega_rad_s: PositiveFloat = 3.0
+    ball_omega_rad_s: PositiveFloat = 4.0
     """Highest turning speed with the ball in the mouth."""
-    ball_acceleration_m_s2: PositiveFloat = 2.5
+    ball_acceleration_m_s2: PositiveFloat = 3.0
     """Limit of the change of the velocity with the ball in the mouth."""
     position_gain_1_s: PositiveFloat = 4.0
     """Speed for each metre to go, close to the target."""

@@ -8,7 +8,7 @@ from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, fail
 from procs.field import Point
 
 _LOST_S = 0.3  # the light barrier may miss the ball so long before it counts as lost
-_DRIBBLE_M_S = 2.3
+_DRIBBLE_M_S = 2.7
 _THERE_M = 0.3
 _SHOT_M_S = 11.0
 _ARRIVAL_M_S = 2.2
