@@ -9,10 +9,13 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from fwk.cli.asking import FAILED, BusPort, Json, asking
+from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, Json, asking
 from fwk.control import client
+from fwk.control.files_again import differences
 from fwk.control.keep import KeepError, Kept, keep
+from fwk.plan.errors import PlanError
 from fwk.plan.files import host_file, shown
+from fwk.plan.load import load_plan
 
 WIDTH_IN_A_PIPE = 200
 config = typer.Typer(add_completion=False, no_args_is_help=True)
@@ -84,10 +87,29 @@ def set_settings(
     if as_json:
         typer.echo(json.dumps(answer))
         return
-    for component in answer["settings"]:
-        for setting, value in component["values"].items():
-            kept = f", kept in {shown(file)}" if save else ""
-            typer.echo(f"{component['component']}.{setting} = {json.dumps(value)} since tick {answer['tick']}{kept}")
+    _say(answer, f", kept in {shown(file)}" if save else "")
+
+
+@config.command()
+def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+    """Reads the launch files again and takes over what they say otherwise of settings.
+
+    What was typed with --set when the run began stays; live changes that were not kept are undone.
+    """
+    with asking(), client.supervisor(bus_port) as run:
+        rows = run.ask("settings", names=names or [])["settings"]
+        try:
+            changes = differences(rows, load_plan(run.ask("run")["file"]))
+        except PlanError as error:
+            typer.echo(error, err=True)
+            raise typer.Exit(BAD_INPUT) from error
+        answer = run.ask("set", changes=changes, origin="fwk config reload") if changes else {"settings": []}
+    if as_json:
+        typer.echo(json.dumps(answer))
+    elif not changes:
+        typer.echo("the files say nothing else")
+    else:
+        _say(answer, "")
 
 
 @config.command()
@@ -104,6 +126,12 @@ def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = 
                     typer.echo(json.dumps({**row, "tick": answer["tick"]}))
                 else:
                     typer.echo(f"tick {answer['tick']}: {path} = {json.dumps(row['value'])} ({row['origin']})")
+
+
+def _say(answer: dict[str, Any], kept: str) -> None:
+    for component in answer["settings"]:
+        for setting, value in component["values"].items():
+            typer.echo(f"{component['component']}.{setting} = {json.dumps(value)} since tick {answer['tick']}{kept}")
 
 
 def _keep(file: Path, changes: list[str]) -> None:

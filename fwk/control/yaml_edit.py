@@ -80,13 +80,13 @@ def _replaced(text: str, node: yaml.Node, value: Any) -> str:
     if isinstance(node, yaml.CollectionNode) and not node.flow_style:
         gap = "  "  # a list may stand as far left as its key, a value on one line may not
     newline = "\n" if text[start:end].endswith("\n") else ""
-    return f"{text[:start]}{gap}{_flow(value)}{newline}{text[end:]}"
+    return f"{text[:start]}{gap}{flow(value)}{newline}{text[end:]}"
 
 
 def _inserted(text: str, node: yaml.MappingNode, path: Sequence[str], value: Any) -> str:
     if node.flow_style or not node.value:
         end = node.end_mark.index - 1
-        pair = f"{_key(path[0])}: {_flow(_nested(path[1:], value))}"
+        pair = f"{_key(path[0])}: {flow(_nested(path[1:], value))}"
         return f"{text[:end]}{', ' if node.value else ''}{pair}{text[end:]}"
     end = _end(node)
     if not text[:end].endswith("\n"):  # behind a comment at the end of that line
@@ -105,7 +105,7 @@ def _end(node: yaml.Node) -> int:
 
 def _lines(path: Sequence[str], value: Any, indent: int) -> str:
     made = [f"{' ' * (indent + 2 * depth)}{_key(key)}:" for depth, key in enumerate(path)]
-    return "\n".join(made) + f" {_flow(value)}\n"
+    return "\n".join(made) + f" {flow(value)}\n"
 
 
 def _nested(path: Sequence[str], value: Any) -> Any:
@@ -122,12 +122,12 @@ def _key(key: str) -> str:
     return key if _PLAIN_KEY.fullmatch(key) else json.dumps(key)
 
 
-def _flow(value: Any) -> str:
-    """The value on one line."""
+def flow(value: Any) -> str:
+    """A value as YAML on one line."""
     if isinstance(value, dict):
-        return "{" + ", ".join(f"{_key(str(key))}: {_flow(below)}" for key, below in value.items()) + "}"
+        return "{" + ", ".join(f"{_key(str(key))}: {flow(below)}" for key, below in value.items()) + "}"
     if isinstance(value, list):
-        return "[" + ", ".join(map(_flow, value)) + "]"
+        return "[" + ", ".join(map(flow, value)) + "]"
     if isinstance(value, float) and not math.isfinite(value):
         return {math.inf: ".inf", -math.inf: "-.inf"}.get(value, ".nan")
     return json.dumps(value, ensure_ascii=False)

@@ -94,6 +94,9 @@ def test_watched_settings_are_told_and_kept_ones_are_there_next_time(run: Steere
         assert (change["setting"], change["value"]) == ("step", 2.0)
         run.fwk("config", "set", "r/counter.nonsense=2", "--save", code=2)
         assert file.read_text() == "# this machine\nconfig:\n  r/counter:\n    step: 2  # as ever\n"
+        run.ask("set", changes=["r/counter.step=3"])
+        assert "r/counter.step = 2.0 since tick" in run.fwk("config", "reload")
+        assert "nothing else" in run.fwk("config", "reload", "r/counter")
         run.end()
     checked = subprocess.run(
         [BIN / "fwk", "check", "small.yaml"], cwd=run.launched.folder, capture_output=True, text=True, check=True
