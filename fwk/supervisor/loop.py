@@ -1,6 +1,5 @@
 """The main loop: one barrier a stage, in lockstep or in real time."""
 
-from collections import deque
 from collections.abc import Callable
 
 from fwk.aspects.logging import Logger
@@ -13,6 +12,7 @@ from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.pace import Pace
+from fwk.supervisor.records import Records
 from fwk.supervisor.table import Change, HostEntry
 from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
@@ -69,7 +69,9 @@ class MainLoop:
         self._events: list[sync.Event] = []
         self._changed: dict[int, int] = {}
         self._changes: list[Change] = []  # that this tick began with
-        self._records: deque[tuple[int, bytes]] = deque(maxlen=4 * WINDOW)
+        self._records = Records(self._ports, run, sender, mailbox)
+        self._told = b""  # the newest tick as it was sent
+        self._owed: dict[int, bytes] = {}  # the tick that a late host works on, or lost
         mailbox.on_done = self._on_done
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
@@ -104,6 +106,7 @@ class MainLoop:
             self._hosts.maintain()
         self.on_boundary(self.tick + 1)
         self._hosts.steer()
+        self._remind()
         self.tick += 1
         time_us = self._pace.advance(monotonic_us())
         for stage, members in enumerate(self._by_stage):
@@ -175,7 +178,14 @@ class MainLoop:
         tick.n_absent = len(tick.absent)
         tick.changes = [_message(change) for entry in told for change in entry.changes]
         tick.n_changes = len(tick.changes)
-        self._sender.publish(sync.TICK, sync.encode_tick(tick), self._ports.stage(self._stage))
+        self._told = sync.encode_tick(tick)
+        self._sender.publish(sync.TICK, self._told, self._ports.stage(self._stage))
+
+    def _remind(self) -> None:
+        """Who is late may have lost its tick, or its done was lost: the tick is repeated until it is answered."""
+        for entry in self._hosts.table:
+            if entry.busy:
+                self._sender.publish(sync.TICK, self._owed[entry.index], self._ports.stage(entry.busy[1]))
 
     def _break_off(self, now_us: int) -> None:
         """Kills what shall stop but keeps the loop from reaching the boundary at which it would."""
@@ -222,7 +232,7 @@ class MainLoop:
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
         for entry in members:
             if entry.index in self._outstanding:
-                entry.busy = (self.tick, stage)
+                entry.busy, self._owed[entry.index] = (self.tick, stage), self._told
                 entry.seen = self._step
                 self.late += 1
                 self._event(tick_event_t.LATE, entry.index)
@@ -260,8 +270,7 @@ class MainLoop:
         record.n_changes = len(record.changes)
         data = sync.encode_record(record, self._events)
         self._changed, self._changes, self._events = {}, [], []
-        self._records.append((self.tick, data))
-        self._sender.publish(b"fwk/record", data, self._ports.record)
+        self._records.publish(self.tick, data)
 
     def _let_gateway_follow(self, tick: int) -> None:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
@@ -271,9 +280,7 @@ class MainLoop:
             self._mailbox.pump(wait_us)
             if self.recorded == before:
                 wait_us = min(2 * wait_us, REPEAT_LONGEST_US)
-                for number, data in self._records:
-                    if number > self.recorded:
-                        self._sender.publish(b"fwk/record", data, self._ports.record)
+                self._records.repeat(self.recorded + 1, self.tick)
 
     def _wait_until(self, begin_us: int) -> None:
         self._mailbox.pump(0)
