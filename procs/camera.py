@@ -9,6 +9,7 @@ from pydantic import Field as Setting
 from fwk.aspects.blackboard import Reads, channel
 from fwk.aspects.logging import Logger
 from fwk.aspects.vision import VisionMaster
+from fwk.clock import Clock
 from fwk.component import Component
 from fwk.config import Config
 from lcmtypes.soccer import ground_truth_t, true_robot_t
@@ -41,6 +42,8 @@ class CameraConfig(Config):
     """Factor on all colours."""
     flicker: float = Setting(default=0.0, ge=0.0, le=0.5)
     """Standard deviation of the brightness from frame to frame, as a part of it."""
+    every_ticks: int = Setting(default=1, ge=1, le=100)
+    """A frame every so many ticks; robots take turns, so that not all cameras of a team work in the same tick."""
     field: Field = Field()
     """Measures of the field."""
     robot_radius_m: float = Setting(default=0.25, gt=0.0)
@@ -58,6 +61,7 @@ class Camera(Component):
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
     image: VisionMaster
     config: CameraConfig
+    clock: Clock
     log: Logger
     rng: np.random.Generator
 
@@ -69,12 +73,13 @@ class Camera(Component):
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._robot = self.name.rpartition("/")[0]
+        self._turn = int("".join(filter(str.isdigit, self._robot)) or 0)
         self._missing = False
         self._noise_seed = int(self.rng.integers(1 << 32))
         self._apply_settings()
 
     def loop(self) -> None:
-        if not self.ground_truth.refreshed:
+        if not self.ground_truth.refreshed or (self.clock.tick + self._turn) % self.config.every_ticks:
             return
         if self.config != self._settings:
             self._apply_settings()

@@ -14,6 +14,7 @@ from fwk.aspects.blackboard import Writes
 from fwk.clock import Clock
 from fwk.component import Component
 from fwk.testing import Bench, MemorySystem
+from lcmtypes.robot import frame_t
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.camera import Camera
 from procs.omni_ball import OmniBall
@@ -66,6 +67,12 @@ def test_from_truth_to_percepts() -> None:
         assert obstacle.covariance_m2[0][0] > 0.0
         assert 40 <= lines.n <= 150
         assert ball.header.tick == lines.header.tick == tick
+
+
+def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
+    run = system(every_ticks=2)
+    run.tick(6)
+    assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
 
 
 def test_a_lost_frame_gives_empty_percepts() -> None:
