@@ -63,7 +63,10 @@ class Component:
         """One iteration."""
 
     def config_changed(self) -> None:
-        """Called between two iterations when settings were changed; `self.config` has the new ones."""
+        """Called between two iterations when settings were changed; `self.config` has the new ones.
+
+        What `init` has made of the old ones has to be made anew here.
+        """
 
     def finalize(self) -> None:
         """Called once after the last iteration."""

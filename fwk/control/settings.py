@@ -1,13 +1,14 @@
 """The settings of a run's components as they are now, where each comes from, and what they may become."""
 
+import dataclasses
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from typing import Any
+from typing import Any, get_type_hints
 
-from pydantic.fields import FieldInfo
+from pydantic import BaseModel
 
 from fwk.component import declaration
 from fwk.config import Config
@@ -177,11 +178,19 @@ def _value(values: Any, dotted: str) -> Any:
 
 def _described(kind: type[Config] | None, dotted: str) -> dict[str, Any]:
     """Type and meaning of a setting; every setting can be edited."""
-    found: FieldInfo | None = None
     annotation: Any = kind
+    meaning = ""
     for key in dotted.split("."):
-        fields = annotation.model_fields if isinstance(annotation, type) and issubclass(annotation, Config) else {}
-        found = fields.get(key)
-        annotation = found.annotation if found else None
-    name = annotation.__name__ if isinstance(annotation, type) else str(annotation or "any")
-    return {"type": name, "meaning": (found.description or "") if found else "", "editable": True}
+        annotation, meaning = _field(annotation, key)
+    name = annotation.__name__ if type(annotation) is type else str(annotation or "any")
+    return {"type": name.replace("typing.", ""), "meaning": meaning, "editable": True}
+
+
+def _field(kind: Any, key: str) -> tuple[Any, str]:
+    """Type and meaning of a field of settings, or of a dataclass in them."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
+        found = kind.model_fields[key]
+        return found.annotation, found.description or ""
+    if dataclasses.is_dataclass(kind):
+        return get_type_hints(kind).get(key), ""
+    return None, ""

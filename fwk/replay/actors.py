@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from importlib import import_module
+from typing import Any
 
 from fwk.aspects.vision import Ring
 from fwk.component import declaration
@@ -11,14 +12,21 @@ from lcmtypes.core import log_t
 
 
 class Actor:
-    """One life of a component, from its start to its end."""
+    """One life of a component, from its start to its end; `settings` are those it was started with."""
 
-    def __init__(self, plan: Plan, component: ComponentPlan, incarnation: int, rings: Mapping[str, Ring]) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        component: ComponentPlan,
+        incarnation: int,
+        rings: Mapping[str, Ring],
+        settings: Mapping[str, Any],
+    ) -> None:
         self.plan = component
         self._stages = plan.stages
         self._fresh_start = True
         declared = declaration(getattr(import_module(component.module), component.class_name))
-        config = declared.config.model_validate(component.config) if declared.config else None
+        config = declared.config.model_validate(settings) if declared.config else None
         surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}

@@ -1,9 +1,11 @@
 """Replays a recording tick by tick and compares what the components write with what they wrote."""
 
+import json
 from collections import deque
 from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from importlib import import_module
+from typing import Any
 
 from fwk.aspects.vision import Ring
 from fwk.component import declaration
@@ -12,7 +14,7 @@ from fwk.plan.model import ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
-from lcmtypes.core import tick_event_t
+from lcmtypes.core import change_t, tick_event_t
 
 
 class Replay:
@@ -38,7 +40,7 @@ class Replay:
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
         self._actors: dict[int, list[Actor]] = {}
-        self._incarnations = [0] * len(plan.hosts)
+        self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the ticks and values of its new settings
         self._newest: dict[str, bytes] = {}
         self._sequences: dict[str, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
@@ -55,6 +57,8 @@ class Replay:
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
         record, stage = tick.record, -1
+        for change in record.changes:
+            self._change(record.tick, change)
         events = deque(record.events)
         while events:
             event = events.popleft()
@@ -62,8 +66,8 @@ class Replay:
                 stage = event.index
                 self._show()
             elif event.kind == tick_event_t.STARTED:
-                self._start(event.index)
-            elif event.kind == tick_event_t.LOST:
+                self._start(event.index, event.stage, event.tick)
+            elif event.kind in (tick_event_t.LOST, tick_event_t.STOPPED):
                 self._actors.pop(event.index, None)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, stage, record.time_us)
@@ -72,13 +76,24 @@ class Replay:
                     self._iterate(event.index, event.tick, event.stage, record.time_us)
                 self._done(event.index, event.tick, event.stage)
 
-    def _start(self, host: int) -> None:
-        self._incarnations[host] += 1
+    def _change(self, tick: int, change: change_t) -> None:
+        settings = json.loads(change.settings)
+        self._changes.setdefault(change.component, []).append((tick, settings))
+        for actor in self._actors.get(self._plan.components[change.component].host, []):
+            if actor.plan.index == change.component:
+                actor.runner.configure(settings)
+
+    def _start(self, host: int, incarnation: int, started_with: int) -> None:
+        """Starts a host's components with the settings of that tick, then takes over what was changed since."""
         self._actors[host] = []
         for index in self._plan.hosts[host].components:
             if index not in self._chosen:
                 continue
-            actor = Actor(self._plan, self._plan.components[index], self._incarnations[host], self._rings)
+            component, changes = self._plan.components[index], self._changes.get(index, [])
+            before = [settings for tick, settings in changes if tick <= started_with]
+            actor = Actor(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
+            for _, settings in changes[len(before) :]:
+                actor.runner.configure(settings)
             for channel, data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():

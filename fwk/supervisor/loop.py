@@ -243,7 +243,7 @@ class MainLoop:
         self._outstanding = set()
 
     def _on_started(self, entry: HostEntry) -> None:
-        self._event(tick_event_t.STARTED, entry.index, entry.started_with)
+        self._event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
         if entry.incarnation > 1:
             self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
         self._again = True

@@ -67,7 +67,9 @@ def test_settings_change_at_a_tick_that_the_recording_names(run: Steered) -> Non
     run.steer("restart", "r/counter")
     run.ticks_pass()
     assert "step is 0.25" in run.fwk("log", "--component", "r/counter", "--level", "warning")
-    recording = Recording(run.end())
+    log = run.end()
+    assert "equal: " in run.fwk("replay", "--verify", str(log.parent))
+    recording = Recording(log)
     ((tick, change),) = [(record.tick, each) for record in recording.records for each in record.changes]
     assert (change.component, change.number, json.loads(change.settings)["step"]) == (0, 1, 0.25)
     (restarted,) = [
