@@ -66,6 +66,11 @@ class Ports:
         """The gateway's host index."""
         return self.hosts
 
+    @property
+    def members(self) -> range:
+        """All ports that processes of the run send from."""
+        return range(self.supervisor, self.host(self.gateway) + 1)
+
     def channel(self, index: int) -> int:
         """Messages of a channel."""
         return self.host(self.hosts + 1) + index

@@ -4,10 +4,12 @@ import itertools
 import socket
 
 from fwk.bus import wire
+from fwk.messages import MessageError
 
 GROUP = "239.255.76.67"  # LCM's default group
 LOOPBACK = "127.0.0.1"
 BUFFER_BYTES = 4 << 20
+_IP_MULTICAST_ALL = 49  # Python has no name for it
 
 
 def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.socket:
@@ -15,6 +17,8 @@ def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.so
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
+    # Otherwise the socket would hear the network, too, as soon as any program here joins the group there.
+    made.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
     made.bind((GROUP, port))
     membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
     made.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
@@ -43,6 +47,20 @@ class Sender:
     def send(self, channel: bytes, data: bytes, port: int) -> None:
         """Sends a message to the one process that has `port`."""
         self._send(channel, data, (LOOPBACK, port))
+
+    def receive(self, members: range) -> tuple[bytes, bytes] | None:
+        """The next message that was sent to this port alone, as (channel, data); None when nothing is waiting.
+
+        Raises:
+            MessageError: it is no small LCM message, or does not come from one of the ports of `members`.
+        """
+        try:
+            datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
+        except OSError:  # nothing there, or the news that an earlier datagram found nobody
+            return None
+        if address[0] != LOOPBACK or address[1] not in members:
+            raise MessageError(f"datagram from port {address[1]}, which is not of this run")
+        return wire.short(datagram)
 
     def _send(self, channel: bytes, data: bytes, address: tuple[str, int]) -> None:
         for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):

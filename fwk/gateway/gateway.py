@@ -166,11 +166,10 @@ class Gateway:
     def _handle_own(self) -> bool:
         while True:
             try:
-                datagram, address = self._sender.socket.recvfrom(wire.DATAGRAM_MAX)
-            except (BlockingIOError, ConnectionRefusedError):
-                break
-            try:
-                name, data = wire.short(datagram)
+                message = self._sender.receive(self._ports.members)
+                if message is None:
+                    break
+                name, data = message
                 if name == b"fwk/gone":
                     gone = gone_t.decode(data)
                     if gone.run == self._run:
@@ -182,7 +181,7 @@ class Gateway:
                 else:
                     raise MessageError("neither gone nor fetch")
             except (MessageError, ValueError, struct.error) as error:
-                self._complaints("fwk/gone", f"{error} (from port {address[1]}); refused")
+                self._complaints("fwk/fetch", f"{error}; refused")
         try:
             if not self._control.recv(1):
                 self._open = False

@@ -227,11 +227,10 @@ class Host:
         """Handles what was sent to this host's own port; false when it is time to stop."""
         while True:
             try:
-                datagram = self._sender.socket.recv(wire.DATAGRAM_MAX)
-            except (BlockingIOError, ConnectionRefusedError):
-                return not self._stopping()
-            try:
-                channel, data = wire.short(datagram)
+                message = self._sender.receive(self._ports.members)
+                if message is None:
+                    return not self._stopping()
+                channel, data = message
                 if channel == b"fwk/fetch":
                     fetch = fetch_t.decode(data)
                     if fetch.run == self._assignment.run:

@@ -27,6 +27,7 @@ class Mailbox:
         self.afterwards: Handler = lambda: None  # called when something was handled
         self.signals: list[int] = []
         self._first_host = ports.host(0)
+        self._members = ports.members
         self._assembler = wire.Assembler()
         self._run = run
         self._complain = complain
@@ -82,6 +83,8 @@ class Mailbox:
                 self._complain("fwk/sync", f"{error}; refused")
 
     def _dispatch(self, datagram: bytes, source: int) -> None:
+        if source not in self._members:
+            raise MessageError(f"datagram from port {source}, which is not of this run")
         channel, data = self._assembler.feed(datagram, source) or (b"", b"")
         if channel == sync.DONE:
             done = sync.decode_done(data)

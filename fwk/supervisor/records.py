@@ -1,9 +1,9 @@
 """Tick records on their way to the gateway: kept, and sent again to who lacks them."""
 
+import contextlib
 import struct
 from collections import deque
 
-from fwk.bus import wire
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.messages import MessageError
@@ -35,13 +35,9 @@ class Records:
                 self._sender.publish(b"fwk/record", data, self._ports.record)
 
     def _on_asked(self) -> None:
-        try:
-            datagram, address = self._sender.socket.recvfrom(wire.DATAGRAM_MAX)
-            channel, data = wire.short(datagram)
-            if channel != b"fwk/fetch" or address[1] != self._ports.host(self._ports.gateway):
-                return
-            fetch = fetch_t.decode(data)
-        except (OSError, MessageError, ValueError, struct.error):  # rubbish from a stranger
-            return
-        if fetch.run == self._run:
-            self.repeat(fetch.first_sequence, fetch.last_sequence)
+        with contextlib.suppress(MessageError, ValueError, struct.error):  # a stranger's; hosts' complaints name it
+            message = self._sender.receive(self._ports.members)
+            if message and message[0] == b"fwk/fetch":
+                fetch = fetch_t.decode(message[1])
+                if fetch.run == self._run:
+                    self.repeat(fetch.first_sequence, fetch.last_sequence)

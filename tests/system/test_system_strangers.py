@@ -1,0 +1,203 @@
+"""Rubbish, forgeries and other people's messages on every port: refused by name, and the run is as without them."""
+
+import contextlib
+import socket
+import struct
+from collections.abc import Iterator
+from pathlib import Path
+from socket import AF_INET
+
+import lcm
+import psutil
+import pytest
+
+from fwk.bus import sync, wire
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import GROUP, LOOPBACK, multicast_receiver
+from fwk.messages import type_named
+from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, status_t, tick_record_t, tick_t
+from tests.system.conftest import Launch
+from tests.system.system_logs import difference
+from tests.system.system_orchestra import orchestra
+from tests.system.system_runs import Launched, PortBlock, pause, write_files
+
+pytestmark = pytest.mark.system
+
+HOSTS, CHANNELS = 9, 14  # of the orchestra
+RUN = ("launch/orchestra.yaml", "--ticks", "60", "--seed", "7", "--record", "log.lcm")
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of an undisturbed run."""
+    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
+    write_files(folder, orchestra(ports.public_url))
+    run = Launched(folder, ports, RUN, {})
+    try:
+        assert run.wait() == 0, run.text
+    finally:
+        run.end()
+        ports.release()
+    return folder / "log.lcm"
+
+
+class Stranger:
+    """A socket that belongs to nobody in the run."""
+
+    def __init__(self) -> None:
+        self._socket = socket.socket(AF_INET, socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
+        self._socket.bind((LOOPBACK, 0))
+
+    def close(self) -> None:
+        self._socket.close()
+
+    def send(self, datagram: bytes, port: int, group: str = GROUP) -> None:
+        with contextlib.suppress(ConnectionRefusedError):  # of an earlier one, to a process that was not there yet
+            self._socket.sendto(datagram, (group, port))
+
+    def say(self, channel: str, data: bytes, port: int, group: str = GROUP) -> None:
+        for datagram in wire.datagrams(1, channel.encode(), data):
+            self.send(datagram, port, group)
+
+
+@pytest.fixture
+def stranger() -> Iterator[Stranger]:
+    made = Stranger()
+    yield made
+    made.close()
+
+
+RUBBISH = [
+    b"",
+    b"x",
+    b"LC02",
+    b"LC02\0\0\0\1no end",
+    b"LC02\0\0\0\1\0",
+    b"LC02\0\0\0\1d/note\0",
+    b"LC03\0\0\0\1",
+    struct.pack(">4sIIIHH", b"LC03", 1, 2**31, 0, 0, 40_000) + b"d/note\0",
+    struct.pack(">4sIIIHH", b"LC03", 2, 255 << 20, 0, 0, 65_000) + b"d/note\0",
+    bytes(65_000),
+]
+
+
+def plausible(run: int) -> list[tuple[str, bytes]]:
+    """Messages that would do harm if they came from the right port, whole and cut off; `run` may be the real one."""
+    done, actual, fetch, gone, tick, record = done_t(), actual_t(), fetch_t(), gone_t(), tick_t(), tick_record_t()
+    for each in (done, actual, fetch, gone, tick, record):
+        each.run = run
+    done.host, done.incarnation, done.tick, done.stage = 5, 1, 10, 5
+    done.n_marks, done.channel, done.sequence = 1, [3], [10**6]
+    actual.host, actual.incarnation = 5, 1
+    fetch.host, fetch.channel, fetch.last_sequence = 10**6, 7, 10**12
+    gone.channel, gone.first_sequence, gone.last_sequence = 7, 1, 10**12
+    tick.tick, tick.stage = 10**6, 5
+    record.tick = 1
+    note = type_named("play.note_t")()
+    note.header.sequence, note.header.writer = 3, "d/player"
+    whole = [
+        ("fwk/done", sync.encode_done(done)),
+        ("fwk/actual", actual.encode()),
+        ("fwk/fetch", fetch.encode()),
+        ("fwk/gone", gone.encode()),
+        ("fwk/tick", sync.encode_tick(tick)),
+        ("fwk/record", record.encode()),
+        ("fwk/log", log_t().encode()),
+        ("fwk/status", status_t().encode()),
+        ("d/note", note.encode()),
+        ("d/note", status_t().encode()),
+    ]
+    return whole + [(channel, data[:20]) for channel, data in whole]
+
+
+def all_ports(ports: Ports) -> list[tuple[str, int]]:
+    """Every address of a run: what is sent to all, and what is sent to one process."""
+    shared = [(GROUP, port) for port in (ports.sync, ports.record, ports.log, ports.status)]
+    shared += [(GROUP, ports.stage(stage)) for stage in range(10)]
+    shared += [(GROUP, ports.channel(channel)) for channel in range(CHANNELS)]
+    own = [(LOOPBACK, ports.host(host)) for host in range(HOSTS + 1)]
+    return [*shared, *own, (LOOPBACK, ports.supervisor)]
+
+
+class Ears:
+    """Listens to ticks, as anybody on this machine can; `run` is the run's number once it is known, else 0."""
+
+    def __init__(self, ports: Ports) -> None:
+        self.run = 0
+        self._supervisor = ports.supervisor
+        self._socket = multicast_receiver(ports.stage(0))
+
+    def listen(self) -> None:
+        with contextlib.suppress(BlockingIOError):
+            while not self.run:
+                datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
+                if address[1] == self._supervisor:
+                    self.run = sync.decode_tick(wire.short(datagram)[1]).run
+
+    def close(self) -> None:
+        self._socket.close()
+
+
+def test_strangers_on_every_inner_port_are_named_and_change_nothing(
+    launch: Launch, folder: Path, ports: PortBlock, reference: Path, stranger: Stranger
+) -> None:
+    inner = Ports(ports.bus, HOSTS, CHANNELS)
+    ears = Ears(inner)
+    run = launch(*RUN)
+    while run.process.poll() is None:
+        ears.listen()
+        for group, port in all_ports(inner):
+            for datagram in RUBBISH:
+                stranger.send(datagram, port, group)
+            for channel, data in plausible(ears.run):
+                stranger.say(channel, data, port, group)
+        pause(0.05)
+    ears.close()
+    assert run.wait() == 0, run.text
+    assert ears.run
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "Traceback" not in run.text
+    assert "ended:" not in run.text
+    assert "refused" in run.text
+    assert "times)" in run.text  # counted, not repeated each time
+    assert run.text.count("refused") < 1000
+    for port_of in ("fwk/sync", "fwk/tick", "fwk/record", "fwk/log", "fwk/fetch", "d/note"):
+        assert f"{port_of}: " in run.text
+
+
+def test_strangers_on_the_public_bus_are_named_and_change_nothing(
+    launch: Launch, folder: Path, ports: PortBlock, reference: Path, stranger: Stranger
+) -> None:
+    run = launch(*RUN)
+    bus = lcm.LCM(ports.public_url)
+    public_port = int(ports.public_url.split(":")[2].split("?")[0])
+    while run.process.poll() is None:
+        for channel, data in plausible(1):
+            bus.publish(channel, data)
+        bus.publish("somebody/else", b"12345678")
+        for datagram in RUBBISH:
+            stranger.send(datagram, public_port)
+        pause()
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "Traceback" not in run.text
+    assert "d/note: somebody else (port " in run.text
+    assert "somebody/else" not in run.text  # other programs may talk there
+    assert run.text.count("not taken") < 100
+
+
+def test_the_network_is_not_heard_on_inner_ports(ports: PortBlock) -> None:
+    addresses = [each.address for found in psutil.net_if_addrs().values() for each in found if each.family == AF_INET]
+    outside = next((address for address in addresses if not address.startswith("127.")), None)
+    if not outside:
+        pytest.skip("this machine has no network interface besides the loopback")
+    ears = multicast_receiver(ports.bus)
+    with socket.socket(AF_INET, socket.SOCK_DGRAM) as other:
+        joined = socket.inet_aton(GROUP) + socket.inet_aton(outside)
+        other.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, joined)
+        for interface, message in ((outside, b"from the network"), (LOOPBACK, b"from here")):
+            other.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(interface))
+            other.sendto(message, (GROUP, ports.bus))
+    assert ears.recv(100) == b"from here"
+    ears.close()
