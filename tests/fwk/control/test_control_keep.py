@@ -38,7 +38,7 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text(OLD)
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (len(OLD), limits[1]))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (10, limits[1]))
     try:
         with pytest.raises(KeepError, match=r"soccer\.host\.yaml: cannot be written: File too large; it is as it was"):
             keep(file, [Kept.of("a/b.other=12345678")])
