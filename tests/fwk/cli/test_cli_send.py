@@ -1,0 +1,32 @@
+"""Messages from outside are made of what is typed."""
+
+import re
+
+import pytest
+
+from fwk.cli.send import made
+from fwk.messages import MessageError, encode
+
+
+def test_fields_are_set_by_name_and_others_are_zero() -> None:
+    message = made("soccer.ball_placement_t", [])
+    encode(message, "x")
+    command = made("robot.motor_command_t", ["vx_m_s=1.5"])
+    assert command.vx_m_s == 1.5
+    encode(command, "x")
+    nested = made("robot.motor_command_t", ["header.writer=me"])
+    assert nested.header.writer == "me"
+
+
+@pytest.mark.parametrize(
+    ("fields", "error"),
+    [
+        (["vx_m_=1"], "robot.motor_command_t has no field 'vx_m_'; did you mean 'vx_m_s'?"),
+        (["vx_m_s"], "'vx_m_s' is no FIELD=VALUE"),
+        (["vx_m_s=[1"], "'vx_m_s=[1' is no FIELD=VALUE"),
+        (["a.b=1"], "has no field 'a.b'"),
+    ],
+)
+def test_what_does_not_fit_is_named(fields: list[str], error: str) -> None:
+    with pytest.raises(MessageError, match=re.escape(error)):
+        made("robot.motor_command_t", fields)
