@@ -86,6 +86,9 @@ class Gateway:
         self._receive_lines()
         for sink in self.sinks:
             sink.close()
+        self._inputs.close()
+        for source in (self._records, self._lines, self._status, self._sender.socket):
+            source.close()
 
     def _receive_records(self) -> None:
         for data in self._drain(self._records, b"fwk/record"):

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Iterator
 from pathlib import Path
 from socket import AF_INET
+from typing import Any
 
 import lcm
 import psutil
@@ -94,7 +95,7 @@ def plausible(run: int) -> list[tuple[str, bytes]]:
     gone.channel, gone.first_sequence, gone.last_sequence = 7, 1, 10**12
     tick.tick, tick.stage = 10**6, 5
     record.tick = 1
-    note = type_named("play.note_t")()
+    note: Any = type_named("play.note_t")()
     note.header.sequence, note.header.writer = 3, "d/player"
     whole = [
         ("fwk/done", sync.encode_done(done)),

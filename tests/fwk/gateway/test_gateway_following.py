@@ -1,0 +1,173 @@
+"""The gateway follows tick records: what it records, in which order, what it asks for, and for whom it answers."""
+
+import socket
+from collections.abc import Iterator
+
+import pytest
+
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.gateway.gateway import Gateway
+from fwk.messages import sequence_of
+from lcmtypes.core import fetch_t, gone_t, log_t, tick_record_t, void_t
+from tests.fwk.host.host_parts import IMU, imu, plan
+from tests.system.system_runs import PortBlock
+
+RUN = 4711
+
+
+class Kept:
+    """A sink that keeps everything."""
+
+    def __init__(self) -> None:
+        self.messages: list[tuple[str, bytes]] = []
+        self.closed = False
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        self.messages.append((channel, data))
+
+    def tick(self) -> None:
+        pass
+
+    def close(self) -> None:
+        self.closed = True
+
+    @property
+    def sequences(self) -> list[int]:
+        return [sequence_of(data) for channel, data in self.messages if channel == IMU]
+
+    @property
+    def ticks(self) -> list[int]:
+        return [tick_record_t.decode(data).tick for channel, data in self.messages if channel == "fwk/record"]
+
+
+class Followed:
+    """A gateway with everybody around it played by the test: `publish` and `record`, then `serve`."""
+
+    def __init__(self, base: int) -> None:
+        made = plan(base)
+        self.ports = Ports.of(made)
+        self.supervisor, self.writer, self.reader = (
+            Sender(port) for port in (self.ports.supervisor, self.ports.host(0), self.ports.host(1))
+        )
+        self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        theirs.setblocking(False)
+        self._control = theirs
+        self.gateway = Gateway(made, RUN, theirs, None)
+        self.kept = Kept()
+        self.gateway.sinks.append(self.kept)
+
+    def publish(self, *sequences: int, writer: str = "r/senses") -> None:
+        for sequence in sequences:
+            self.writer.publish(IMU.encode(), imu(sequence, writer), self.ports.channel(0))
+
+    def record(self, tick: int, mark: int = 0, run: int = RUN, void_above: int | None = None) -> None:
+        made = tick_record_t()
+        made.run, made.tick, made.time_us = run, tick, tick * 50_000
+        if mark:
+            made.n_marks, made.channel, made.sequence = 1, [0], [mark]
+        if void_above is not None:
+            void = void_t()
+            void.channel, void.above_sequence, void.before_incarnation = 0, void_above, 2
+            made.n_voids, made.voids = 1, [void]
+        self.supervisor.publish(b"fwk/record", made.encode(), self.ports.record)
+
+    def serve(self) -> None:
+        """Lets it deal with what has been sent so far, and end."""
+        self._ours.close()
+        self.gateway.serve()
+
+    def ask(self, host: int, first: int, last: int) -> None:
+        """A fetch passed on by the writer in whose place the gateway shall answer."""
+        fetch = fetch_t()
+        fetch.run, fetch.host, fetch.channel, fetch.first_sequence, fetch.last_sequence = RUN, host, 0, first, last
+        self.writer.send(b"fwk/fetch", fetch.encode(), self.ports.host(self.ports.gateway))
+
+    def close(self) -> None:
+        for each in (self.supervisor, self.writer, self.reader):
+            each.socket.close()
+        for end in (self._ours, self._control):
+            end.close()
+
+
+@pytest.fixture
+def followed() -> Iterator[Followed]:
+    ports = PortBlock()
+    made = Followed(ports.bus)
+    yield made
+    made.close()
+    ports.release()
+
+
+def gone_of(message: tuple[bytes, bytes] | None) -> tuple[int, int]:
+    assert message
+    assert message[0] == b"fwk/gone"
+    gone = gone_t.decode(message[1])
+    return gone.first_sequence, gone.last_sequence
+
+
+def test_what_the_marks_name_is_recorded_with_its_tick_and_no_more(followed: Followed) -> None:
+    followed.publish(1, 2, 3)
+    followed.record(1, mark=2)
+    followed.record(2)
+    followed.serve()
+    assert [channel for channel, _ in followed.kept.messages] == [IMU, IMU, "fwk/record", "fwk/record"]
+    assert followed.kept.sequences == [1, 2]
+    assert followed.kept.closed
+
+
+def test_records_are_taken_in_order_and_once_whatever_comes_when(followed: Followed) -> None:
+    followed.publish(1, 2, 3)
+    for tick, mark in ((3, 3), (1, 1), (3, 3), (2, 2), (1, 1)):
+        followed.record(tick, mark)
+    followed.serve()
+    assert followed.kept.ticks == [1, 2, 3]
+    assert followed.kept.sequences == [1, 2, 3]
+
+
+def test_a_record_that_is_missing_is_asked_for(followed: Followed) -> None:
+    followed.record(1)
+    followed.record(4)
+    followed.serve()
+    assert followed.kept.ticks == [1]
+    message = followed.supervisor.receive(followed.ports.members)
+    assert message
+    fetch = fetch_t.decode(message[1])
+    assert (message[0], fetch.channel, fetch.first_sequence, fetch.last_sequence) == (b"fwk/fetch", -1, 2, 3)
+
+
+def test_another_runs_records_are_not_taken(followed: Followed) -> None:
+    followed.record(1, run=RUN + 1)
+    followed.serve()
+    assert followed.kept.ticks == []
+
+
+def test_what_a_dead_writer_had_sent_beyond_the_marks_is_not_recorded(followed: Followed) -> None:
+    followed.publish(1, 2)
+    followed.publish(2, writer="r/senses#2")
+    followed.record(1, mark=2, void_above=1)
+    followed.serve()
+    writers = [data for channel, data in followed.kept.messages if channel == IMU]
+    assert writers == [imu(1), imu(2, "r/senses#2")]
+
+
+def test_it_answers_for_a_writer_that_is_gone_with_the_newest_and_all_since(followed: Followed) -> None:
+    followed.publish(1, 2, 3)
+    followed.record(1, mark=3)
+    followed.gateway._receive_records()
+    followed.publish(4)
+    followed.ask(host=1, first=1, last=5)
+    followed.serve()
+    gone = [gone_of(followed.reader.receive(followed.ports.members)) for _ in range(2)]
+    assert gone == [(1, 2), (5, 5)]
+
+
+def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) -> None:
+    followed.publish(2)
+    followed.record(1, mark=2)
+    followed.ask(host=followed.ports.gateway, first=1, last=1)
+    followed.gateway._receive_records()
+    followed.serve()
+    (line,) = [log_t.decode(data).text for channel, data in followed.kept.messages if channel == "fwk/log"]
+    assert followed.kept.sequences == [2]
+    assert line == f"{IMU}: 1 messages of 1 to 1 are lost and not in the recording"

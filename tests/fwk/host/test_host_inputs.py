@@ -1,0 +1,197 @@
+"""What a host reads and sends, without its process: waiting, asking, answering, giving up."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import pytest
+
+from fwk.bus.history import MESSAGES_MAX
+from fwk.bus.inbox import Inbox
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.host.inputs import Inputs
+from fwk.host.outputs import Outputs
+from fwk.messages import MessageError, sequence_of
+from lcmtypes.core import fetch_t, gone_t, void_t
+from tests.fwk.host.host_parts import IMU, imu, plan
+from tests.system.system_runs import PortBlock
+
+RUN = 4711
+
+
+class Pair:
+    """A writer's and a reader's ends of one channel, in this process; `weather` decides what gets through."""
+
+    def __init__(self, base: int, together: bool = False, before: int = 0, restarted: bool = False) -> None:
+        made = plan(base, together)
+        self.ports = Ports.of(made)
+        channel = made.channels[0]
+        reader_host = made.components[1].host
+        self.writer_socket = Sender(self.ports.host(0))
+        self.reader_socket = self.writer_socket if together else Sender(self.ports.host(reader_host))
+        self.gateway_socket = Sender(self.ports.host(self.ports.gateway))
+        self.complaints: list[str] = []
+        self.inputs = Inputs(
+            made,
+            [channel],
+            [channel] if together else [],
+            reader_host,
+            RUN,
+            self.reader_socket,
+            lambda name, text: self.complaints.append(f"{name}: {text}"),
+            restarted=restarted,
+        )
+        self.outputs = Outputs({IMU: channel}, self.ports, self.writer_socket, self.inputs.local, {IMU: before})
+        self.asked: list[fetch_t] = []
+
+    def close(self) -> None:
+        self.inputs.close()
+        for each in {self.writer_socket, self.reader_socket, self.gateway_socket}:
+            each.socket.close()
+
+    def serve(self) -> bool:
+        """The writer answers, the reader takes the answer."""
+        for end in (self.writer_socket, self.reader_socket):
+            while message := end.receive(self.ports.members):
+                if message[0] == b"fwk/fetch":
+                    self.asked.append(fetch_t.decode(message[1]))
+                    self.outputs.answer(fetch_t.decode(message[1]))
+                else:
+                    self.inputs.gone(gone_t.decode(message[1]))
+        return len(self.asked) < 20
+
+    def take(self, mark: int) -> list[int]:
+        """The sequence numbers that a reader gets when the mark has come to `mark`."""
+        moved = self.inputs.advance([0], [mark], [])
+        assert self.inputs.wait(moved, self.serve)
+        return [sequence_of(data) for box in moved for data in box.take()]
+
+
+Make = Callable[..., Pair]
+
+
+@pytest.fixture
+def make() -> Iterator[Make]:
+    made: list[Pair] = []
+    ports = PortBlock()
+
+    def kept(**how: Any) -> Pair:
+        made.append(Pair(ports.bus, **how))
+        return made[-1]
+
+    yield kept
+    for each in made:
+        each.close()
+    ports.release()
+
+
+def test_what_a_mark_names_is_waited_for_and_no_more_is_given(make: Make) -> None:
+    pair = make()
+    assert pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2)), (IMU, imu(3))]) == {0: 3}
+    assert pair.take(2) == [1, 2]
+    assert pair.take(3) == [3]
+    assert pair.asked == []
+
+
+def test_what_was_lost_is_asked_for_and_comes_again(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    pair = make()
+    with monkeypatch.context() as storm:
+        storm.setattr(pair.writer_socket, "publish", lambda *_: None)
+        pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])
+    pair.outputs.publish([(IMU, imu(3))])
+    assert pair.take(3) == [1, 2, 3]
+    assert [(fetch.first_sequence, fetch.last_sequence) for fetch in pair.asked[:1]] == [(1, 2)]
+    assert pair.inputs.fetched == 2
+    assert pair.inputs.lost == 0
+
+
+def test_what_the_writer_no_longer_has_is_counted_as_lost(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    pair = make()
+    with monkeypatch.context() as storm:
+        storm.setattr(pair.writer_socket, "publish", lambda *_: None)
+        pair.outputs.publish([(IMU, imu(number)) for number in range(1, MESSAGES_MAX + 11)])
+    assert pair.take(MESSAGES_MAX + 10) == list(range(11, MESSAGES_MAX + 11))
+    assert pair.inputs.lost == 10
+
+
+def test_a_wait_ends_when_the_process_is_to_stop(make: Make) -> None:
+    pair = make()
+    moved = pair.inputs.advance([0], [1], [])
+    assert not pair.inputs.wait(moved, lambda: False)
+
+
+def test_a_reader_in_the_same_process_needs_no_socket(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+    pair = make(together=True)
+    monkeypatch.setattr(pair.writer_socket, "publish", lambda *_: None)
+    pair.outputs.publish([(IMU, imu(1))])
+    assert not isinstance(pair.inputs.local[IMU], Inbox)
+    assert pair.take(1) == [1]
+
+
+def test_a_newcomer_takes_the_newest_of_what_is_visible(make: Make) -> None:
+    pair = make()
+    pair.outputs.publish([(IMU, imu(number)) for number in (1, 2, 3)])
+    moved = pair.inputs.advance([0], [3], [])
+    pair.inputs.newest_only()
+    assert pair.inputs.wait(moved, pair.serve)
+    assert [sequence_of(data) for data in moved[0].take()] == [3]
+
+
+def test_messages_of_the_predecessor_are_asked_of_the_gateway_and_only_those(make: Make) -> None:
+    pair = make(before=5)
+    pair.outputs.publish([(IMU, imu(6)), (IMU, imu(7))])
+    fetch = fetch_t()
+    fetch.run, fetch.host, fetch.channel, fetch.first_sequence, fetch.last_sequence = RUN, 1, 0, 4, 7
+    pair.outputs.answer(fetch)
+    message = pair.gateway_socket.receive(pair.ports.members)
+    assert message
+    passed = fetch_t.decode(message[1])
+    assert (passed.host, passed.first_sequence, passed.last_sequence) == (1, 4, 5)
+    assert pair.gateway_socket.receive(pair.ports.members) is None
+
+
+def test_a_restarted_process_hears_what_it_said_before_from_the_gateway_until_it_has_it(make: Make) -> None:
+    pair = make(together=True, before=5, restarted=True)
+    moved = pair.inputs.advance([0], [5], [])
+    pair.inputs.newest_only()
+    pair.gateway_socket.publish(IMU.encode(), imu(5), pair.ports.channel(0))
+    assert pair.inputs.wait(moved, pair.serve)
+    assert [sequence_of(data) for data in moved[0].take()] == [5]
+    pair.inputs.forget_predecessor()
+    pair.outputs.publish([(IMU, imu(6, "r/senses#2"))])
+    assert pair.take(6) == [6]
+
+
+def test_the_dead_writers_unfinished_messages_are_dropped_for_its_successors(make: Make) -> None:
+    pair = make()
+    pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])  # of 2 the done never came
+    void = void_t()
+    void.channel, void.above_sequence, void.before_incarnation = 0, 1, 2
+    moved = pair.inputs.advance([0], [1], [void])
+    assert pair.inputs.wait(moved, pair.serve)
+    assert [sequence_of(data) for data in moved[0].take()] == [1]
+    successor = imu(2, "r/senses#2")
+    pair.outputs.publish([(IMU, successor)])
+    moved = pair.inputs.advance([0], [2], [])
+    assert pair.inputs.wait(moved, pair.serve)
+    assert moved[0].take() == [successor]
+
+
+def test_news_that_something_is_gone_does_not_drop_what_is_here(make: Make) -> None:
+    pair = make()
+    pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])
+    moved = pair.inputs.advance([0], [2], [])
+    gone = gone_t()
+    gone.run, gone.channel, gone.first_sequence, gone.last_sequence = RUN, 0, 1, 2
+    assert pair.inputs.gone(gone) == 0
+    assert pair.inputs.wait(moved, pair.serve)
+    assert [sequence_of(data) for data in moved[0].take()] == [1, 2]
+
+
+def test_a_stranger_cannot_ask_or_answer(make: Make) -> None:
+    pair = make()
+    stranger = Sender(pair.ports.end + 1)
+    stranger.send(b"fwk/gone", gone_t().encode(), pair.ports.host(1))
+    with pytest.raises(MessageError, match=rf"port {pair.ports.end + 1}, which is not of this run"):
+        pair.reader_socket.receive(pair.ports.members)
+    stranger.socket.close()
