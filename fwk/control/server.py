@@ -138,7 +138,7 @@ class Server:
                     self._take(line, connection)
 
     def _accept(self) -> None:
-        with contextlib.suppress(BlockingIOError):
+        with contextlib.suppress(OSError):  # gone again, or no descriptor is left; the run goes on
             accepted, _ = self._listener.accept()
             uid = user_of(accepted)
             connection = Connection(accepted, self._changed)

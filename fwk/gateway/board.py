@@ -1,5 +1,6 @@
 """The blackboard from outside: channels' newest messages for whoever asks, each new one for whoever watches."""
 
+import contextlib
 from typing import Any
 
 from fwk import messages
@@ -45,7 +46,8 @@ class Board:
             watching = [connection for connection in self._watching[channel] if connection.open]
             self._watching[channel] = watching
             for connection in watching:
-                connection.stream({"ok": True, **self._shown(channel)})
+                with contextlib.suppress(RequestError):  # one that does not decode; its reader complains
+                    connection.stream({"ok": True, **self._shown(channel)})
 
     def tick(self) -> None:
         """Nothing to do."""
@@ -66,6 +68,8 @@ class Board:
             connection.reply({"ok": True, **answer})
         except RequestError as error:
             connection.refuse(str(error))
+        except Exception as error:  # a mistake in here must not end the recording
+            connection.refuse(f"the gateway cannot answer this: {type(error).__name__}: {error}")
 
     def _known(self, channel: str) -> str:
         if channel not in self._channels:

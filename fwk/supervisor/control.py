@@ -91,6 +91,10 @@ class Control:
         except RequestError as error:
             connection.refuse(str(error))
             return
+        except Exception as error:  # a mistake in here must not end the run
+            self._log.error(f"cannot answer {line[:200]!r}: {type(error).__name__}: {error}")
+            connection.refuse(f"the run cannot answer this: {type(error).__name__}: {error}")
+            return
         if answer is not None:
             connection.reply({"ok": True, **answer})
 
@@ -107,8 +111,9 @@ class Control:
         if isinstance(request, requests.SetSettings):
             return self._set(request, connection)
         if isinstance(request, requests.WatchSettings):
+            rows = self.settings.rows(request.names)
             self._watching.append((connection, request.names))
-            return {"settings": self.settings.rows(request.names)}
+            return {"settings": rows}
         return self._common(request, connection)
 
     def _run(self) -> dict[str, Any]:
@@ -181,7 +186,7 @@ class Control:
         return {"tick": self._loop.tick, "settings": [self._said(new) for new in found]}
 
     def _common(self, request: requests.Common, connection: Connection) -> dict[str, Any] | None:
-        component = self._plan.components[self._steering.components([request.name])[0]]
+        component = self._plan.components[self._steering.component(request.name)]
         view = component_view(self._plan, component, self._hosts.table[component.host])
         if request.verb == "state":
             return {"name": view["name"], "state": view["state"], "reason": view["reason"]}

@@ -19,6 +19,7 @@ from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t,
 REPEAT_US = 2_000  # a tick is repeated after so much more than the stage usually takes; doubles with each time
 REPEAT_LONGEST_US = 100_000
 LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
+WAITS_US = 200_000  # a stage that takes longer is said to wait
 STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 
@@ -64,6 +65,7 @@ class MainLoop:
         self._usual_us = [10 * REPEAT_US] * len(plan.stages)  # what a stage takes, smoothed
         self._stage = 0
         self._step = 0
+        self._began_us = 0  # wall time at which the stage began
         self._outstanding: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._events: list[sync.Event] = []
@@ -84,7 +86,9 @@ class MainLoop:
 
     @property
     def waits_for(self) -> list[str]:
-        """Names of the hosts that the running stage waits for."""
+        """Names of the hosts that the running stage waits for longer than usual."""
+        if monotonic_us() < self._began_us + WAITS_US:
+            return []
         return [self._hosts.table[index].name for index in sorted(self._outstanding)]
 
     def change(self, component: int, number: int, settings: str) -> None:
@@ -130,7 +134,7 @@ class MainLoop:
             self._outstanding = {entry.index for entry in members if entry.state == "running" and not entry.busy}
         self._event(tick_event_t.STAGE, stage)
         self._broadcast(members, time_us)
-        began_us = sent_us = monotonic_us()
+        began_us = sent_us = self._began_us = monotonic_us()
         first_us = REPEAT_US + 3 * self._usual_us[stage]
         repeat_us, look_us = first_us, began_us
         now_us = began_us

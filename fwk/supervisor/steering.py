@@ -35,6 +35,17 @@ class Steering:
                 raise RequestError(f"no component '{pattern}'; {nearest(pattern, names)}")
         return [index for index, name in enumerate(names) if any(matches(name, pattern) for pattern in patterns)]
 
+    def component(self, name: str) -> int:
+        """Index of the component of that very name.
+
+        Raises:
+            RequestError: there is none.
+        """
+        names = [component.name for component in self._plan.components]
+        if name not in names:
+            raise RequestError(f"no component '{name}'; {nearest(name, names)}")
+        return names.index(name)
+
     def hosts(self, action: Action, patterns: Sequence[str]) -> list[HostEntry]:
         """The processes concerned.
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from fwk.control.address import gateway_address, supervisor_address
+from fwk.control.client import RefusedError
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
 from tests.system.system_runs import BIN, PortBlock
@@ -39,6 +40,10 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     assert run.ask("period", name="r/counter")["period_us"] == 50_000
     assert run.ask("time_awake", name="r/counter")["awake_s"] > 0
     assert [each["setting"] for each in run.ask("parameters", name="r/counter")["parameters"]] == ["step", "hang"]
+    for verb, fields in (("kill", {"name": "r"}), ("watch_settings", {"names": ["r/none"]})):
+        with pytest.raises(RefusedError, match=r"no component 'r'|no setting 'r/none'"):
+            run.ask(verb, **fields)
+    run.ask("set", changes=["r/counter.step=2"])
     run.ask("kill", name="r/counter")
     assert run.component("r/counter")["state"] == "stopped"
     run.end()

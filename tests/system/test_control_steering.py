@@ -112,6 +112,7 @@ def test_a_vision_master_stays_as_long_as_it_has_users(run: Steered) -> None:
 def test_what_hangs_is_seen_and_stopped_while_the_loop_waits_for_it(run: Steered) -> None:
     with pytest.raises(ControlError, match=r"not answered within 0\.5 s"):
         run.ask("set", timeout_s=0.5, changes=["r/counter.hang=true"])
+    run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["r/counter"], "somebody it waits for")
     assert "waits for r/counter" in run.fwk("status")
     tick = run.tick
     assert "r/counter stopped" in run.fwk("stop", "r/counter")

@@ -103,7 +103,12 @@ def test_an_unknown_channel_is_refused_with_the_nearest(board: Board, connection
 
 def test_bytes_that_do_not_decode_are_an_answer_too(board: Board, connection: socket.socket) -> None:
     board.message("a/imu", imu(1.0, 1)[:-3], 0)
-    assert "do not decode" in ask(board, connection, verb="show", channel="a/imu")["error"]
+    assert "do not decode" in ask(board, connection, verb="watch", channel="a/imu")["error"]
+    board.message("a/imu", imu(1.0, 2), 0)
+    ask(board, connection, verb="watch", channel="a/imu")
+    board.message("a/imu", imu(1.0, 3)[:-3], 0)
+    board.message("a/imu", imu(2.0, 4), 0)
+    assert [each["sequence"] for each in heard(connection)] == [4]
 
 
 def test_long_bytes_are_only_counted() -> None:
