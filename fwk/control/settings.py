@@ -55,13 +55,13 @@ class RunSettings:
         Raises:
             RequestError: a pattern means nothing.
         """
-        found = [row for component in self._plan.components for row in self._rows_of(component)]
-        if not patterns:
-            return found
+        names = [pattern.partition(".")[0] for pattern in patterns] or ["*"]
+        concerned = [each for each in self._plan.components if any(matches(each.name, name) for name in names)]
+        found = [row for component in concerned for row in self._rows_of(component)]
         for pattern in patterns:
             if not any(_means(pattern, row) for row in found):
-                raise RequestError(f"no setting '{pattern}'; {self._nearest(pattern, found)}")
-        return [row for row in found if any(_means(pattern, row) for pattern in patterns)]
+                raise RequestError(f"no setting '{pattern}'; {self._nearest(pattern)}")
+        return [row for row in found if not patterns or any(_means(pattern, row) for pattern in patterns)]
 
     def changed(self, components: Sequence[int]) -> dict[str, str]:
         """Settings of these components that differ from the plan's: by name, as JSON."""
@@ -137,12 +137,13 @@ class RunSettings:
             for name, origin in self._origins[component.index].items()
         ]
 
-    def _nearest(self, pattern: str, rows: Sequence[dict[str, Any]]) -> str:
-        component, _, setting = pattern.partition(".")
-        own = [row["setting"] for row in rows if matches(row["component"], component)]
+    def _nearest(self, pattern: str) -> str:
+        name, _, setting = pattern.partition(".")
+        meant = [each for each in self._plan.components if matches(each.name, name)]
+        own = dict.fromkeys(dotted for each in meant for dotted in self._origins[each.index])
         if setting and own:
-            return nearest(setting, own)
-        return nearest(component, list(dict.fromkeys(row["component"] for row in rows)))
+            return nearest(setting, list(own))
+        return nearest(name, [each.name for each in self._plan.components if self._origins[each.index]])
 
 
 def _means(pattern: str, row: dict[str, Any]) -> bool:
@@ -176,6 +177,7 @@ def _value(values: Any, dotted: str) -> Any:
     return values
 
 
+@cache
 def _described(kind: type[Config] | None, dotted: str) -> dict[str, Any]:
     """Type and meaning of a setting; every setting can be edited."""
     annotation: Any = kind
