@@ -263,7 +263,7 @@ class Host:
         return Failure(f"{name}: {reason}")
 
     def _report(self) -> None:
-        self._report_us = monotonic_us() + REPORT_US
+        self._report_us = monotonic_us() + (READY_REPORT_MS * 1000 if self._answered[0] == 0 else REPORT_US)
         actual = actual_t()
         actual.run, actual.host, actual.incarnation = (
             self._assignment.run,
