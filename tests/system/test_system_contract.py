@@ -21,7 +21,7 @@ KILLS = 20
 
 
 def test_every_iteration_sees_what_the_contract_says(launch: Launch, folder: Path) -> None:
-    run = launch(*RUN, "--ticks", "40", env={"FWK_TEST_LOSS": "0.05"})
+    run = launch(*RUN, "--ticks", "40", env={"FWK_TEST_LOSS": "0.1"})
     assert run.wait() == 0, run.text
     recording = Recording(folder / "log.lcm")
     assert contradictions(recording) == []
