@@ -146,6 +146,7 @@ class Supervisor:
             self.log.error(f"{broken} while everything was being stopped")
         self._publish_status()
         after = self._hosts.failed_components()
+        self._status.complete(status)
         return status, [f"{name}: {reason}" for name, reason in after.items() if name not in before]
 
     def _done(self) -> bool:

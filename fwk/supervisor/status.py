@@ -47,6 +47,16 @@ class StatusReport:
         made.n = len(made.hosts)
         return made
 
+    def complete(self, status: status_t) -> None:
+        """Brings the figures of an earlier message up to what hosts said last; the states stay as they were then."""
+        for host, entry in zip(status.hosts, self._table, strict=True):
+            newest = {component.name: component for component in entry.components}
+            for component in host.components:
+                last = newest.get(component.name, component)
+                component.iterations, component.busy_us = last.iterations, last.busy_us
+                component.awake_us, component.worst_us = last.awake_us, last.worst_us
+                component.fetched, component.lost, component.strangers = last.fetched, last.lost, last.strangers
+
 
 def _host(entry: HostEntry) -> host_status_t:
     made = host_status_t()

@@ -27,7 +27,9 @@ Table = dict[str, dict[str, str]]
 
 def one_of_each_type() -> list[Entry]:
     """Channel `every/soccer.pose_t` and so on, three messages each."""
+    ours = {file.stem for file in (Path(__file__).parents[2] / "lcmtypes").glob("*.lcm")}
     types = [kind for kinds in by_fingerprint().values() for kind in kinds if has_header(kind)]
+    types = [kind for kind in types if type_name(kind).partition(".")[0] in ours]  # other tests know more types
     return [(f"every/{type_name(kind)}", kind().encode(), 1) for kind in types for _ in range(3)]
 
 
