@@ -65,7 +65,6 @@ class VisionMaster:
     def __init__(self, announcement: Writes[frame_t], ring: Ring) -> None:
         self.announcement = announcement
         self._ring = ring
-        self._number = 0
 
     def publish(self, pixels: Frame) -> None:
         """Puts a frame into the ring and announces it at the end of the iteration.
@@ -82,9 +81,8 @@ class VisionMaster:
         if self.announcement.pending >= SLOTS - 1:
             raise FrameError(f"{self.announcement.channel}: at most {SLOTS - 1} frames in one iteration")
         frame = self.announcement.value
-        self._number += 1
-        frame.frame = self._number
-        frame.slot = self._ring.put(self._number, np.ascontiguousarray(pixels))
+        frame.frame = self.announcement.sequence + self.announcement.pending + 1  # goes on when the master is restarted
+        frame.slot = self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
         frame.channels = pixels.shape[2] if pixels.ndim == 3 else 1
         frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
