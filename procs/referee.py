@@ -5,7 +5,7 @@ from fwk.aspects.logging import Logger
 from fwk.clock import Clock
 from fwk.component import Component
 from fwk.config import Config
-from lcmtypes.soccer import ball_placement_t, game_state_t, match_event_t, match_events_t
+from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, match_event_t, match_events_t
 from procs.behaviour.restarts import State, Team
 from procs.behaviour.rules import Referee as Whistle
 from procs.behaviour.rules import Rules, Sight
@@ -38,13 +38,18 @@ class Referee(Component):
     def loop(self) -> None:
         whistle = self._whistle
         whistle.rules = self.config
-        before = (whistle.state, whistle.stopped)
+        before, score = (whistle.state, whistle.stopped), dict(whistle.score)
         events = [
             _event(event) for report in self.match_events.fresh for event in report.events if event.kind in _KINDS
         ]
         ball = self.match_events.value
         whistle.step(self.clock.period_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events))
+        for team in whistle.score:
+            if whistle.score[team] > score[team]:
+                self._remember(True, team)
         if (whistle.state, whistle.stopped) != before or self.clock.tick == 1:
+            if whistle.stopped and whistle.state is not State.PLAY:
+                self._remember(False, whistle.team)
             self._announce()
         self._write_state()
         if whistle.placements != self._placed:
@@ -52,6 +57,12 @@ class Referee(Component):
             placement = self.ball_placement.value
             placement.placement_id, placement.x_m, placement.y_m = placement_id, *whistle.spot
             self.ball_placement.write()
+
+    def _remember(self, goal: bool, team: int) -> None:
+        event = game_event_t()
+        event.goal, event.state, event.team = goal, self._whistle.state, team
+        event.half, event.time_in_half_s = self._whistle.half, self._whistle.time_in_half_s
+        self.game_state.value.history.append(event)
 
     def _write_state(self) -> None:
         whistle, game = self._whistle, self.game_state.value

@@ -1,5 +1,6 @@
 """The score in words: one line for a running match, a few for one that has ended."""
 
+from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
@@ -61,4 +62,15 @@ def summary(newest: Newest) -> list[str]:
     leader = "cyan" if state.score_cyan > state.score_magenta else "magenta"
     over = state.state == game_state_t.FROZEN and state.half > 1
     verdict = "a draw" if state.score_cyan == state.score_magenta else f"{leader} {'wins' if over else 'leads'}"
-    return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}"]
+    return [score(state), f"{verdict} after {play_time(state.time_in_half_s)} of half {state.half}", *_events(state)]
+
+
+def _events(state: game_state_t) -> list[str]:
+    goals = [
+        f"{play_time(event.time_in_half_s)}{f' of half {event.half}' if state.half > 1 else ''} {TEAMS[event.team]}"
+        for event in state.history
+        if event.goal and event.team in TEAMS
+    ]
+    whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in state.history if not event.goal)
+    counted = [f"{name} {count}" for name, count in sorted(whistles.items(), key=lambda item: (-item[1], item[0]))]
+    return [f"{name}: {', '.join(items)}" for name, items in (("goals", goals), ("whistles", counted)) if items]

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t
 from procs.scoreboard import STATES, headline, play_time, summary
 
 
@@ -61,3 +61,18 @@ def test_after_the_final_whistle_somebody_has_won() -> None:
 
 def test_long_halves_keep_counting_minutes() -> None:
     assert play_time(6000.0) == "100:00"
+
+
+def test_the_summary_tells_the_goals_and_counts_the_whistles() -> None:
+    state = game_state_t()
+    state.half, state.score_magenta = 1, 1
+    for goal, kind, team, time_s in [
+        (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 0.0),
+        (True, game_state_t.PLAY, game_state_t.TEAM_MAGENTA, 19.4),
+        (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 19.4),
+        (False, game_state_t.CORNER_KICK, game_state_t.TEAM_CYAN, 40.0),
+    ]:
+        event = game_event_t()
+        event.goal, event.state, event.team, event.half, event.time_in_half_s = goal, kind, team, 1, time_s
+        state.history.append(event)
+    assert summary(lambda _: state)[2:] == ["goals: 00:19 magenta", "whistles: kick-off 2, corner kick 1"]
