@@ -72,6 +72,11 @@ def sequence_of(data: bytes) -> int:
     return int.from_bytes(data[16:24], "big", signed=True)
 
 
+def tick_of(data: bytes) -> int:
+    """Tick in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    return int.from_bytes(data[8:16], "big", signed=True)
+
+
 def type_name(message_type: type[Message]) -> str:
     """Name as in the .lcm files: `soccer.pose_t`."""
     return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"

@@ -3,24 +3,33 @@
 from collections import deque
 
 MESSAGES_MAX = 256
-BYTES_MAX = 8 << 20
+BYTES_MAX = 64 << 20
+TICKS = 17  # the recorder may be 16 ticks behind
 
 
 class History:
-    """The last messages of one channel by sequence number; always the newest, older ones as memory allows."""
+    """The last messages of one channel by sequence number.
+
+    Those of the running and the last tick are always kept: in lockstep nobody is further behind, except the recorder.
+    For it those of the last 17 ticks are kept, as long as they take no more than 64 MiB; always up to 256 messages.
+    """
 
     def __init__(self) -> None:
-        self._kept: deque[tuple[int, bytes]] = deque()
+        self._kept: deque[tuple[int, int, bytes]] = deque()
         self._bytes = 0
 
-    def add(self, sequence: int, data: bytes) -> None:
-        """Keeps a message."""
+    def add(self, tick: int, sequence: int, data: bytes) -> None:
+        """Keeps a message that was written in this tick, and drops what is too old."""
         kept = self._kept
-        kept.append((sequence, data))
+        kept.append((tick, sequence, data))
         self._bytes += len(data)
-        while len(kept) > MESSAGES_MAX or (self._bytes > BYTES_MAX and len(kept) > 1):
-            self._bytes -= len(kept.popleft()[1])
+        while self._spare(tick - kept[0][0]):
+            self._bytes -= len(kept.popleft()[2])
 
     def between(self, first: int, last: int) -> list[tuple[int, bytes]]:
         """The kept messages with these numbers, oldest first."""
-        return [(sequence, data) for sequence, data in self._kept if first <= sequence <= last]
+        return [(sequence, data) for _, sequence, data in self._kept if first <= sequence <= last]
+
+    def _spare(self, age_ticks: int) -> bool:
+        """Whether the oldest message can go."""
+        return (age_ticks > TICKS and len(self._kept) > MESSAGES_MAX) or (age_ticks > 1 and self._bytes > BYTES_MAX)

@@ -4,11 +4,13 @@ import itertools
 import socket
 
 from fwk.bus import wire
+from fwk.clock import sleep_s
 from fwk.messages import MessageError
 
 GROUP = "239.255.76.67"  # LCM's default group
 LOOPBACK = "127.0.0.1"
 BUFFER_BYTES = 4 << 20
+_BREATH_S = 0.001
 _IP_MULTICAST_ALL = 49  # Python has no name for it
 
 
@@ -44,6 +46,14 @@ class Sender:
         """Sends a message to everybody on `port` of the group."""
         self._send(channel, data, (GROUP, port))
 
+    def publish_slowly(self, channel: bytes, data: bytes, port: int) -> None:
+        """As `publish`, a fragment a millisecond: for who has no room for all fragments of a large message at once."""
+        first, *others = wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data)
+        self._put(first, (GROUP, port))
+        for datagram in others:
+            sleep_s(_BREATH_S)
+            self._put(datagram, (GROUP, port))
+
     def send(self, channel: bytes, data: bytes, port: int) -> None:
         """Sends a message to the one process that has `port`."""
         self._send(channel, data, (LOOPBACK, port))
@@ -64,7 +74,10 @@ class Sender:
 
     def _send(self, channel: bytes, data: bytes, address: tuple[str, int]) -> None:
         for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
-            try:
-                self.socket.sendto(datagram, address)
-            except OSError:  # a full buffer, a firewall's drop, nobody there: the same as a datagram lost on its way
-                self.refused += 1
+            self._put(datagram, address)
+
+    def _put(self, datagram: bytes, address: tuple[str, int]) -> None:
+        try:
+            self.socket.sendto(datagram, address)
+        except OSError:  # a full buffer, a firewall's drop, nobody there: the same as a datagram lost on its way
+            self.refused += 1

@@ -210,7 +210,7 @@ class Gateway:
             if number > expected:
                 self._tell_gone(fetch, expected, number - 1)
             if data and fetch.host != self._ports.gateway:
-                self._sender.publish(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
+                self._sender.publish_slowly(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
             expected = number + 1
 
     def _tell_gone(self, fetch: fetch_t, first: int, last: int) -> None:

@@ -6,9 +6,13 @@ from fwk.bus.history import History
 from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
-from fwk.messages import sequence_of
+from fwk.clock import monotonic_us
+from fwk.messages import sequence_of, tick_of
 from fwk.plan.model import ChannelPlan
 from lcmtypes.core import fetch_t, gone_t
+
+LARGE_BYTES = 64 << 10
+SHARED_US = 20_000
 
 
 class Outputs:
@@ -27,6 +31,7 @@ class Outputs:
         }
         self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
+        self._repeated: dict[int, tuple[int, int]] = {}  # by channel: a large message, until when it is not sent again
         self._sender = sender
         self._ports = ports
         self._local = local
@@ -37,7 +42,7 @@ class Outputs:
         for channel, data in written:
             index, name, port, history = self._written[channel]
             sequence = sequence_of(data)
-            history.add(sequence, data)
+            history.add(tick_of(data), sequence, data)
             box = self._local.get(channel)
             if box is not None:
                 box.put(sequence, data)
@@ -56,16 +61,26 @@ class Outputs:
         if fetch.first_sequence <= before:
             self._pass_on(fetch, min(fetch.last_sequence, before))
             fetch.first_sequence = before + 1
-        name, port, history = self._by_index[fetch.channel]
+        _, _, history = self._by_index[fetch.channel]
         kept = history.between(fetch.first_sequence, fetch.last_sequence)
-        for _, data in kept:
-            self._sender.publish(name, data, port)
+        for sequence, data in kept:
+            self._repeat(fetch.channel, sequence, data)
         oldest = kept[0][0] if kept else fetch.last_sequence + 1
         if oldest > fetch.first_sequence:
             gone = gone_t()
             gone.run, gone.channel = fetch.run, fetch.channel
             gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
+
+    def _repeat(self, channel: int, sequence: int, data: bytes) -> None:
+        """Sends a message again; a large one slowly, and once for all who ask at the same time."""
+        name, port, _ = self._by_index[channel]
+        repeated = self._repeated.get(channel)
+        if repeated and sequence == repeated[0] and monotonic_us() < repeated[1]:
+            return
+        self._sender.publish_slowly(name, data, port)
+        if len(data) > LARGE_BYTES:
+            self._repeated[channel] = (sequence, monotonic_us() + SHARED_US)
 
     def _pass_on(self, fetch: fetch_t, last_sequence: int) -> None:
         passed = fetch_t()

@@ -1,18 +1,36 @@
 """What a writer keeps for those who lost something."""
 
-from fwk.bus.history import BYTES_MAX, MESSAGES_MAX, History
+from fwk.bus.history import BYTES_MAX, MESSAGES_MAX, TICKS, History
 
 
-def test_old_messages_go_the_newest_stays() -> None:
+def numbers(history: History) -> list[int]:
+    return [sequence for sequence, _ in history.between(0, 1_000_000)]
+
+
+def test_old_messages_go_the_newest_stay() -> None:
     history = History()
     for sequence in range(1, MESSAGES_MAX + 11):
-        history.add(sequence, b"x")
-    kept = [sequence for sequence, _ in history.between(0, 10_000)]
-    assert kept == list(range(11, MESSAGES_MAX + 11))
+        history.add(sequence, sequence, b"x")
+    assert numbers(history) == list(range(11, MESSAGES_MAX + 11))
 
 
-def test_memory_is_bounded_but_one_message_is_always_kept() -> None:
+def test_however_many_nothing_goes_that_a_reader_in_lockstep_or_the_recorder_may_lack() -> None:
     history = History()
-    history.add(1, bytes(100))
-    history.add(2, bytes(BYTES_MAX + 1))
-    assert [sequence for sequence, _ in history.between(0, 10)] == [2]
+    for sequence in range(10_000):
+        history.add(1 + sequence // 500, sequence, b"x")  # 20 ticks
+    assert numbers(history) == list(range(9_500 - TICKS * 500, 10_000))
+
+
+def test_large_messages_stay_until_the_tick_after_the_next() -> None:
+    history = History()
+    for sequence in range(6):
+        history.add(1 + sequence // 2, sequence, bytes(BYTES_MAX // 2 + 1))
+    assert numbers(history) == [2, 3, 4, 5]
+
+
+def test_only_what_is_asked_for_is_given() -> None:
+    history = History()
+    for sequence in range(1, 6):
+        history.add(1, sequence, b"%d" % sequence)
+    assert history.between(2, 3) == [(2, b"2"), (3, b"3")]
+    assert history.between(7, 9) == []

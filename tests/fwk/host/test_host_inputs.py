@@ -1,10 +1,12 @@
 """What a host reads and sends, without its process: waiting, asking, answering, giving up."""
 
+import threading
 from collections.abc import Callable, Iterator
 from typing import Any
 
 import pytest
 
+from fwk.bus import sockets
 from fwk.bus.history import MESSAGES_MAX
 from fwk.bus.inbox import Inbox
 from fwk.bus.ports import Ports
@@ -14,7 +16,7 @@ from fwk.host.outputs import Outputs
 from fwk.messages import MessageError, sequence_of
 from lcmtypes.core import fetch_t, gone_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
-from tests.system.system_runs import PortBlock
+from tests.system.system_runs import PortBlock, pause
 
 RUN = 4711
 
@@ -109,9 +111,24 @@ def test_what_the_writer_no_longer_has_is_counted_as_lost(make: Make, monkeypatc
     pair = make()
     with monkeypatch.context() as storm:
         storm.setattr(pair.writer_socket, "publish", lambda *_: None)
-        pair.outputs.publish([(IMU, imu(number)) for number in range(1, MESSAGES_MAX + 11)])
+        pair.outputs.publish([(IMU, imu(number)) for number in range(1, MESSAGES_MAX + 11)])  # a tick each
     assert pair.take(MESSAGES_MAX + 10) == list(range(11, MESSAGES_MAX + 11))
     assert pair.inputs.lost == 10
+
+
+def test_a_large_message_comes_through_where_there_is_room_for_a_fragment_only(
+    make: Make, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sockets.multicast_receiver, "__defaults__", (1,))
+    pair = make()
+    large = imu(1) + bytes(1_000_000)
+    pair.outputs.publish([(IMU, large)])
+    moved = pair.inputs.advance([0], [1], [])
+    helper = threading.Thread(target=lambda: [pair.serve() for _ in range(20) if not pause(0.02)])
+    helper.start()
+    assert pair.inputs.wait(moved, lambda: True)
+    helper.join()
+    assert moved[0].take() == [large]
 
 
 def test_a_wait_ends_when_the_process_is_to_stop(make: Make) -> None:
