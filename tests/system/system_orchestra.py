@@ -68,7 +68,7 @@ class PlayerConfig(Config):
     trouble: str = ""
     """What goes wrong, see procs/trouble.py."""
     trouble_tick: int = 0
-    """When, if not in init or finalize."""
+    """From when on, if not in init or finalize."""
     trouble_stage: str = ""
     """In which stage; the first if empty."""
     trouble_again: bool = False
@@ -107,7 +107,7 @@ class Player(Component):
         for _ in range(self.rng.integers(self.config.bursts + 1)):
             self.burst.value.ballast = self.rng.bytes(self.config.ballast)
             self.burst.write()
-        if self.clock.tick == self.config.trouble_tick and self.config.trouble_stage in ("", self.clock.stage):
+        if self.clock.tick >= self.config.trouble_tick > 0 and self.config.trouble_stage in ("", self.clock.stage):
             self.make_trouble("loop")
 
     def finalize(self) -> None:

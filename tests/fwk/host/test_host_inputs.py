@@ -124,7 +124,13 @@ def test_a_large_message_comes_through_where_there_is_room_for_a_fragment_only(
     large = imu(1) + bytes(1_000_000)
     pair.outputs.publish([(IMU, large)])
     moved = pair.inputs.advance([0], [1], [])
-    helper = threading.Thread(target=lambda: [pair.serve() for _ in range(20) if not pause(0.02)])
+
+    def write_again() -> None:
+        for _ in range(20):
+            pause(0.02)
+            pair.serve()
+
+    helper = threading.Thread(target=write_again)
     helper.start()
     assert pair.inputs.wait(moved, lambda: True)
     helper.join()
