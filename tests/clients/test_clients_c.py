@@ -1,14 +1,18 @@
 """A C program made of nothing but our .lcm files reads the bus."""
 
+import os
 import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import lcm
 import pytest
 
+from fwk.record.compare import compare
 from tests.clients.clients_bus import Bus, process, program
 from tests.fwk.record.record_made import entry, world_model
+from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system
 ROOT = Path(__file__).parents[2]
@@ -56,3 +60,25 @@ def test_wrong_use_is_explained(ball: Callable[[], str], needs: Callable[..., No
     result = subprocess.run([ball()], capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert "usage: " in result.stderr
+
+
+def test_beside_a_running_robot_the_ball_is_printed_and_lcm_logger_hears_what_we_record(
+    ball: Callable[[], str], needs: Callable[..., None], tmp_path: Path
+) -> None:
+    needs("cc")
+    bus, ports = Bus(), PortBlock()
+    launch = [sys.executable, "-m", "fwk.cli.launch", "one-robot.yaml", "--ticks", "240", "--speed", "5", "--plain"]
+    where = ["--bus-port", str(ports.bus), "--set", f"public_url={bus.url}", "--record", str(tmp_path / "own")]
+    with process([ball(), "cyan1", bus.url, "200"]) as printing, bus.logger(tmp_path / "heard"):
+        run = subprocess.run(
+            [*launch, *where], cwd=tmp_path, env={**os.environ, "HOME": str(tmp_path)}, capture_output=True, text=True
+        )
+        assert run.returncode == 0, run.stdout + run.stderr
+        assert printing.wait(30) == 0
+        assert printing.stdout
+        lines = printing.stdout.read().splitlines()
+    ports.release()
+    assert len(lines) == 200
+    assert all(line.startswith("cyan1/world_model tick ") for line in lines)
+    assert any("ball at (" in line for line in lines)
+    assert compare(tmp_path / "own", tmp_path / "heard") is None
