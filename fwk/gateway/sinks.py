@@ -65,7 +65,6 @@ class TextLog:
 
     def __init__(self, path: Path) -> None:
         self._file = open(path, "a", buffering=1, encoding="utf-8")  # noqa: SIM115 - closed by close()
-        self._broken = False
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Adds a line of text; anything else is not its business."""
@@ -79,7 +78,7 @@ class TextLog:
                 f"{LEVEL_NAMES.get(line.level, '?')} {line.component} {place}: {line.text}\n"
             )
         except OSError:  # a full disk: the run goes on, the bus still has the lines
-            self._broken = True
+            return
 
     def tick(self) -> None:
         """Nothing to do."""
