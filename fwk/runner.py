@@ -45,6 +45,7 @@ class Runner:
         self.name = name
         self.readers: dict[str, Reads[Any]] = {}
         self.writers: dict[str, Writes[Any]] = {}
+        self.images: list[Image] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
@@ -102,7 +103,9 @@ class Runner:
             return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
         read = {channel: self.readers.setdefault(channel, Reads(channel, port.message_type)) for channel in channels}
         if port.kind == "image":
-            return Image(read[channels[0]], self._rings[channels[0]])
+            image = Image(read[channels[0]], self._rings[channels[0]], self.log)
+            self.images.append(image)
+            return image
         return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
 
 

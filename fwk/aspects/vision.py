@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fwk.aspects.blackboard import Reads, Writes
+from fwk.aspects.logging import Logger
 from lcmtypes.robot import frame_t
 
 SLOTS = 4
@@ -90,12 +91,17 @@ class VisionMaster:
 
 
 class Image:
-    """The vision aspect: the newest frame of one camera as of the iteration's beginning."""
+    """The vision aspect: the newest frame of one camera as of the iteration's beginning.
 
-    def __init__(self, announcement: Reads[frame_t], ring: Ring) -> None:
+    In lockstep it is always there. In real time one who comes very late may find it overwritten: that is counted in
+    `lost` and logged at the 1st, 10th, 100th time.
+    """
+
+    def __init__(self, announcement: Reads[frame_t], ring: Ring, log: Logger) -> None:
         self.announcement = announcement
         self.lost = 0  # frames that were overwritten before this component came to read them
         self._ring = ring
+        self._log = log
         self._number = -1
         self._pixels: Frame | None = None
 
@@ -120,5 +126,14 @@ class Image:
             )
             shape = (frame.height_px, frame.width_px, frame.channels)
             self._pixels = None if flat is None else flat.reshape(shape if frame.channels > 1 else shape[:2])
-            self.lost += flat is None and frame.frame > 0
+            if flat is None and frame.frame:
+                self._lose(frame.frame)
         return self._pixels
+
+    def _lose(self, number: int) -> None:
+        self.lost += 1
+        if str(self.lost).strip("0") == "1":
+            self._log.warning(
+                f"{self.announcement.channel}: frame {number} was overwritten before it was read: too late by "
+                f"{SLOTS - 1} frames or more ({self.lost} lost so far)"
+            )

@@ -272,8 +272,12 @@ class Host:
         )
         actual.components = [figures.message() for figures in self.figures.values()]
         actual.n = len(actual.components)
+        for component in actual.components:
+            if component.name in self._runners:
+                component.lost = sum(image.lost for image in self._runners[component.name].images)
         first = actual.components[0]
-        first.fetched, first.lost, first.strangers = self.inputs.fetched, self.inputs.lost, self._complaints.total
+        first.lost += self.inputs.lost
+        first.fetched, first.strangers = self.inputs.fetched, self._complaints.total
         self._sender.publish(b"fwk/actual", actual.encode(), self._ports.sync)
 
     def _send_log(self, line: log_t) -> None:

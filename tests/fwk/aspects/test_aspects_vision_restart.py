@@ -3,14 +3,16 @@
 import numpy as np
 
 from fwk.aspects.blackboard import Reads, Writes
+from fwk.aspects.logging import Logger
 from fwk.aspects.vision import Image, Ring, VisionMaster
+from fwk.clock import Clock
 from lcmtypes.robot import frame_t
 
 
 def test_the_first_frame_of_a_restarted_camera_is_not_taken_for_its_predecessors_first() -> None:
     ring = Ring.create("camera")
     announcements = Reads("r/image", frame_t)
-    image = Image(announcements, ring)
+    image = Image(announcements, ring, Logger("r/finder", Clock(), print))
     sequence = 0
     for shade in (10, 20):  # each time a new process, which goes on where the marks are
         writer = Writes("r/image", frame_t)
