@@ -12,6 +12,7 @@ from fwk.cli.arguments import SeveralNames
 NAMES = (
     "check",
     *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "config", "bb", "log", "send"),
+    "debug",
     *("replay", "compare", "log-info", "video", "spy", "doctor"),
 )
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""

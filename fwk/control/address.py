@@ -28,11 +28,11 @@ def running() -> list[int]:
     return sorted(int(name.removeprefix(mark)) for name in names if name.removeprefix(mark).isdecimal())
 
 
-def user_of(connection: socket.socket) -> int:
-    """Number of the user at the other end, as the kernel knows it."""
+def peer_of(connection: socket.socket) -> tuple[int, int]:
+    """Numbers of process and user at the other end, as the kernel knows them; process 0: it cannot be seen."""
     data = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
-    uid: int = _CREDENTIALS.unpack(data)[1]
-    return uid
+    pid, uid, _ = _CREDENTIALS.unpack(data)
+    return pid, uid
 
 
 def obeys(uid: int) -> bool:

@@ -37,6 +37,15 @@ class Steer(_Request):
     names: Names
 
 
+class TakePlace(_Request):
+    """The process that asks takes a component's place in the loop; answered at its turn, with what it needs."""
+
+    verb: Literal["take_place"]
+    name: str
+    held: bool = False
+    """Whether a debugger has it: then nobody hurries it."""
+
+
 class Settings(_Request):
     """Every effective setting with its origin, type and meaning."""
 
@@ -87,7 +96,7 @@ class Watch(_Request):
     channel: str
 
 
-SupervisorRequest = Run | Status | Steer | Settings | SetSettings | WatchSettings | Common
+SupervisorRequest = Run | Status | Steer | TakePlace | Settings | SetSettings | WatchSettings | Common
 GatewayRequest = Channels | Show | Watch
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
 to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])

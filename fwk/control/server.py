@@ -7,7 +7,7 @@ import socket
 from collections.abc import Callable
 from typing import Any
 
-from fwk.control.address import obeys, user_of
+from fwk.control.address import obeys, peer_of
 
 REQUEST_MAX = 64 << 10
 REPLIES_MAX = 8 << 20  # bytes that wait for one who does not read
@@ -25,6 +25,7 @@ class Connection:
     def __init__(self, connection: socket.socket, changed: Callable[["Connection"], None]) -> None:
         self.open = True
         self.skipped = 0  # messages of a stream that found no room
+        self.pid, self.uid = peer_of(connection)
         self._socket = connection
         self._changed = changed
         self._request = b""
@@ -140,12 +141,13 @@ class Server:
     def _accept(self) -> None:
         with contextlib.suppress(OSError):  # gone again, or no descriptor is left; the run goes on
             accepted, _ = self._listener.accept()
-            uid = user_of(accepted)
             connection = Connection(accepted, self._changed)
             self._connections[connection.fileno()] = connection
             self._epoll.register(connection.fileno(), select.EPOLLIN)
-            if not obeys(uid):
-                connection.refuse(f"user {uid} did not start this run; only its own user and root are obeyed")
+            if not obeys(connection.uid):
+                connection.refuse(
+                    f"user {connection.uid} did not start this run; only its own user and root are obeyed"
+                )
                 connection.close()
             elif len(self._connections) > CONNECTIONS_MAX:
                 connection.refuse(f"there are {CONNECTIONS_MAX} connections already; end one")

@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 
+from fwk.host.host import Failure
 from fwk.plan.model import ComponentPlan
 
 LEFT = 75
@@ -44,7 +45,10 @@ def check(request: DebugRequest) -> None:
 
 
 def debug(request: DebugRequest, serve: Callable[[], None]) -> int:
-    """Runs `serve` under the debugger, stopped where the component's first iteration begins; returns an exit code."""
+    """Runs `serve` under the debugger, stopped where the component's first iteration begins; returns an exit code.
+
+    What a component raises under pdb can be looked at before its process ends.
+    """
     if request.debugpy_port:
         return _debugpy(request, serve)
     file, line = _first_line_of_loop(request.component)
@@ -56,6 +60,11 @@ def debug(request: DebugRequest, serve: Callable[[], None]) -> int:
     try:
         debugger.run_quietly(serve)
     except bdb.BdbQuit:
+        return LEFT
+    except Failure as failure:
+        print(f"fwk: {failure}", flush=True)
+        print("fwk: you are where it was raised; 'q' gives the component back", flush=True)
+        debugger.look_back_at(failure.__cause__ or failure)
         return LEFT
     return 0
 
@@ -73,6 +82,10 @@ class _Pdb(pdb.Pdb):
             work()
         finally:
             sys.settrace(None)
+
+    def look_back_at(self, error: BaseException) -> None:
+        self.reset()
+        self.interaction(None, error.__traceback__)
 
     def set_continue(self) -> None:
         """Goes on; keeps tracing, so that Ctrl-C can stop again."""

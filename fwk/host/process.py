@@ -56,6 +56,10 @@ class StopSignal:
     def __call__(self) -> bool:
         return self._set
 
+    def on_interrupt(self, ends: bool) -> None:
+        """Whether Ctrl-C asks for the same, or for nothing."""
+        signal.signal(signal.SIGINT, self._on_signal if ends else signal.SIG_IGN)
+
     def _on_signal(self, _number: int, _frame: object) -> None:
         self._set = True
 

@@ -3,7 +3,7 @@
 import json
 import secrets
 import signal
-import sys
+from collections.abc import Mapping
 from functools import partial
 
 from fwk.aspects.logging import Logger
@@ -23,6 +23,7 @@ from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import Outcome, RunBroken, RunOptions
 from fwk.supervisor.pace import Pace
+from fwk.supervisor.places import Places
 from fwk.supervisor.status import StatusReport
 from fwk.supervisor.zygote import Zygote
 from lcmtypes.core import log_t, status_t
@@ -46,7 +47,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
     zygote = Zygote(plan, number, rings, debug)
     children = Children(plan, number, options)
-    supervisor = Supervisor(plan, options, number, zygote, debug)
+    supervisor = Supervisor(plan, options, number, zygote, rings, debug)
     reason, failed = supervisor.work(children)
     status, failures = supervisor.stop()
     if failures and not failed:
@@ -78,7 +79,13 @@ class Supervisor:
     """One run of a plan, from the first process to the last."""
 
     def __init__(
-        self, plan: Plan, options: RunOptions, number: int, zygote: Zygote, debug: DebugRequest | None = None
+        self,
+        plan: Plan,
+        options: RunOptions,
+        number: int,
+        zygote: Zygote,
+        rings: Mapping[str, Ring],
+        debug: DebugRequest | None = None,
     ) -> None:
         self._plan = plan
         self._options = options
@@ -92,12 +99,11 @@ class Supervisor:
         self._zygote = zygote
         self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log)
         self._debugged = self._hosts.table[debug.host] if debug else None
-        if self._debugged:
-            self._debugged.ready_timeout_us = sys.maxsize
         self.loop = MainLoop(
             plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
         )
-        self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log)
+        places = Places(plan, number, self._hosts, self._mailbox, rings)
+        self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log, places)
         self._status = StatusReport(number, self._hosts.table, self.loop, self.pace)
         self.wall_s = 0.0
 

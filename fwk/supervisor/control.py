@@ -17,6 +17,7 @@ from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import RunOptions
+from fwk.supervisor.places import Places
 from fwk.supervisor.steering import Steering
 from fwk.supervisor.table import HostEntry
 from fwk.supervisor.view import component_view
@@ -38,7 +39,14 @@ class Control:
     """The supervisor's ear."""
 
     def __init__(
-        self, plan: Plan, options: RunOptions, hosts: Hosts, loop: MainLoop, mailbox: Mailbox, log: Logger
+        self,
+        plan: Plan,
+        options: RunOptions,
+        hosts: Hosts,
+        loop: MainLoop,
+        mailbox: Mailbox,
+        log: Logger,
+        places: Places,
     ) -> None:
         self.settings = RunSettings(plan)
         self._plan = plan
@@ -46,6 +54,7 @@ class Control:
         self._hosts = hosts
         self._loop = loop
         self._log = log
+        self._places = places
         self._steering = Steering(plan, hosts.table)
         self._status = status_t()
         self._status_us = 0
@@ -106,6 +115,9 @@ class Control:
         if isinstance(request, requests.Steer):
             self._steer(request, connection)
             return None
+        if isinstance(request, requests.TakePlace):
+            self._take_place(request, connection)
+            return None
         if isinstance(request, requests.Settings):
             return {"settings": self.settings.rows(request.names)}
         if isinstance(request, requests.SetSettings):
@@ -158,6 +170,13 @@ class Control:
         names = [entry.name for entry in entries]
         self._log.info(f"asked to {request.action} {', '.join(names)}")
         self._wait(connection, lambda: self._settled(entries))
+
+    def _take_place(self, request: requests.TakePlace, connection: Connection) -> None:
+        component = self._steering.component(request.name)
+        host = self._plan.components[component].host
+        self._steering.check_needs(self._plan.hosts[host].components)
+        self._places.give(host, connection, request.held)
+        self._log.info(f"{request.name}: process {connection.pid}, started by hand, takes its place")
 
     def _settled(self, entries: list[HostEntry]) -> dict[str, Any] | None:
         if not all(entry.settled for entry in entries):

@@ -6,7 +6,9 @@ from functools import partial
 
 from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S, monotonic_us
+from fwk.host.debugger import LEFT
 from fwk.plan.model import Plan
+from fwk.supervisor.hand import Hand, Start
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import RunBroken
@@ -41,6 +43,7 @@ class Hosts:
         self._log = log
         self._stopping = False
         self._standins: dict[int, StandIn] = {}
+        self._hands: dict[int, Hand] = {}
         mailbox.on_actual = self._on_actual
         mailbox.watch(zygote.socket.fileno(), self._on_zygote)
 
@@ -56,7 +59,7 @@ class Hosts:
             self._mailbox.pump(100_000)
             now_us = monotonic_us()
             for entry in self.table:
-                if entry.state == "starting" and now_us - entry.since_us > entry.ready_timeout_us:
+                if entry.overdue(now_us):
                     entry.state = "failed"
                     entry.reason = f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{self._where(entry)}"
         failed = [f"{entry.name}: {entry.reason}" for entry in self.table if entry.state in ("failed", "waiting")]
@@ -69,7 +72,7 @@ class Hosts:
         for entry in self.table:
             if entry.state == "waiting" and now_us >= entry.restart_us and not self._stopping:
                 self._start(entry)
-            elif entry.state == "starting" and now_us - entry.since_us > entry.ready_timeout_us:
+            elif entry.overdue(now_us):
                 self._log.error(f"{entry.name}: not ready after {entry.ready_timeout_us / US_PER_S:g} s; killed")
                 entry.since_us = now_us
                 self.kill(entry)
@@ -88,8 +91,7 @@ class Hosts:
             elif entry.leaves:
                 entry.leaving(monotonic_us())
                 self.on_stopped(entry)
-                if entry.pid:
-                    self._zygote.signal(entry.pid, signal.SIGTERM)
+                self._signal(entry, signal.SIGTERM)
             elif entry.joins:
                 self._start(entry)
             elif not entry.wanted and entry.state in ("loaded", "waiting", "failed"):
@@ -98,8 +100,18 @@ class Hosts:
 
     def kill(self, entry: HostEntry) -> None:
         """Ends a process that cannot be asked any more."""
-        if entry.pid:
-            self._zygote.signal(entry.pid, signal.SIGKILL)
+        self._signal(entry, signal.SIGKILL)
+
+    def by_hand(self, entry: HostEntry) -> int:
+        """The process started by hand that has a host's place or waits for it; 0: none."""
+        return self._hands[entry.index].pid if entry.index in self._hands else 0
+
+    def hand_over(self, entry: HostEntry, hand: Hand) -> None:
+        """At the next boundary a process started by hand takes the place; when it has ended, the host comes back."""
+        self._hands[entry.index] = hand
+        hand.watch(partial(self._on_hand_ended, entry, hand))
+        entry.want_restart(monotonic_us())
+        self.asked.add(entry.index)
 
     @property
     def unsettled(self) -> bool:
@@ -117,7 +129,7 @@ class Hosts:
         killed = []
         for entry in self.table:
             if entry.alive and entry.pid:
-                self._zygote.signal(entry.pid, signal.SIGTERM)
+                self._signal(entry, signal.SIGTERM)
             elif entry.state == "waiting":
                 entry.state = "failed"
         deadline_us = monotonic_us() + STOP_GRACE_US
@@ -126,7 +138,7 @@ class Hosts:
         for entry in self.table:
             if entry.pid:
                 killed.append(entry.name)
-                self._zygote.signal(entry.pid, signal.SIGKILL)
+                self._signal(entry, signal.SIGKILL)
         deadline_us = monotonic_us() + STOP_GRACE_US
         while any(entry.pid for entry in self.table) and monotonic_us() < deadline_us:
             self._mailbox.pump(deadline_us - monotonic_us())
@@ -138,7 +150,26 @@ class Hosts:
             standin.close()
         incarnation = entry.starting(monotonic_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
-        self._zygote.start(entry.index, incarnation, sequences, settings, entry.fresh_code)
+        hand = self._hands.get(entry.index)
+        if hand:
+            entry.pid, entry.held = hand.pid, hand.held
+            hand.begin(Start(incarnation, sequences, settings))
+        else:
+            entry.held = incarnation == 1 and self._zygote.debugs(entry.index)
+            self._zygote.start(entry.index, incarnation, sequences, settings, entry.fresh_code)
+
+    def _signal(self, entry: HostEntry, number: int) -> None:
+        hand = self._hands.get(entry.index)
+        if hand and hand.pid == entry.pid:
+            hand.signal(number)
+        elif entry.pid:
+            self._zygote.signal(entry.pid, number)
+
+    def _on_hand_ended(self, entry: HostEntry, hand: Hand) -> None:
+        del self._hands[entry.index]
+        hand.close()
+        if entry.pid == hand.pid:
+            self._ended(entry, 0 if self._stopping else LEFT)
 
     def _where(self, entry: HostEntry) -> str:
         stuck = [item.name for item in entry.components if item.state == "init"]
@@ -171,7 +202,7 @@ class Hosts:
             if isinstance(event, Started):
                 entry.pid = event.pid
                 if entry.state == "stopping":  # asked to stop before there was a process to ask
-                    self._zygote.signal(event.pid, signal.SIGTERM)
+                    self._signal(entry, signal.SIGTERM)
                 Captured(event.output, self._mailbox, partial(self._say, self._log.info, entry.name))
                 Captured(event.errors, self._mailbox, partial(self._say, self._log.warning, entry.name))
             elif event.incarnation == entry.incarnation:
@@ -187,7 +218,8 @@ class Hosts:
             self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
         if not self._stopping and not asked:
             again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
-            self._log.error(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
+            log = self._log.info if code == LEFT else self._log.error
+            log(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
 
     def _say(self, log: Callable[[str], None], name: str, text: str) -> None:
         log(f"{name} printed: {text}")

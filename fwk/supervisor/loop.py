@@ -218,7 +218,8 @@ class MainLoop:
             return
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
-            self._log.warning(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
+            log = self._log.info if entry.held else self._log.warning
+            log(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
         elif (done.tick, done.stage) == (self.tick, self._stage) and done.host in self._outstanding:
             self._outstanding.discard(done.host)
             entry.seen = self._step
@@ -238,8 +239,11 @@ class MainLoop:
             if entry.index in self._outstanding:
                 entry.busy, self._owed[entry.index] = (self.tick, stage), self._told
                 entry.seen = self._step
-                self.late += 1
                 self._event(tick_event_t.LATE, entry.index)
+                if entry.held:
+                    self._log.info(f"{entry.name} is held by its debugger in tick {self.tick}; the loop goes on")
+                    continue
+                self.late += 1
                 self._log.warning(
                     f"{entry.name} is late: {self._plan.stages[stage]} of tick {self.tick} took longer than "
                     f"{self._stage_time_us / 1000:g} ms; the loop goes on without it"

@@ -1,12 +1,13 @@
 """The supervisor's view of the run, published twice a second."""
 
 from collections.abc import Sequence
+from copy import copy
 
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.table import HostEntry
-from lcmtypes.core import host_status_t, status_t
+from lcmtypes.core import component_state_t, host_status_t, status_t
 
 PERIOD_US = US_PER_S // 2
 
@@ -63,5 +64,13 @@ def _host(entry: HostEntry) -> host_status_t:
     made.host, made.pid, made.restarts = entry.index, entry.pid, entry.restarts
     made.state = "late" if entry.busy else entry.state
     made.components = list(entry.components)
+    if entry.held and entry.alive:
+        made.state, made.components = "held", [_held(component) for component in entry.components]
     made.n = len(made.components)
+    return made
+
+
+def _held(component: component_state_t) -> component_state_t:
+    made = copy(component)
+    made.state, made.reason = "held", component.reason or "a debugger has its process"
     return made

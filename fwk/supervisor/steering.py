@@ -58,7 +58,7 @@ class Steering:
         if action == "load":
             chosen = [index for index in with_needs(chosen, self._needs) if index in chosen or not self._runs(index)]
         elif action == "start":
-            self._check_needs(chosen)
+            self.check_needs(chosen)
         elif action == "unload":
             self._check_users(chosen)
         elif action == "reload":
@@ -87,7 +87,12 @@ class Steering:
     def _name(self, index: int) -> str:
         return self._plan.components[index].name
 
-    def _check_needs(self, chosen: Sequence[int]) -> None:
+    def check_needs(self, chosen: Sequence[int]) -> None:
+        """Whether everything runs that these components need.
+
+        Raises:
+            RequestError: something does not; says what to type.
+        """
         for index in chosen:
             missing = [each for each in sorted(self._needs[index]) if each not in chosen and not self._runs(each)]
             if missing:

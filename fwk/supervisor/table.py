@@ -55,6 +55,8 @@ class HostEntry:
     """Whether its processes import the application's modules anew, because their files changed."""
     changes: list[Change] = field(default_factory=list)
     """Settings that it has not taken over yet."""
+    held: bool = False
+    """Whether a debugger has its process: nobody hurries it."""
     started_with: int = 0
     """Newest tick whose changes of settings it was started with."""
 
@@ -65,6 +67,10 @@ class HostEntry:
     def alive(self) -> bool:
         """Whether there is a process."""
         return self.state in ("starting", "running")
+
+    def overdue(self, now_us: int) -> bool:
+        """Whether it should have become ready by now."""
+        return self.state == "starting" and not self.held and now_us - self.since_us > self.ready_timeout_us
 
     @property
     def expected(self) -> bool:
@@ -117,13 +123,13 @@ class HostEntry:
         self.incarnation += 1
         self.actual_run, self.changes = self.desired_run, []
         self.state, self.since_us, self.reason = "starting", now_us, ""
-        self.seen, self.busy, self.pid = 0, None, 0
+        self.seen, self.busy, self.pid, self.held = 0, None, 0, False
         self._starts_us.append(now_us)
         return self.incarnation
 
     def ended(self, code: int, now_us: int, stopping: bool) -> None:
         """Its process ended; decides whether and when it is started again."""
-        self.pid, self.busy, self.since_us, self.changes = 0, None, now_us, []
+        self.pid, self.busy, self.held, self.since_us, self.changes = 0, None, False, now_us, []
         if self.state == "stopping":
             self.state, self.restart_us = ("waiting" if self.wanted and not stopping else "stopped"), now_us
             return
@@ -136,8 +142,8 @@ class HostEntry:
         if not self.wanted:  # asked to stop, but ended before the loop came to it
             self.state = "stopped"
             return
-        if code == LEFT and not stopping:  # the debugger was left: on with it, and nobody counts it as a failure
-            self.state, self.restart_us, self.reason = "waiting", now_us, "its debugger was left"
+        if code == LEFT and not stopping:  # on with it, and nobody counts it as a failure
+            self.state, self.restart_us, self.reason = "waiting", now_us, "given back"
             return
         wanted = self.policy.when == "always" or (self.policy.when == "on-failure" and code != 0)
         if stopping or not wanted:

@@ -33,6 +33,8 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
 
 
 def _state(entry: HostEntry, told: component_state_t) -> str:
+    if entry.held and entry.alive:
+        return "held"
     if entry.busy:
         return "late"
     if entry.state in ("starting", "running", "stopping") and told.state:

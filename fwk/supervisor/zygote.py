@@ -61,6 +61,11 @@ class Zygote:
             run_forked(lambda stop: _Forker(plan, run, rings, other, debug).serve(stop))
         other.close()
         self.socket.setblocking(False)
+        self._debugged = debug.host if debug else None
+
+    def debugs(self, host: int) -> bool:
+        """Whether the first process of a host runs under a debugger."""
+        return host == self._debugged
 
     def start(
         self, host: int, incarnation: int, sequences: Mapping[str, int], settings: Mapping[str, str], fresh_code: bool

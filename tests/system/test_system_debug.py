@@ -1,93 +1,16 @@
 """One component under pdb in a real terminal: the world waits, and the recording shows nothing of it."""
 
-import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import pexpect
 import pytest
 
 from fwk.clock import sleep_s
 from fwk.record.compare import Comparison
 from tests.system.system_runs import PortBlock, write_files
+from tests.system.system_terminals import FILES, LOOP_LINE, Terminal
 
 pytestmark = pytest.mark.system
-
-FILES = {
-    "parts.py": '''
-"""A sensor, a world model and a thinker."""
-
-from pathlib import Path
-
-from fwk import Component, Reads, Writes
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-
-class Sensor(Component):
-    """Turns."""
-
-    stage = "sensor_acquire"
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += 0.1
-        self.imu.write()
-        Path("turns.txt").write_text(str(self.imu.value.header.tick))
-
-
-class WorldModel(Component):
-    """Believes."""
-
-    stage = "worldstate"
-    imu: Reads[imu_t]
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.pose.value.heading_rad = self.imu.value.heading_rad
-        self.pose.write()
-''',
-    "parts.yaml": """
-name: parts
-components:
-  r/sensor: {use: "parts:Sensor"}
-  r/world_model: {use: "parts:WorldModel"}
-""",
-}
-LOOP_LINE = 1 + next(n for n, line in enumerate(FILES["parts.py"].splitlines()) if "self.pose.value.heading" in line)
-COMMAND = [sys.executable, "-m", "fwk.cli.launch", "parts.yaml", "--ticks", "40", "--speed", "max"]
-
-
-class Terminal:
-    """`fwk-launch parts.yaml` in a terminal."""
-
-    def __init__(self, folder: Path, ports: PortBlock, *arguments: str) -> None:
-        self._folder = folder
-        where = ["--bus-port", str(ports.bus), "--set", f"public_url={ports.public_url}"]
-        command = [*COMMAND, *where, *arguments]
-        self.child = pexpect.spawn(command[0], command[1:], cwd=folder, timeout=30, encoding="utf-8")
-
-    def kill(self) -> None:
-        self.child.close(force=True)
-
-    def type(self, line: str) -> None:
-        self.child.sendline(line)
-
-    def prompt(self) -> str:
-        self.child.expect(r"\(Pdb\) ")
-        return str(self.child.before)
-
-    def end(self) -> int:
-        self.child.expect(pexpect.EOF)
-        self.child.close()
-        return int(self.child.exitstatus)
-
-    @property
-    def turns(self) -> int:
-        """Ticks that the sensor has run."""
-        file = self._folder / "turns.txt"
-        return int(file.read_text() or 0) if file.exists() else 0
-
 
 Open = Callable[..., Terminal]
 
@@ -98,7 +21,7 @@ def terminal(tmp_path: Path, ports: PortBlock) -> Iterator[Open]:
     opened: list[Terminal] = []
 
     def start(*arguments: str) -> Terminal:
-        opened.append(Terminal(tmp_path, ports, *arguments))
+        opened.append(Terminal.launch(tmp_path, ports, *arguments))
         return opened[-1]
 
     yield start

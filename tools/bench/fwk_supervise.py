@@ -78,7 +78,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     )
     zygote = Zygote(plan, number, {})
     children = Children(plan, number, options) if recorded else None
-    supervisor = MeasuredSupervisor(plan, options, number, zygote)
+    supervisor = MeasuredSupervisor(plan, options, number, zygote, {})
     if not recorded:
         supervisor.loop.recorded = _NEVER  # there is no gateway to wait for
     try:

@@ -174,7 +174,7 @@ def test_only_so_many_may_be_connected(listening: Server, connect: Connect) -> N
 
 
 def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(server, "user_of", lambda _: os.geteuid() + 1)
+    monkeypatch.setattr(server, "peer_of", lambda _: (os.getpid(), os.geteuid() + 1))
     connection = connect()
     connection.sendall(b'{"verb":"run"}\n')
     (answer,) = answers(listening, connection)
@@ -184,7 +184,7 @@ def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch:
 
 def test_the_kernel_says_who_asks() -> None:
     one, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
-    assert address.user_of(one) == os.geteuid()
+    assert address.peer_of(one) == (os.getpid(), os.geteuid())
     one.close()
     other.close()
     assert address.obeys(0)

@@ -1,0 +1,47 @@
+"""Work in a child of a command: whatever ends it, the terminal is as it was before."""
+
+import os
+import select
+import signal
+import sys
+import termios
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from fwk.host.process import StopSignal, die_with_parent, run_forked
+
+
+def run_guarded(work: Callable[[StopSignal], int], run: int) -> int:
+    """Runs `work` in a child as long as the process `run` lives; returns its exit code, or minus the signal."""
+    with _terminal_as_it_was():
+        parent = os.getpid()
+        pid = os.fork()
+        if pid == 0:
+            die_with_parent(parent)
+            run_forked(work)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the child's
+        _wait_for_either(pid, run)
+        os.kill(pid, signal.SIGKILL)  # nothing happens to one that has ended
+        return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+
+
+def _wait_for_either(*pids: int) -> None:
+    poller = select.poll()
+    for pid in pids:
+        try:
+            poller.register(os.pidfd_open(pid), select.POLLIN)
+        except ProcessLookupError:
+            return
+    poller.poll()
+
+
+@contextmanager
+def _terminal_as_it_was() -> Iterator[None]:
+    if not sys.stdin.isatty():
+        yield
+        return
+    before = termios.tcgetattr(sys.stdin)
+    try:
+        yield
+    finally:
+        termios.tcsetattr(sys.stdin, termios.TCSADRAIN, before)
