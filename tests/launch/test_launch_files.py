@@ -9,6 +9,7 @@ from fwk.plan.model import Plan
 
 FOLDER = Path(__file__).parents[2] / "launch"
 SYSTEMS = {"soccer.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
+TOOLS = {"vision.yaml"}
 PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml"}
 
 
@@ -17,7 +18,7 @@ def plan_of(file: str) -> Plan:
 
 
 def test_every_file_is_a_system_or_a_part_of_one() -> None:
-    assert {path.name for path in FOLDER.glob("*.yaml")} == set(SYSTEMS) | PARTS
+    assert {path.name for path in FOLDER.glob("*.yaml")} == set(SYSTEMS) | TOOLS | PARTS
 
 
 @pytest.mark.parametrize(("file", "robots"), SYSTEMS.items())
@@ -47,3 +48,10 @@ def test_only_cameras_and_nobody_who_plays_sees_the_truth() -> None:
     plan = plan_of("soccer.yaml")
     truth = next(channel for channel in plan.channels if channel.name == "world/ground_truth")
     assert {plan.components[index].name.rpartition("/")[2] for index in truth.readers} == {"camera"}
+
+
+def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:
+    plan = plan_of("vision.yaml")
+    camera, *detectors = plan.components
+    assert (camera.name, camera.module) == ("cyan1/camera", "procs.camera_driver")
+    assert [each.name for each in detectors] == ["cyan1/omni_ball", "cyan1/omni_field"]

@@ -5,50 +5,19 @@ import math
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
-from fwk.aspects.blackboard import Writes
-from fwk.clock import Clock
-from fwk.component import Component
-from fwk.testing import Bench, MemorySystem
+from fwk.testing import Bench
 from lcmtypes.robot import frame_t
-from lcmtypes.soccer import ground_truth_t, true_robot_t
+from lcmtypes.soccer import ground_truth_t
 from procs.camera import Camera
 from procs.omni_ball import OmniBall
 from procs.omni_field import OmniField
+from tests.procs.support_pictures import frame_of, robot, system
 
 ROOT = Path(__file__).parents[2]
-
-
-class World(Component):
-    """A ball rolls past two robots."""
-
-    stage = "pre_loop"
-    ground_truth: Writes[ground_truth_t]
-    clock: Clock
-
-    def loop(self) -> None:
-        truth = self.ground_truth.value
-        truth.robots = [robot("cyan1", -3.0, 2.0, 0.5), robot("magenta2", -1.0, 2.0, 0.0)]
-        truth.ball_x_m, truth.ball_y_m = -2.0 + 0.05 * self.clock.tick, 3.0
-        self.ground_truth.write()
-
-
-def robot(name: str, x_m: float, y_m: float, heading_rad: float) -> true_robot_t:
-    made = true_robot_t()
-    made.name, made.x_m, made.y_m, made.heading_rad = name, x_m, y_m, heading_rad
-    return made
-
-
-def system(seed: int = 1, **camera: Any) -> MemorySystem:
-    return MemorySystem(
-        {"world/world": World, "cyan1/camera": Camera, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField},
-        settings={"cyan1/camera": camera},
-        seed=seed,
-    )
 
 
 def test_from_truth_to_percepts() -> None:
@@ -165,14 +134,6 @@ def test_driving_shakes_the_picture_more_than_standing() -> None:
 
     assert spread_px(0.0) == pytest.approx(0.2, rel=0.1)
     assert spread_px(2.0) == pytest.approx(0.8, rel=0.1)
-
-
-def frame_of(run: MemorySystem) -> Any:
-    """The pixels of the newest frame, as the detectors got them."""
-    if not run.ticks:
-        run.tick()
-    image: Any = run.runners["cyan1/omni_ball"].component
-    return image.image.pixels
 
 
 def digest(seed: int) -> str:

@@ -1,0 +1,133 @@
+"""Recorded pictures by number: frames of a video file, or the pictures in a folder."""
+
+import re
+from pathlib import Path
+from typing import Protocol
+
+import cv2
+import numpy as np
+
+from procs.vision.colours import Picture
+
+PICTURES = (".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".webp")
+
+
+class SourceError(Exception):
+    """Pictures cannot be had; says from where and why, and what would be right."""
+
+
+class Recorded(Protocol):
+    """Pictures that are the same whenever they are asked for."""
+
+    def picture(self, number: int) -> Picture | None:
+        """Picture `number`, from 0; None after the last.
+
+        Raises:
+            SourceError: it is damaged.
+        """
+
+    @property
+    def count(self) -> int:
+        """How many there are; 0: not known before the last was seen, or no end."""
+
+    def close(self) -> None:
+        """No more pictures are wanted."""
+
+
+class Folder:
+    """The picture files of a folder in the order of their names, in which numbers count as numbers: 2 before 10.
+
+    Raises:
+        SourceError: there are none.
+    """
+
+    def __init__(self, path: Path) -> None:
+        files = [file for file in path.iterdir() if file.suffix.lower() in PICTURES]
+        self._files = sorted(files, key=lambda file: _natural(file.name))
+        if not files:
+            raise SourceError(f"'{path}': no pictures in this folder; they end in {', '.join(PICTURES)}")
+
+    def picture(self, number: int) -> Picture | None:
+        if number >= len(self._files):
+            return None
+        pixels = cv2.imread(str(self._files[number]), cv2.IMREAD_COLOR)
+        if pixels is None:
+            raise SourceError(f"'{self._files[number]}': no picture that can be read; is it damaged?")
+        return np.asarray(pixels, np.uint8)
+
+    @property
+    def count(self) -> int:
+        return len(self._files)
+
+    def close(self) -> None:
+        """Nothing is open."""
+
+
+class Video:
+    """The frames of a video file, counted as they are decoded: jumps in the file would not be exact.
+
+    Raises:
+        SourceError: it cannot be read.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self._next = 0
+        self._count = 0
+        self._capture = self._open()
+
+    def picture(self, number: int) -> Picture | None:
+        if self._count and number >= self._count:
+            return None
+        if number < self._next:
+            self._capture.release()
+            self._capture, self._next = self._open(), 0
+        while self._next < number:
+            if not self._capture.grab():
+                self._count = self._next
+                return None
+            self._next += 1
+        there, pixels = self._capture.read()
+        if not there:
+            self._count = self._next
+            return None
+        self._next += 1
+        return np.asarray(pixels, np.uint8)
+
+    @property
+    def count(self) -> int:
+        return self._count
+
+    def close(self) -> None:
+        self._capture.release()
+
+    def _open(self) -> cv2.VideoCapture:
+        # One thread: several robots share few cores.
+        capture = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
+        if not capture.isOpened() or not capture.get(cv2.CAP_PROP_FRAME_WIDTH):
+            raise SourceError(f"'{self._path}': no video that can be read; is it whole, and of a known kind?")
+        return capture
+
+
+class Endless:
+    """Recorded pictures that begin again after the last."""
+
+    def __init__(self, pictures: Recorded) -> None:
+        self._pictures = pictures
+
+    def picture(self, number: int) -> Picture | None:
+        if self._pictures.count:
+            number %= self._pictures.count
+        found = self._pictures.picture(number)
+        return found if found is not None or not self._pictures.count else self.picture(number)
+
+    @property
+    def count(self) -> int:
+        return 0
+
+    def close(self) -> None:
+        self._pictures.close()
+
+
+def _natural(name: str) -> list[tuple[int, str]]:
+    return [(int(part), "") if part.isdigit() else (-1, part) for part in re.split(r"(\d+)", name)]

@@ -1,0 +1,80 @@
+"""The match's detectors on recorded pictures, in a real run: `fwk-launch vision.yaml`."""
+
+import signal
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.procs.support_pictures import simulated, write_folder, write_video
+from tests.system.conftest import Launch
+from tests.system.control_system import Steered
+from tests.system.system_logs import Recording, difference
+from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock
+
+pytestmark = pytest.mark.system
+
+TICKS = 12
+
+
+@pytest.fixture(scope="module")
+def film(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, dict[str, list[bytes]]]:
+    """A folder and a video of what the simulated camera saw, and what its detectors said."""
+    pictures, live = simulated(TICKS)
+    folder = tmp_path_factory.mktemp("film")
+    return write_folder(folder / "pictures", pictures), write_video(folder / "film.mp4", pictures), live.sent
+
+
+def source(path: Path) -> tuple[str, str]:
+    return "--set", f"cyan1/camera.source={path}"
+
+
+def test_detectors_say_of_a_folder_what_they_said_of_the_camera(
+    launch: Launch, film: tuple[Path, Path, dict[str, list[bytes]]], tmp_path: Path
+) -> None:
+    folder, _, said = film
+    run = launch("vision.yaml", *source(folder), "--ticks", str(TICKS), "--speed", "max", "--record", "a.lcm")
+    assert run.wait() == 0, run.text
+    recording = Recording(tmp_path / "a.lcm")
+    for channel in ("cyan1/ball_percept", "cyan1/line_points", "cyan1/obstacle_percepts"):
+        assert recording.messages[channel] == said[channel]
+    verified = subprocess.run(
+        [str(BIN / "fwk"), "replay", "a.lcm", "--verify"], cwd=tmp_path, capture_output=True, timeout=TIMEOUT_S
+    )
+    assert verified.returncode == 0, verified
+
+
+def test_a_video_gives_the_same_messages_in_every_process_layout(
+    launch: Launch, film: tuple[Path, Path, dict[str, list[bytes]]], tmp_path: Path
+) -> None:
+    for hosting in ("process", "single"):
+        run = launch(
+            *("vision.yaml", *source(film[1]), "--ticks", str(TICKS + 3), "--speed", "max"),
+            *("--hosting", hosting, "--record", f"{hosting}.lcm"),
+        )
+        assert run.wait() == 0, run.text
+        assert f"film.mp4 has ended after {TICKS} pictures; no more frames" in run.text
+    assert difference(tmp_path / "process.lcm", tmp_path / "single.lcm") == ""
+    percepts = Recording(tmp_path / "single.lcm").decoded("cyan1/ball_percept")
+    assert [percept.visible for percept in percepts] == [True] * TICKS
+
+
+def test_a_restarted_driver_goes_on_with_the_picture_of_its_tick(
+    launch: Launch, film: tuple[Path, Path, dict[str, list[bytes]]], ports: PortBlock, tmp_path: Path
+) -> None:
+    looping = ("--set", "cyan1/camera.at_end=loop")
+    run = Steered(launch("vision.yaml", *source(film[1]), *looping, "--record", "a.lcm"), ports)
+    run.steer("restart", "cyan1/camera")
+    run.ticks_pass(TICKS)
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    percepts = Recording(tmp_path / "a.lcm").decoded("cyan1/ball_percept")
+    assert len(percepts) > TICKS
+    places = {(each.header.tick - 1) % TICKS: (each.x_m, each.y_m) for each in percepts}
+    assert all(places[(each.header.tick - 1) % TICKS] == (each.x_m, each.y_m) for each in percepts)
+
+
+def test_a_missing_source_is_named_and_nothing_starts(launch: Launch) -> None:
+    run = launch("vision.yaml", "--set", "cyan1/camera.source=/dev/video99")
+    assert run.wait() == 1, run.text
+    assert "cyan1/camera: SourceError: '/dev/video99': No such file or directory; video devices" in run.text
