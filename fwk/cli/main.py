@@ -11,7 +11,7 @@ from fwk.cli.arguments import SeveralNames
 
 NAMES = (
     "check",
-    *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "config", "bb", "log", "send"),
+    *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "kill", "config", "bb", "log", "send"),
     "debug",
     *("replay", "compare", "log-info", "video", "spy", "doctor"),
 )

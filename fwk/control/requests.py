@@ -8,7 +8,7 @@ from typing import Annotated, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
 
 R = TypeVar("R")
-Action = Literal["start", "stop", "restart", "reload", "load", "unload"]
+Action = Literal["start", "stop", "restart", "reload", "load", "unload", "kill"]
 Names = Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=1000)]
 
 
@@ -35,6 +35,8 @@ class Steer(_Request):
     verb: Literal["steer"]
     action: Action
     names: Names
+    force: bool = False
+    """Of `unload`: who needs the components is unloaded too."""
 
 
 class TakePlace(_Request):

@@ -23,6 +23,7 @@ from fwk.host.outputs import Outputs
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
 from fwk.plan.model import ComponentPlan, Plan
+from fwk.plan.starting import start_order
 from fwk.runner import Runner, Surroundings
 from lcmtypes.core import actual_t, change_t, done_t, fetch_t, gone_t, log_t, tick_t
 
@@ -121,7 +122,8 @@ class Host:
             self._report()
 
     def _init(self) -> None:
-        for plan in self._own:
+        for index in start_order(self._plan.components, [plan.index for plan in self._own]):
+            plan = self._plan.components[index]
             self.figures[plan.name].state = "init"
             self._report()
             with self._guard(plan.name, "init"):

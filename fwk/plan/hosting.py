@@ -1,6 +1,6 @@
 """Shares components out to processes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Literal
 
 from fwk.plan.model import HostPlan
@@ -9,15 +9,17 @@ Hosting = Literal["process", "robot", "single"]
 ALL = "all"
 
 
-def share_out(names: Sequence[str], hosting: Hosting, groups: Mapping[str, str]) -> tuple[HostPlan, ...]:
+def share_out(
+    names: Sequence[str], hosting: Hosting, groups: Mapping[str, str], later: Collection[str] = ()
+) -> tuple[HostPlan, ...]:
     """Hosts in the order of their first component.
 
     `process`: one a component, unless `groups` (component to group) says otherwise; `robot`: one a namespace; `single`:
-    one for all.
+    one for all. Those of `later` do not start with the run, so they keep processes of their own.
     """
     members: dict[str, list[int]] = {}
     for index, name in enumerate(names):
-        members.setdefault(_host(name, hosting, groups), []).append(index)
+        members.setdefault(_host(name, "process" if name in later else hosting, groups), []).append(index)
     return tuple(HostPlan(index, host, tuple(inside)) for index, (host, inside) in enumerate(members.items()))
 
 

@@ -12,11 +12,12 @@ from fwk.plan.files import Files, find_launch_file, lay_over, read_files
 from fwk.plan.folders import folders_of, join
 from fwk.plan.hosting import Hosting, share_out
 from fwk.plan.model import ComponentPlan, Plan, RestartPolicy
-from fwk.plan.needs import needs_of
+from fwk.plan.needs import check_left_out, granted_by, needs_of
 from fwk.plan.overrides import overrides
 from fwk.plan.resolve import Resolved, add_settings, resolve
 from fwk.plan.selection import chosen, groups_of
 from fwk.plan.stages import stages_of
+from fwk.plan.starting import check_groups, check_processes, check_starts
 from fwk.plan.surroundings import function_of, last, merged, outside_of, public_url_of
 from fwk.plan.wiring import Wiring, wire
 
@@ -79,17 +80,23 @@ class _Loading:
         components = resolve(files, asked, stages, self.folders, problems)
         outside = outside_of(files, problems)
         whole = self._wire(components, outside, files.may_hide)
-        needs = needs_of(asked, components, whole, files, problems)
+        granted = granted_by([each.wish for each in components], whole)
+        needs = needs_of(asked, granted, files, problems)
+        check_starts(asked, needs, problems)
         names = [each.name for each in asked]
-        groups = groups_of(names, *merged(files, "hosts"), problems)
+        said, places = merged(files, "hosts")
+        groups = groups_of(names, said, places, problems)
+        check_groups(asked, groups, places, problems)
         kept = set(chosen(names, options.only, options.without, problems))
+        check_left_out(names, kept, granted, options.without, problems)
         shared = self._shared()
         problems.stop_if_any()
         if len(kept) < len(components):
             # The whole has been found right, so a writer that is missing now was left out on purpose.
             components = [each for each in components if each.asked.name in kept]
             whole = self._wire(components, outside, lambda _: True)
-        hosts = share_out([each.asked.name for each in components], options.hosting, groups)
+        later = {each.name for each in asked if not each.entry.start}
+        hosts = share_out([each.asked.name for each in components], options.hosting, groups, later)
         host_of = {member: host.index for host in hosts for member in host.components}
         made = Plan(
             stages=stages,
@@ -100,6 +107,7 @@ class _Loading:
             **shared,
         )
         self._check_ports(made)
+        check_processes(made.hosts, made.components, asked, problems)
         problems.stop_if_any()
         return made
 
@@ -155,6 +163,7 @@ def _component_plans(
             restart=RestartPolicy(**each.asked.entry.restart.model_dump()),
             ready_timeout_s=each.asked.entry.ready_timeout_s,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
+            start=each.asked.entry.start,
         )
         for index, each in enumerate(components)
     )

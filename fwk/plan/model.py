@@ -39,7 +39,9 @@ class ComponentPlan:
     restart: RestartPolicy = RestartPolicy()
     ready_timeout_s: float = 20.0
     needs: tuple[int, ...] = ()
-    """Indices of components that have to be ready before this one starts."""
+    """Indices of components that have to be ready before this one starts, whoever grants it an aspect among them."""
+    start: bool = True
+    """Whether it starts with the run; otherwise it waits until somebody asks for it."""
 
     @property
     def namespace(self) -> str:

@@ -1,35 +1,51 @@
-"""The order in which components start: who needs whom, and the ring that must not be in it."""
+"""Who needs whom: what the launch file says, who grants an aspect, and the ring that must not be in it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from fwk.plan.errors import Problems
 from fwk.plan.expand import Asked
 from fwk.plan.files import Files
 from fwk.plan.model import NOBODY
-from fwk.plan.resolve import Resolved
-from fwk.plan.selection import nearest
+from fwk.plan.selection import matches, nearest
 from fwk.plan.source import Node
-from fwk.plan.wiring import Wiring
+from fwk.plan.wiring import Wiring, Wish
 
 Needs = dict[str, list[str]]
 """Component to the components it needs."""
 
 
-def needs_of(
-    asked: Sequence[Asked], components: Sequence[Resolved], wiring: Wiring, files: Files, problems: Problems
-) -> Needs:
-    """Who needs whom: as the files say, and whoever looks at images needs their camera."""
-    needs = _said(asked, files, problems)
-    for each, ports in zip(components, wiring.ports, strict=True):
-        looked_at = {name for port in each.declaration.ports if port.kind == "image" for name in ports[port.attribute]}
+def granted_by(wishes: Sequence[Wish], wiring: Wiring) -> Needs:
+    """From whom each component gets an aspect: the vision masters of the images that it looks at."""
+    found: Needs = {}
+    for wish, ports in zip(wishes, wiring.ports, strict=True):
+        images = {name for port in wish.declaration.ports if port.kind == "image" for name in ports[port.attribute]}
         for channel in wiring.channels:
-            if channel.name in looked_at and channel.writer != NOBODY:
-                needs.setdefault(each.asked.name, []).append(components[channel.writer].asked.name)
+            if channel.name in images and channel.writer != NOBODY:
+                found.setdefault(wish.name, []).append(wishes[channel.writer].name)
+    return found
+
+
+def needs_of(asked: Sequence[Asked], granted: Needs, files: Files, problems: Problems) -> Needs:
+    """Who needs whom: as the files say, and whoever grants an aspect."""
+    needs = _said(asked, files, problems)
+    for name, others in granted.items():
+        needs.setdefault(name, []).extend(others)
     if around := ring(needs):
         place = next(each.node.at("needs").place for each in asked if each.name == around[0])
         text = f"components need each other in a ring: {' -> '.join(around)}; leave one 'needs' out"
         problems.add(place, around[0], text)
     return {name: list(dict.fromkeys(others)) for name, others in needs.items()}
+
+
+def check_left_out(
+    names: Sequence[str], kept: Collection[str], granted: Needs, without: Sequence[str], problems: Problems
+) -> None:
+    """No component is run without those that grant it an aspect."""
+    for name in names:
+        for other in granted.get(name, ()):
+            if name in kept and other not in kept:
+                option = "--without" if any(matches(other, pattern) for pattern in without) else "--only"
+                problems.add(option, name, f"it cannot do without {other}, which is left out; leave out both or none")
 
 
 def _said(asked: Sequence[Asked], files: Files, problems: Problems) -> Needs:
@@ -48,7 +64,7 @@ def _said(asked: Sequence[Asked], files: Files, problems: Problems) -> Needs:
 
 
 def ring(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """A ring of components that wait for each other, first and last the same; empty if there is none."""
+    """A ring of those that wait for each other, first and last the same; empty if there is none."""
     done: set[str] = set()
     for start in needs:
         found = _from(start, needs, done, [])

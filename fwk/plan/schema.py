@@ -58,6 +58,8 @@ class ComponentEntry(_Entry):
     """Stages, where they are other than the class says."""
     needs: Words = []
     """Components that have to be ready before this one starts."""
+    start: bool = True
+    """Whether it starts with the run."""
     restart: RestartEntry = RestartEntry()
     ready_timeout_s: float = Field(20.0, gt=0.0)
 

@@ -163,10 +163,12 @@ class Control:
         return [component_view(self._plan, each, self._hosts.table[each.host]) for each in components]
 
     def _steer(self, request: requests.Steer, connection: Connection) -> None:
-        entries = self._steering.hosts(request.action, request.names)
+        entries = self._steering.hosts(request.action, request.names, request.force)
         for entry in entries:
             self._steering.wish(request.action, entry, monotonic_us())
             self._hosts.asked.add(entry.index)
+            if request.action == "kill":
+                self._hosts.kill(entry)
         names = [entry.name for entry in entries]
         self._log.info(f"asked to {request.action} {', '.join(names)}")
         self._wait(connection, lambda: self._settled(entries))
@@ -182,7 +184,8 @@ class Control:
         if not all(entry.settled for entry in entries):
             return None
         states = [{"name": entry.name, "state": entry.state, "reason": entry.reason} for entry in entries]
-        return {"tick": self._loop.tick, "processes": states}
+        stopped = [entry for entry in entries if entry.state == "stopped"]
+        return {"tick": self._loop.tick, "processes": states, "left_without": self._steering.left_without(stopped)}
 
     def _set(self, request: requests.SetSettings, connection: Connection) -> dict[str, Any] | None:
         found = self.settings.check(request.changes)
@@ -216,7 +219,7 @@ class Control:
         if request.verb == "parameters":
             rows = self.settings.rows([component.name]) if component.config else []
             return {"name": view["name"], "parameters": rows}
-        self._steer(requests.Steer(verb="steer", action="stop", names=[component.name]), connection)
+        self._steer(requests.Steer(verb="steer", action="kill", names=[component.name]), connection)
         return None
 
     def _wait(self, connection: Connection, happened: Callable[[], dict[str, Any] | None]) -> None:

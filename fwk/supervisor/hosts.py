@@ -19,6 +19,7 @@ from fwk.supervisor.zygote import Started, Zygote
 from lcmtypes.core import actual_t
 
 STOP_GRACE_US = 3 * US_PER_S
+WAITS_US = US_PER_S // 2  # who waits longer for another is told
 
 
 class StartFailure(Exception):  # noqa: N818 - what happened to the run
@@ -26,7 +27,10 @@ class StartFailure(Exception):  # noqa: N818 - what happened to the run
 
 
 class Hosts:
-    """All host processes, by index."""
+    """All host processes, by index.
+
+    A process is started when those that it needs run. One that they will not come back for fails.
+    """
 
     def __init__(self, plan: Plan, zygote: Zygote, ledger: Ledger, mailbox: Mailbox, log: Logger) -> None:
         self.table: list[HostEntry] = host_table(plan)
@@ -42,6 +46,7 @@ class Hosts:
         self._mailbox = mailbox
         self._log = log
         self._stopping = False
+        self._told: set[int] = set()  # hosts that were said to wait for others
         self._standins: dict[int, StandIn] = {}
         self._hands: dict[int, Hand] = {}
         mailbox.on_actual = self._on_actual
@@ -53,8 +58,10 @@ class Hosts:
         Raises:
             StartFailure: some are not, with the reasons.
         """
+        now_us = monotonic_us()
         for entry in self.table:
-            self._start(entry)
+            entry.since_us = now_us
+        self._start_ready("loaded")
         while any(entry.state == "starting" for entry in self.table) and not interrupted():
             self._mailbox.pump(100_000)
             now_us = monotonic_us()
@@ -62,17 +69,17 @@ class Hosts:
                 if entry.overdue(now_us):
                     entry.state = "failed"
                     entry.reason = f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{self._where(entry)}"
-        failed = [f"{entry.name}: {entry.reason}" for entry in self.table if entry.state in ("failed", "waiting")]
+            self._start_ready("loaded")
+        failed = [entry for entry in self.table if entry.state in ("failed", "waiting")]
         if failed:
-            raise StartFailure("\n".join(failed))
+            failed += [entry for entry in self.table if entry.state == "loaded"]
+            raise StartFailure("\n".join(f"{entry.name}: {entry.reason}" for entry in failed))
 
     def maintain(self) -> None:
         """Starts hosts again whose time has come; gives up on those that do not become ready."""
         now_us = monotonic_us()
         for entry in self.table:
-            if entry.state == "waiting" and now_us >= entry.restart_us and not self._stopping:
-                self._start(entry)
-            elif entry.overdue(now_us):
+            if entry.overdue(now_us):
                 self._log.error(f"{entry.name}: not ready after {entry.ready_timeout_us / US_PER_S:g} s; killed")
                 entry.since_us = now_us
                 self.kill(entry)
@@ -80,6 +87,7 @@ class Hosts:
                 self._log.warning(f"{entry.name}: did not stop when asked; killed")
                 entry.since_us = now_us
                 self.kill(entry)
+        self._start_ready("waiting")
 
     def steer(self) -> None:
         """Between two ticks: what is asked to leave the loop leaves it, what is asked to join it is started."""
@@ -93,10 +101,12 @@ class Hosts:
                 self.on_stopped(entry)
                 self._signal(entry, signal.SIGTERM)
             elif entry.joins:
-                self._start(entry)
+                if entry.state != "waiting" or entry.restart_us > monotonic_us():
+                    entry.waits(monotonic_us())
             elif not entry.wanted and entry.state in ("loaded", "waiting", "failed"):
                 entry.state, entry.reason = "stopped", ""
                 self.on_stopped(entry)
+        self._start_ready("waiting")
 
     def kill(self, entry: HostEntry) -> None:
         """Ends a process that cannot be asked any more."""
@@ -144,10 +154,34 @@ class Hosts:
             self._mailbox.pump(deadline_us - monotonic_us())
         return killed
 
+    def _start_ready(self, state: str) -> None:
+        """Starts those in this state whose time has come and whose needs run; says for whom the others wait."""
+        now_us = monotonic_us()
+        for entry in self.table:
+            if entry.state != state or now_us < entry.restart_us or self._stopping:
+                continue
+            missing = [each for index in entry.needs if (each := self.table[index]).state != "running"]
+            lost = [each for each in missing if each.state == "failed" or not each.wanted]
+            if not missing:
+                self._start(entry)
+            elif lost and state == "waiting":
+                ends = [
+                    f"{each.name}, which {'has failed' if each.state == 'failed' else 'is stopped'}" for each in lost
+                ]
+                entry.give_up(f"needs {', '.join(ends)}")
+                self._stand_in(entry)
+                self._log.error(f"{entry.name}: not started: it {entry.reason}")
+            else:
+                entry.reason = f"waits for {', '.join(each.name for each in missing)}"
+                if entry.index not in self._told and now_us > entry.since_us + WAITS_US:
+                    self._told.add(entry.index)
+                    self._log.info(f"{entry.name} {entry.reason}")
+
     def _start(self, entry: HostEntry) -> None:
         standin = self._standins.pop(entry.index, None)
         if standin:
             standin.close()
+        self._told.discard(entry.index)
         incarnation = entry.starting(monotonic_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
         hand = self._hands.get(entry.index)
@@ -215,11 +249,15 @@ class Hosts:
         if not asked:
             self.on_lost(entry)
         if not entry.expected and not self._stopping:
-            self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
+            self._stand_in(entry)
         if not self._stopping and not asked:
             again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
             log = self._log.info if code == LEFT else self._log.error
             log(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
+
+    def _stand_in(self, entry: HostEntry) -> None:
+        if entry.index not in self._standins:
+            self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
 
     def _say(self, log: Callable[[str], None], name: str, text: str) -> None:
         log(f"{name} printed: {text}")

@@ -4,14 +4,16 @@ import ast
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from fwk.control.requests import Action, RequestError
-from fwk.control.users import needed_by, users_of, with_needs
-from fwk.plan.model import Plan
+from fwk.control.users import users_of, with_needs, with_users
+from fwk.plan.model import NOBODY, Plan
 from fwk.plan.selection import matches, nearest
 from fwk.supervisor.table import HostEntry
 
-_STOPS = ("stop", "unload")
+_STOPS = ("stop", "unload", "kill")
+_STARTS_AGAIN = ("start", "restart", "reload")
 _RUNNING = ("starting", "running", "waiting")
 
 
@@ -21,7 +23,6 @@ class Steering:
     def __init__(self, plan: Plan, table: Sequence[HostEntry]) -> None:
         self._plan = plan
         self._table = table
-        self._needs = needed_by(plan)
 
     def components(self, patterns: Sequence[str]) -> list[int]:
         """Indices of the components that patterns mean.
@@ -46,22 +47,24 @@ class Steering:
             raise RequestError(f"no component '{name}'; {nearest(name, names)}")
         return names.index(name)
 
-    def hosts(self, action: Action, patterns: Sequence[str]) -> list[HostEntry]:
-        """The processes concerned.
+    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[HostEntry]:
+        """The processes concerned; with `force`, unloading takes along who needs them.
 
         Raises:
             RequestError: it cannot be done; names who stands against it.
         """
         if not patterns:
             raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
-        chosen = self.components(patterns)
+        chosen, components = self.components(patterns), self._plan.components
         if action == "load":
-            chosen = [index for index in with_needs(chosen, self._needs) if index in chosen or not self._runs(index)]
-        elif action == "start":
-            self.check_needs(chosen)
+            chosen = [index for index in with_needs(chosen, components) if index in chosen or not self._runs(index)]
+        elif action == "unload" and force:
+            chosen = [index for index in with_users(chosen, components) if index in chosen or self._runs(index)]
         elif action == "unload":
             self._check_users(chosen)
-        elif action == "reload":
+        elif action in _STARTS_AGAIN:
+            self.check_needs(chosen)
+        if action == "reload":
             self._check_code(chosen)
         entries = {self._plan.components[index].host: self._entry(index) for index in chosen}
         self._check_whole(action, chosen, entries)
@@ -76,6 +79,20 @@ class Steering:
         else:
             entry.fresh_code = entry.fresh_code or action == "reload"
             entry.want_restart(now_us)
+
+    def left_without(self, entries: Sequence[HostEntry]) -> list[dict[str, Any]]:
+        """Channels that lose their writer when these processes end, with the components that go on reading them."""
+        hosts = {entry.index for entry in entries}
+        found = []
+        for channel in self._plan.channels:
+            if channel.writer == NOBODY or self._plan.components[channel.writer].host not in hosts:
+                continue
+            readers = [
+                index for index in channel.readers if self._entry(index).index not in hosts and self._runs(index)
+            ]
+            if readers:
+                found.append({"channel": channel.name, "readers": [self._name(index) for index in readers]})
+        return found
 
     def _entry(self, index: int) -> HostEntry:
         return self._table[self._plan.components[index].host]
@@ -94,17 +111,20 @@ class Steering:
             RequestError: something does not; says what to type.
         """
         for index in chosen:
-            missing = [each for each in sorted(self._needs[index]) if each not in chosen and not self._runs(each)]
+            missing = [
+                each for each in self._plan.components[index].needs if each not in chosen and not self._runs(each)
+            ]
             if missing:
                 name, needed = self._name(index), ", ".join(map(self._name, missing))
                 raise RequestError(f"{name} needs {needed}, which does not run; 'fwk load {name}' starts both")
 
     def _check_users(self, chosen: Sequence[int]) -> None:
         for index in chosen:
-            users = [each for each in users_of(index, self._needs) if each not in chosen and self._runs(each)]
+            users = [each for each in users_of(index, self._plan.components) if each not in chosen and self._runs(each)]
             if users:
                 name, by = self._name(index), " ".join(map(self._name, users))
-                raise RequestError(f"{name} is needed by {by}; unload them too: fwk unload {name} {by}")
+                more = f"fwk unload {name} {by}, or fwk unload --force {name}"
+                raise RequestError(f"{name} is needed by {by}; unload them too: {more}")
 
     def _check_code(self, chosen: Sequence[int]) -> None:
         """A file that is no Python is found while the old code still runs."""

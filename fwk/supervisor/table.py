@@ -8,6 +8,8 @@ from fwk.host.debugger import LEFT
 from fwk.plan.model import Plan, RestartPolicy
 from lcmtypes.core import component_state_t
 
+NOT_STARTED = "does not start with the run"
+
 
 @dataclass(frozen=True)
 class Change:
@@ -28,14 +30,16 @@ class HostEntry:
     name: str
     policy: RestartPolicy
     ready_timeout_us: int
+    needs: tuple[int, ...] = ()
+    """Hosts that have to be running before it is started."""
     state: str = "loaded"
-    """loaded, starting, running, stopping, waiting (to be started again), stopped, failed."""
+    """loaded, starting, running, stopping, waiting (for its time and for what it needs), stopped, failed."""
     incarnation: int = 0
     pid: int = 0
     since_us: int = 0
     """Wall time of the last change of state."""
     restart_us: int = 0
-    """Wall time at which it is started again, while waiting."""
+    """Wall time at which it may be started, while waiting."""
     restarts: int = 0
     reason: str = ""
     seen: int = 0
@@ -110,6 +114,14 @@ class HostEntry:
         self.desired_run += 1
         self._starts_us.clear()
 
+    def waits(self, now_us: int) -> None:
+        """It is to be started as soon as what it needs runs."""
+        self.state, self.since_us, self.restart_us = "waiting", now_us, now_us
+
+    def give_up(self, reason: str) -> None:
+        """It cannot be started."""
+        self.state, self.reason, self.actual_run = "failed", reason, self.desired_run
+
     def leaving(self, now_us: int) -> None:
         """It leaves the loop; its process has been asked to end."""
         self.state, self.since_us, self.changes = "stopping", now_us, []
@@ -164,9 +176,14 @@ class HostEntry:
 def host_table(plan: Plan) -> list[HostEntry]:
     """The table of a plan; a group has the strictest of its components' restart limits and the longest time-out."""
     table = []
+    host_of = {component.index: component.host for component in plan.components}
     for host in plan.hosts:
         members = [plan.components[index] for index in host.components]
         policy = min((member.restart for member in members), key=lambda item: (item.when != "never", item.limit))
         timeout_us = round(max(member.ready_timeout_s for member in members) * US_PER_S)
-        table.append(HostEntry(host.index, host.name, policy, timeout_us))
+        needs = {host_of[needed] for member in members for needed in member.needs} - {host.index}
+        entry = HostEntry(host.index, host.name, policy, timeout_us, tuple(sorted(needs)))
+        if not all(member.start for member in members):
+            entry.wanted, entry.state, entry.reason = False, "stopped", NOT_STARTED
+        table.append(entry)
     return table

@@ -15,6 +15,7 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
         "name": component.name,
         "state": _state(entry, told),
         "wanted": "running" if entry.wanted else "stopped",
+        "period_s": plan.period_us / US_PER_S,
         "stages": [plan.stages[stage] for stage in component.stages],
         "process": entry.name,
         "pid": entry.pid,

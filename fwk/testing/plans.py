@@ -6,6 +6,7 @@ from typing import Any
 from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
 from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
+from fwk.plan.needs import granted_by
 from fwk.plan.wiring import Wish, wire
 
 
@@ -29,7 +30,7 @@ def plan_of(
     wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"))
     if mistakes:
         raise ValueError("\n".join(mistakes))
-    names = list(components)
+    names, granted = list(components), granted_by(wishes, wiring)
     shared = [list(group) for group in groups or ()]
     grouped = {name for group in shared for name in group}
     shared += [[name] for name in names if name not in grouped]
@@ -50,6 +51,7 @@ def plan_of(
                 channels=ports,
                 host=host_of[wish.name],
                 restart=restart or RestartPolicy(),
+                needs=tuple(sorted(map(names.index, granted.get(wish.name, ())))),
             )
         )
     hosts = [

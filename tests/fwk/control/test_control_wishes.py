@@ -44,7 +44,7 @@ def steering(table: list[HostEntry]) -> Steering:
     components = {"r/camera": Camera, "r/finder": Finder, "r/base": Base, "s/base": Base}
     plan = plan_of(components, groups=[["r/base", "s/base"]])
     planned = list(plan.components)
-    planned[1] = replace(planned[1], needs=(2,))  # the finder needs r/base too
+    planned[1] = replace(planned[1], needs=(0, 2))  # the finder needs r/base too
     plan = replace(plan, components=tuple(planned))
     table += host_table(plan)
     for entry in table:
@@ -67,7 +67,12 @@ def names(entries: list[HostEntry]) -> list[str]:
     [
         ("stop", ["r/camra"], "no component 'r/camra'; did you mean 'r/camera'?"),
         ("stop", [], "stop what?"),
-        ("unload", ["r/camera"], "r/camera is needed by r/finder; unload them too: fwk unload r/camera r/finder"),
+        (
+            "unload",
+            ["r/camera"],
+            "r/camera is needed by r/finder; unload them too: fwk unload r/camera r/finder, "
+            "or fwk unload --force r/camera",
+        ),
         ("unload", ["*/base"], "r/base is needed by r/finder"),
         ("restart", ["s/base"], "the process 'r/base+s/base' holds r/base as well; restart all of them"),
     ],
@@ -80,8 +85,9 @@ def test_what_cannot_be_is_refused(steering: Steering, action: Action, patterns:
 def test_a_user_does_not_start_without_its_vision_master(steering: Steering, table: list[HostEntry]) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
-    with pytest.raises(RequestError, match=r"r/finder needs r/camera, which does not run; 'fwk load r/finder'"):
-        steering.hosts("start", ["r/finder"])
+    for action in ("start", "restart", "reload"):
+        with pytest.raises(RequestError, match=r"r/finder needs r/camera, which does not run; 'fwk load r/finder'"):
+            steering.hosts(action, ["r/finder"])
     assert names(steering.hosts("start", ["r/finder", "r/camera"])) == ["r/camera", "r/finder"]
 
 
@@ -96,6 +102,14 @@ def test_a_master_is_unloaded_once_nobody_uses_it(steering: Steering, table: lis
     assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
     state(table, "r/finder", running=True)
     assert names(steering.hosts("unload", ["r/camera", "r/finder"])) == ["r/camera", "r/finder"]
+    assert names(steering.hosts("unload", ["r/camera"], force=True)) == ["r/camera", "r/finder"]
+
+
+def test_readers_that_lose_their_writer_are_named(steering: Steering, table: list[HostEntry]) -> None:
+    (camera,) = steering.hosts("stop", ["r/camera"])
+    assert steering.left_without([camera]) == [{"channel": "r/image", "readers": ["r/finder"]}]
+    state(table, "r/finder", running=False)
+    assert steering.left_without([camera]) == []
 
 
 def test_a_namespace_means_all_in_it(steering: Steering) -> None:

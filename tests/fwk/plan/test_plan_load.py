@@ -9,6 +9,7 @@ import pytest
 
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import NOBODY, ComponentPlan, Plan, RestartPolicy
+from fwk.plan.starting import start_order
 
 Load = Callable[..., Plan]
 
@@ -181,13 +182,30 @@ def test_components_share_processes(load: Load, hosting: str, expected: list[str
     assert all(each.index in plan.hosts[each.host].components for each in plan.components)
 
 
+@pytest.mark.parametrize(
+    ("hosting", "expected"), [("robot", ["it", "it/eye", "it/camera"]), ("single", ["all", "it/eye", "it/camera"])]
+)
+def test_what_starts_later_keeps_a_process_of_its_own(load: Load, hosting: str, expected: list[str]) -> None:
+    plan = load(
+        "components:\n"
+        "  it/one: {use: plan_parts:Odometer}\n"
+        "  it/eye: {use: plan_parts:Eye, start: false}\n"
+        "  it/camera: {use: plan_parts:Camera, start: false}\n"
+        "  it/two: {use: plan_parts:Watcher}\n",
+        hosting=hosting,
+    )
+    assert [host.name for host in plan.hosts] == expected
+    assert [each.start for each in plan.components] == [True, False, False, True]
+    assert start_order(plan.components, [0, 1, 2, 3]) == [0, 2, 1, 3]
+
+
 def test_a_channel_whose_writer_is_left_out_has_none(load: Load) -> None:
-    plan = load(ROBOTS, only=["cyan1", "world"], without=["*/wheels", "cyan1/camera"])
-    assert [each.name for each in plan.components] == ["world/watcher", "cyan1/pilot", "cyan1/eye"]
+    plan = load(ROBOTS, only=["cyan1", "world"], without=["*/wheels", "cyan1/camera", "cyan1/eye"])
+    assert [each.name for each in plan.components] == ["world/watcher", "cyan1/pilot"]
     assert component(plan, "world/watcher").channels == {"odometries": ()}
     assert component(plan, "cyan1/pilot").needs == (0,)
     writers = {channel.name: channel.writer for channel in plan.channels}
-    assert writers == {"cyan1/odometry": NOBODY, "cyan1/motor_command": 1, "cyan1/image": NOBODY}
+    assert writers == {"cyan1/odometry": NOBODY, "cyan1/motor_command": 1}
 
 
 def test_a_reader_of_many_does_not_hold_what_nobody_writes(load: Load) -> None:
@@ -249,7 +267,7 @@ def test_a_copy_of_an_installed_type_does_no_harm(load: Load, folder: Path) -> N
 
 
 def test_a_plan_survives_being_written_down(load: Load) -> None:
-    plan = load(ROBOTS, without=["cyan1/camera"])
+    plan = load(ROBOTS, without=["cyan2/wheels"])
     assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan
 
 

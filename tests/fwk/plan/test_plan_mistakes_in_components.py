@@ -335,6 +335,51 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         "components: {it/a: {use: plan_parts:Odometer, needs: a}}",
     ),
     Broken(
+        "it.yaml:2: it/eye: it starts with the run and needs 'it/camera', which does not; "
+        "say 'start: false' here too, or not there",
+        """
+        components:
+          it/eye: {use: plan_parts:Eye}
+          it/camera: {use: plan_parts:Camera, start: false}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: it/one and it/two share a process and only one starts with the run; say the same of both",
+        """
+        hosts:
+          both: it/*
+        components:
+          it/one: {use: plan_parts:Odometer}
+          it/two: {use: plan_parts:Watcher, start: false}
+        """,
+    ),
+    Broken(
+        "it.yaml:4: it/b: processes need each other in a ring: left -> right -> left "
+        "(it/b needs it/c; it/d needs it/a); share the components out otherwise",
+        """
+        hosts: {left: [it/a, it/b], right: [it/c, it/d]}
+        components:
+          it/a: {use: plan_parts:Odometer}
+          it/b: {use: plan_parts:Watcher, needs: c}
+          it/c: {use: plan_parts:Watcher}
+          it/d: {use: plan_parts:Watcher, needs: a}
+        """,
+    ),
+    Broken(
+        """
+        --only: it/eye: it cannot do without it/camera, which is left out; leave out both or none
+        """,
+        "components: {it/eye: {use: plan_parts:Eye}, it/camera: {use: plan_parts:Camera}}",
+        {"only": ["it/eye"]},
+    ),
+    Broken(
+        """
+        --without: it/eye: it cannot do without it/camera, which is left out; leave out both or none
+        """,
+        "components: {it/eye: {use: plan_parts:Eye}, it/camera: {use: plan_parts:Camera}}",
+        {"without": ["*/camera"]},
+    ),
+    Broken(
         "it.yaml:3: b/sun: two time sources: a/sun (it.yaml:2) and b/sun; keep one",
         """
         components:
