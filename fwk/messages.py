@@ -1,10 +1,11 @@
 """What the framework knows of LCM types: fingerprints, headers in raw bytes, counts, and readable errors."""
 
 import struct
-from collections.abc import Sized
+from collections.abc import Callable, Sized
 from importlib import import_module
 from typing import Any, ClassVar, Protocol, Self, runtime_checkable
 
+from fwk import codec
 from lcmtypes.core import header_t
 
 
@@ -112,16 +113,26 @@ def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
     Raises:
         MessageError: wrong type or broken bytes; names channel, expected and found fingerprint.
     """
-    try:
-        return message_type.decode(data)
-    except Exception as error:
-        expected, found = fingerprint(message_type).hex(), data[:8].hex()
-        reason = (
-            f"fingerprint {found}, expected {expected}"
-            if found != expected
-            else f"{len(data)} bytes do not decode: {error}"
-        )
-        raise MessageError(f"{channel}: not a {type_name(message_type)}: {reason}") from error
+    return decoder(message_type, channel)(data)
+
+
+def decoder(message_type: type[Message], channel: str) -> Callable[[bytes], Any]:
+    """`decode` for the messages of a channel."""
+    decode = codec.decoder(message_type) or message_type.decode
+
+    def decoded(data: bytes) -> Any:
+        try:
+            return decode(data)
+        except Exception as error:
+            expected, found = fingerprint(message_type).hex(), data[:8].hex()
+            reason = (
+                f"fingerprint {found}, expected {expected}"
+                if found != expected
+                else f"{len(data)} bytes do not decode: {error}"
+            )
+            raise MessageError(f"{channel}: not a {type_name(message_type)}: {reason}") from error
+
+    return decoded
 
 
 def encode(message: Message, channel: str) -> bytes:
@@ -130,13 +141,27 @@ def encode(message: Message, channel: str) -> bytes:
     Raises:
         MessageError: a field holds something that its type cannot; names channel, field, type and value.
     """
-    try:
-        set_counts(message)
-        return message.encode()
-    except Exception as error:
-        raise MessageError(
-            f"{channel}: cannot encode {type_name(type(message))}: {_culprit(message) or error}"
-        ) from error
+    return encoder(type(message), channel)(message)
+
+
+def encoder(message_type: type[Message], channel: str) -> Callable[[Any], bytes]:
+    """`encode` for the messages of a channel."""
+    encode = codec.encoder(message_type) or _counted_and_encoded
+
+    def encoded(message: Any) -> bytes:
+        try:
+            return encode(message)
+        except Exception as error:
+            raise MessageError(
+                f"{channel}: cannot encode {type_name(message_type)}: {_culprit(message, message_type) or error}"
+            ) from error
+
+    return encoded
+
+
+def _counted_and_encoded(message: Message) -> bytes:
+    set_counts(message)
+    return message.encode()
 
 
 def set_counts(message: Message) -> None:
@@ -177,7 +202,9 @@ def _plan(cls: type[Message]) -> tuple[list[tuple[str, str]], list[tuple[str, bo
 _CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "boolean": "?"}
 
 
-def _culprit(message: Message) -> str:
+def _culprit(message: Any, message_type: type[Message]) -> str:
+    if not isinstance(message, message_type):
+        return f"it is a {type(message).__name__}"
     for name, kind, dimensions in zip(message.__slots__, message.__typenames__, message.__dimensions__, strict=True):
         value = getattr(message, name, None)
         if dimensions is None and kind in _CODES:

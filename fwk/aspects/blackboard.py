@@ -38,6 +38,7 @@ class Reads(Generic[T]):
         self._before: bytes | None = None
         self._value: T | None = None
         self._header: Header | None = None
+        self._decode = messages.decoder(message_type, channel)
 
     def freeze(self, fresh: list[bytes]) -> None:
         """For the framework: begins an iteration; `fresh` became visible since the last one, oldest first."""
@@ -82,9 +83,6 @@ class Reads(Generic[T]):
             self._header = Header(0, 0, 0, 0, "", 0) if self._raw is None else Header.of(self._raw)
         return self._header
 
-    def _decode(self, data: bytes) -> T:
-        return cast(T, messages.decode(cast(Any, self.message_type), data, self.channel))
-
 
 class Writes(Generic[T]):
     """The one writer of a channel: change `value`, then `write()`.
@@ -99,6 +97,7 @@ class Writes(Generic[T]):
         self.sequence = 0  # of the newest message that went out
         self._stamp = stamp or Stamp("")
         self._buffer: list[bytes] = []
+        self._encode = messages.encoder(message_type, channel)
 
     def write(self) -> None:
         """Stamps the value as it is now; it goes out at the end of the iteration.
@@ -107,13 +106,13 @@ class Writes(Generic[T]):
             MessageError: a field holds something that its type cannot.
         """
         stamp = self._stamp
-        header: header_t = cast(Any, self.value).header
+        header: header_t = self.value.header  # type: ignore[attr-defined] - has one, or would be no interface
         header.tick = stamp.tick
         header.stage = stamp.stage
         header.time_us = stamp.time_us
         header.writer = stamp.writer
         header.sequence = self.sequence + len(self._buffer) + 1
-        self._buffer.append(messages.encode(cast(Any, self.value), self.channel))
+        self._buffer.append(self._encode(self.value))
 
     @property
     def pending(self) -> int:

@@ -1,0 +1,312 @@
+"""Encoders and decoders of LCM types as straight-line Python, written once a type: lcm-gen's bytes, several times faster.
+
+Of a type's members they know what lcm-gen writes into the class. Types with members of rare shapes (arrays of several
+dimensions whose sizes vary, a struct within itself) are left to lcm-gen's own code.
+"""
+
+import itertools
+import struct
+from collections.abc import Callable, Iterator
+from functools import cache
+from importlib import import_module
+from typing import Any, cast
+
+Encoder = Callable[[Any], bytes]
+Decoder = Callable[[bytes], Any]
+
+_CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "byte": "B"}
+_ENCODED = {**_CODES, "boolean": "b"}
+_DECODED = {**_CODES, "boolean": "?"}
+
+Dimensions = list[int | str]
+
+
+class RareShape(Exception):  # noqa: N818 - not an error: the type is left to lcm-gen's code
+    """A member of a shape that is not written here."""
+
+
+@cache
+def encoder(message_type: type[Any]) -> Encoder | None:
+    """What makes the bytes of a message, after setting its counts to the lengths of its lists; None: a rare shape.
+
+    It raises whatever its members' mistakes lead to.
+    """
+    try:
+        return _EncoderSource(message_type).function()
+    except RareShape:
+        return None
+
+
+@cache
+def decoder(message_type: type[Any]) -> Decoder | None:
+    """What makes a message of bytes; None: a rare shape. It raises `ValueError` or `struct.error` for any others."""
+    try:
+        return _DecoderSource(message_type).function()
+    except RareShape:
+        return None
+
+
+class _Source:
+    """Lines of a function that grows member by member."""
+
+    def __init__(self, head: str) -> None:
+        self._lines = [head]
+        self._indent = 1
+        self._names: dict[str, Any] = {}
+        self._numbers = itertools.count(1)
+        self._format = ""  # of neighbouring numbers, which are packed in one go
+        self._values: list[str] = []
+        self._nested: list[type[Any]] = []
+
+    def _line(self, text: str) -> None:
+        self._lines.append("    " * self._indent + text)
+
+    def _fresh(self, stem: str) -> str:
+        return f"{stem}{next(self._numbers)}"
+
+    def _constant(self, stem: str, value: Any) -> str:
+        name = self._fresh(stem)
+        self._names[name] = value
+        return name
+
+    def _number(self, code: str, value: str) -> None:
+        self._format += code
+        self._values.append(value)
+
+    def _compiled(self, name: str) -> Any:
+        exec("\n".join(self._lines), self._names)  # noqa: S102 - the text is made of a class's member names
+        return self._names[name]
+
+    def _members(self, message_type: type[Any]) -> Iterator[tuple[str, str, Dimensions]]:
+        if message_type in self._nested:
+            raise RareShape
+        self._nested.append(message_type)
+        slots, kinds, shapes = message_type.__slots__, message_type.__typenames__, message_type.__dimensions__
+        for name, kind, dimensions in zip(slots, kinds, shapes, strict=True):
+            yield name, kind, dimensions or []
+        self._nested.pop()
+
+
+class _EncoderSource(_Source):
+    def __init__(self, message_type: type[Any]) -> None:
+        super().__init__("def encode(message):")
+        self._names["join"], self._names["pack"] = b"".join, struct.pack
+        self._chunks = [self._constant("fingerprint", message_type._get_packed_fingerprint())]
+        self._listed = False  # whether some chunks are in a list already, because there are loops
+        self._struct(message_type, "message")
+        self._flush_numbers()
+        if self._listed:
+            self._flush_chunks()
+        self._line("return join(made)" if self._listed else f"return join(({', '.join(self._chunks)},))")
+
+    def function(self) -> Encoder:
+        return cast(Encoder, self._compiled("encode"))
+
+    def _struct(self, message_type: type[Any], owner: str) -> None:
+        counts: dict[str, str] = {}
+        members = list(self._members(message_type))
+        for name, _, dimensions in members:
+            if dimensions and isinstance(dimensions[0], str):
+                self._count(f"{owner}.{name}", f"{owner}.{dimensions[0]}", counts)
+        for name, kind, dimensions in members:
+            if dimensions:
+                self._array(kind, dimensions, f"{owner}.{name}", counts)
+            else:
+                self._single(kind, f"{owner}.{name}")
+
+    def _count(self, values: str, count: str, counts: dict[str, str]) -> None:
+        length = self._fresh("length")
+        self._line(f"{length} = len({values})")
+        if count in counts:
+            self._line(f"if {length} != {counts[count]}:")
+            self._line(f"    raise ValueError(\"the lists counted by '{count.partition('.')[2]}' differ in length\")")
+        else:
+            counts[count] = length
+            self._line(f"{count} = {length}")
+
+    def _single(self, kind: str, value: str) -> None:
+        if kind in _ENCODED:
+            self._number(_ENCODED[kind], value)
+        elif kind == "string":
+            text = self._fresh("text")
+            self._line(f"{text} = {value}.encode() + b'\\0'")
+            self._number("I", f"len({text})")
+            self._chunk(text)
+        else:
+            owner = self._fresh("struct")
+            self._line(f"{owner} = {value}")
+            self._struct(_type(kind), owner)
+
+    def _array(self, kind: str, dimensions: Dimensions, values: str, counts: dict[str, str]) -> None:
+        first, *others = dimensions
+        length = counts[f"{values.rpartition('.')[0]}.{first}"] if isinstance(first, str) else str(first)
+        if others:
+            _check_fixed(kind, dimensions)
+            for index in range(int(length)):
+                self._number(f"{others[0]}{_ENCODED[kind]}", f"*{values}[{index}]")
+            return
+        if kind in _ENCODED and kind != "byte":
+            if isinstance(first, int):
+                self._number(f"{first}{_ENCODED[kind]}", f"*{values}")
+            else:
+                self._chunk(f"pack('>%d{_ENCODED[kind]}' % {length}, *{values})")
+            return
+        if isinstance(first, int):
+            self._line(f"if len({values}) != {first}:")
+            self._line(f"    raise ValueError('{values.rpartition('.')[2]} is no array of {first}')")
+        if kind == "byte":
+            self._chunk(f"bytes({values})")
+            return
+        self._flush_numbers()
+        self._flush_chunks()
+        item = self._fresh("item")
+        self._line(f"for {item} in {values}:")
+        self._indent += 1
+        self._single(kind, item)
+        self._flush_numbers()
+        self._flush_chunks()
+        self._line("pass")
+        self._indent -= 1
+
+    def _chunk(self, chunk: str) -> None:
+        self._flush_numbers()
+        self._chunks.append(chunk)
+
+    def _flush_numbers(self) -> None:
+        if self._format:
+            pack = self._constant("pack", struct.Struct(f">{self._format}").pack)
+            self._chunks.append(f"{pack}({', '.join(self._values)})")
+        self._format, self._values = "", []
+
+    def _flush_chunks(self) -> None:
+        if self._chunks:
+            self._line(f"made {'+=' if self._listed else '='} [{', '.join(self._chunks)}]")
+            self._listed = True
+        self._chunks = []
+
+
+class _DecoderSource(_Source):
+    def __init__(self, message_type: type[Any]) -> None:
+        super().__init__("def decode(data):")
+        self._names["new"], self._names["unpack_from"] = object.__new__, struct.unpack_from
+        fingerprint = self._constant("fingerprint", message_type._get_packed_fingerprint())
+        self._line(f"if data[:8] != {fingerprint}:")
+        self._line("    raise ValueError('wrong fingerprint')")
+        self._at, self._offset = "", 8  # where the next member begins: a variable's value and so many bytes more
+        made = self._object(message_type)
+        self._struct(message_type, made)
+        self._flush_numbers()
+        self._line(f"return {made}")
+
+    def function(self) -> Decoder:
+        return cast(Decoder, self._compiled("decode"))
+
+    @property
+    def _place(self) -> str:
+        return f"{self._at} + {self._offset}" if self._at else str(self._offset)
+
+    def _object(self, message_type: type[Any]) -> str:
+        made = self._fresh("struct")
+        self._line(f"{made} = new({self._constant('type', message_type)})")
+        return made
+
+    def _struct(self, message_type: type[Any], owner: str) -> None:
+        for name, kind, dimensions in self._members(message_type):
+            if dimensions:
+                self._array(kind, dimensions, owner, f"{owner}.{name}")
+            else:
+                self._single(kind, f"{owner}.{name}")
+
+    def _single(self, kind: str, target: str) -> None:
+        if kind in _DECODED:
+            self._number(_DECODED[kind], target)
+        elif kind == "string":
+            length = self._fresh("length")
+            self._number("I", length)
+            start = self._bytes(length)
+            self._line(f"{target} = data[{start}:{self._at} - 1].decode('utf-8', 'replace')")
+        else:
+            made = self._object(_type(kind))
+            self._line(f"{target} = {made}")
+            self._struct(_type(kind), made)
+
+    def _array(self, kind: str, dimensions: Dimensions, owner: str, target: str) -> None:
+        first, *others = dimensions
+        self._flush_numbers()
+        length = f"{owner}.{first}" if isinstance(first, str) else str(first)
+        if isinstance(first, str):
+            self._line(f"if {length} < 0:")
+            self._line(f"    raise ValueError('{first} is negative')")
+        if others:
+            _check_fixed(kind, dimensions)
+            rows = [self._row(kind, int(others[0])) for _ in range(int(length))]
+            self._line(f"{target} = [{', '.join(rows)}]")
+        elif kind == "byte":
+            start = self._bytes(length)
+            self._line(f"{target} = data[{start}:{self._at}]")
+        elif kind in _DECODED and isinstance(first, int):
+            self._line(f"{target} = {self._row(kind, first)}")
+        elif kind in _DECODED:
+            values = f"unpack_from('>%d{_DECODED[kind]}' % {length}, data, {self._place})"
+            self._line(f"{target} = {_listed(kind, values)}")
+            self._move(f"{self._place} + {struct.calcsize('>' + _DECODED[kind])} * {length}")
+        else:
+            self._loop(kind, length, target)
+
+    def _row(self, kind: str, count: int) -> str:
+        """The values of an array whose size is known."""
+        made = struct.Struct(f">{count}{_DECODED[kind]}")
+        unpack = self._constant("unpack", made.unpack_from)
+        values = _listed(kind, f"{unpack}(data, {self._place})")
+        self._offset += made.size
+        return values
+
+    def _loop(self, kind: str, length: str, target: str) -> None:
+        self._move(self._place)
+        values, item = self._fresh("list"), self._fresh("item")
+        self._line(f"{target} = {values} = []")
+        self._line(f"for _ in range({length}):")
+        self._indent += 1
+        self._single(kind, item)
+        self._flush_numbers()
+        self._line(f"{values}.append({item})")
+        self._move(self._place)
+        self._indent -= 1
+
+    def _bytes(self, length: str) -> str:
+        """Passes over so many bytes, which have to be there; returns where they begin."""
+        self._flush_numbers()
+        start = self._fresh("start")
+        self._line(f"{start} = {self._place}")
+        self._move(f"{start} + {length}")
+        self._line(f"if {self._at} > len(data):")
+        self._line("    raise ValueError('the bytes end too early')")
+        return start
+
+    def _move(self, place: str) -> None:
+        self._line(f"at = {place}")
+        self._at, self._offset = "at", 0
+
+    def _flush_numbers(self) -> None:
+        if self._format:
+            made = struct.Struct(f">{self._format}")
+            unpack = self._constant("unpack", made.unpack_from)
+            self._line(f"{', '.join(self._values)}, = {unpack}(data, {self._place})")
+            self._offset += made.size
+        self._format, self._values = "", []
+
+
+def _listed(kind: str, values: str) -> str:
+    """As lcm-gen has it: booleans in lists, numbers in tuples."""
+    return f"list({values})" if kind == "boolean" else values
+
+
+def _check_fixed(kind: str, dimensions: Dimensions) -> None:
+    """Of several dimensions only two are written here, with numbers, in sizes that are known."""
+    if len(dimensions) != 2 or kind not in _ENCODED or kind == "byte" or not all(isinstance(n, int) for n in dimensions):
+        raise RareShape
+
+
+def _type(kind: str) -> type[Any]:
+    package, _, name = kind.rpartition(".")
+    return cast(type[Any], getattr(import_module(package), name))
