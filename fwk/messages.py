@@ -35,6 +35,7 @@ class MessageError(Exception):
 
 
 _NUMBERS = struct.Struct(">qqqhI")  # tick, sequence, time_us, stage, length of the writer's name with its zero byte
+_TICK_AND_SEQUENCE: Callable[[bytes, int], tuple[int, int]] = struct.Struct(">qq").unpack_from
 _FINGERPRINT_SIZE = 8
 HEADER_SIZE = _FINGERPRINT_SIZE + _NUMBERS.size
 
@@ -73,9 +74,9 @@ def sequence_of(data: bytes) -> int:
     return int.from_bytes(data[16:24], "big", signed=True)
 
 
-def tick_of(data: bytes) -> int:
-    """Tick in the header of an encoded message of at least `HEADER_SIZE` bytes."""
-    return int.from_bytes(data[8:16], "big", signed=True)
+def tick_and_sequence_of(data: bytes) -> tuple[int, int]:
+    """Tick and sequence number in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    return _TICK_AND_SEQUENCE(data, _FINGERPRINT_SIZE)
 
 
 def type_name(message_type: type[Message]) -> str:
@@ -192,10 +193,7 @@ def _plan(cls: type[Message]) -> tuple[list[tuple[str, str]], list[tuple[str, bo
         if dimensions and isinstance(dimensions[0], str):
             counted.append((name, dimensions[0]))
         if "." in kind and name != "header" and len(dimensions or []) <= 1:
-            package, _, short = kind.rpartition(".")
-            counts, inner = _plan(getattr(import_module(package), short))
-            if counts or inner:
-                nested.append((name, bool(dimensions)))
+            nested.append((name, bool(dimensions)))
     return counted, nested
 
 

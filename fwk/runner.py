@@ -15,6 +15,9 @@ from fwk.component import Component, Declaration, Port
 from fwk.config import Config
 from lcmtypes.core import log_t
 
+NOTHING: list[bytes] = []
+"""No message came. Readers do not change what they are given."""
+
 
 @dataclass(frozen=True)
 class Surroundings:
@@ -52,6 +55,7 @@ class Runner:
         self.log = Logger(name, self.clock, surroundings.sink)
         self.component: Component = declaration.component()
         self._rings = surroundings.rings
+        self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         for attribute, aspect in declaration.aspects.items():
             setattr(self.component, attribute, self._aspect(aspect, surroundings.seed))
@@ -71,15 +75,18 @@ class Runner:
     ) -> list[tuple[str, bytes]]:
         """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
 
-        `fresh` holds for each channel what became visible since the last iteration. Whatever the component raises comes
-        out, and then nothing was written.
+        `fresh` holds for the channels of its readers what became visible since the last iteration. Whatever the
+        component raises comes out, and then nothing was written.
         """
         clock, stamp = self.clock, self.stamp
         clock.tick = stamp.tick = tick
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
-        for channel, reader in self.readers.items():
-            reader.freeze(fresh.get(channel, []))
+        for reader in self._refreshed:
+            reader.freeze(NOTHING)
+        self._refreshed = [self.readers[channel] for channel in fresh]
+        for reader, arrived in zip(self._refreshed, fresh.values(), strict=True):
+            reader.freeze(arrived)
         self.time_source.next_us = -1
         try:
             self.component.loop()
@@ -87,7 +94,11 @@ class Runner:
             for writer in self.writers.values():
                 writer.drop()
             raise
-        return [(channel, data) for channel, writer in self.writers.items() for data in writer.take()]
+        written = []
+        for channel, writer in self.writers.items():
+            if writer.pending:
+                written += [(channel, data) for data in writer.take()]
+        return written
 
     def _aspect(self, aspect: str, seed: int) -> Any:
         if aspect == "rng":

@@ -1,6 +1,6 @@
 """The blackboard aspect: typed channels with one writer and many readers, frozen for the time of an iteration."""
 
-from collections.abc import ItemsView, Iterator, Mapping
+from collections.abc import Callable, ItemsView, Iterator, Mapping
 from typing import Any, Generic, TypeVar, cast
 
 from fwk import messages
@@ -38,7 +38,7 @@ class Reads(Generic[T]):
         self._before: bytes | None = None
         self._value: T | None = None
         self._header: Header | None = None
-        self._decode = messages.decoder(message_type, channel)
+        self._decode: Callable[[bytes], T] = messages.decoder(cast(Any, message_type), channel)
 
     def freeze(self, fresh: list[bytes]) -> None:
         """For the framework: begins an iteration; `fresh` became visible since the last one, oldest first."""
@@ -97,7 +97,7 @@ class Writes(Generic[T]):
         self.sequence = 0  # of the newest message that went out
         self._stamp = stamp or Stamp("")
         self._buffer: list[bytes] = []
-        self._encode = messages.encoder(message_type, channel)
+        self._encode: Callable[[T], bytes] = messages.encoder(cast(Any, message_type), channel)
 
     def write(self) -> None:
         """Stamps the value as it is now; it goes out at the end of the iteration.
@@ -106,7 +106,7 @@ class Writes(Generic[T]):
             MessageError: a field holds something that its type cannot.
         """
         stamp = self._stamp
-        header: header_t = self.value.header  # type: ignore[attr-defined] - has one, or would be no interface
+        header: header_t = self.value.header  # type: ignore[attr-defined]  # has one, or would be no interface
         header.tick = stamp.tick
         header.stage = stamp.stage
         header.time_us = stamp.time_us

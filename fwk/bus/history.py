@@ -23,7 +23,9 @@ class History:
         kept = self._kept
         kept.append((tick, sequence, data))
         self._bytes += len(data)
-        while self._spare(tick - kept[0][0]):
+        while len(kept) > MESSAGES_MAX or self._bytes > BYTES_MAX:
+            if not self._spare(tick - kept[0][0]):
+                return
             self._bytes -= len(kept.popleft()[2])
 
     def between(self, first: int, last: int) -> list[tuple[int, bytes]]:

@@ -24,16 +24,22 @@ class Box:
 
     def put(self, sequence: int, data: bytes) -> None:
         """Takes a message, once."""
-        if sequence > self.floor:
+        if sequence <= self.floor:
+            return
+        if sequence > self._newest:
+            self._held[sequence] = data
+            self._newest = sequence
+        else:
             held = self._held.get(sequence)
             if held is None or _incarnation(held) < _incarnation(data):
                 self._held[sequence] = data
-            if sequence > self._newest:
-                self._newest = sequence
 
     def collect(self) -> bool:
         """Whether everything up to the mark is here."""
-        return len(self._held) >= self.mark - self.floor and not self.missing()
+        wanted = self.mark - self.floor
+        if self._newest == self.mark:  # none beyond it, so that counting is enough
+            return len(self._held) == wanted
+        return len(self._held) >= wanted and not self.missing()
 
     def missing(self) -> list[int]:
         """Sequence numbers up to the mark that are not here."""
@@ -44,8 +50,8 @@ class Box:
         """The messages that became visible since the last time, oldest first."""
         held, floor = self._held, self.floor
         self.floor = self.mark
-        numbers = range(floor + 1, self.mark + 1)
-        return [data for data in (held.pop(number, b"") for number in numbers) if data]
+        taken = [held.pop(number, b"") for number in range(floor + 1, self.mark + 1)]
+        return taken if all(taken) else [data for data in taken if data]
 
     def skip_to(self, sequence: int) -> None:
         """Does not want anything up to `sequence`: a late joiner takes the newest only."""
@@ -85,7 +91,8 @@ class Inbox(Box):
         self._name = plan.name.encode()
         self._start = len(self._name) + 9  # of the data in a short message
         self._fingerprint = messages.fingerprint(messages.type_named(plan.type_name))
-        self._expected = self._fingerprint.hex()
+        self._usual = self._name + b"\0" + self._fingerprint  # what follows the number of a short message
+        self._least = self._start + messages.HEADER_SIZE
         self._complain = complain
         self._assembler = wire.Assembler()
 
@@ -107,10 +114,10 @@ class Inbox(Box):
         while self._newest < self.mark:
             if not self._receive():
                 return False
-        if super().collect():
+        if Box.collect(self):
             return True
         self._drain()
-        return super().collect()
+        return Box.collect(self)
 
     def held(self, first: int, last: int) -> list[tuple[int, bytes]]:
         """What is here and was not taken yet, of these numbers, oldest first; also what waits in the socket."""
@@ -139,31 +146,28 @@ class Inbox(Box):
         if address[1] not in self._senders:
             self._complain(self.plan.name, f"datagram from port {address[1]}, which is not the writer's; refused")
             return True
-        start = self._start
-        if datagram[:4] == b"LC02" and datagram[8:start] == self._name + b"\0":
-            data = datagram[start:]
+        if wire.is_short(datagram) and datagram.startswith(self._usual, 8) and len(datagram) >= self._least:
+            data = datagram[self._start :]
+            self.put(messages.sequence_of(data), data)
         else:
             try:
-                message = self._assembler.feed(datagram, address[1])
+                self._take_unusual(datagram, address[1])
             except MessageError as error:
                 self._complain(self.plan.name, f"{error}; refused")
-                return True
-            if message is None:
-                return True
-            if message[0] != self._name:
-                wrong = message[0].decode(errors="replace")
-                self._complain(self.plan.name, f"message of channel {wrong!r} here; refused")
-                return True
-            data = message[1]
-        if len(data) < messages.HEADER_SIZE or data[:8] != self._fingerprint:
-            found, size = data[:8].hex(), len(data)
-            self._complain(
-                self.plan.name,
-                f"{size} bytes with fingerprint {found} are no {self.plan.type_name} ({self._expected}); refused",
-            )
-            return True
-        self.put(messages.sequence_of(data), data)
         return True
+
+    def _take_unusual(self, datagram: bytes, port: int) -> None:
+        """A fragment, or what should not be here."""
+        message = self._assembler.feed(datagram, port)
+        if message is None:
+            return
+        channel, data = message
+        if channel != self._name:
+            raise MessageError(f"message of channel {channel.decode(errors='replace')!r} here")
+        if len(data) < messages.HEADER_SIZE or data[:8] != self._fingerprint:
+            found, expected = data[:8].hex(), self._fingerprint.hex()
+            raise MessageError(f"{len(data)} bytes with fingerprint {found} are no {self.plan.type_name} ({expected})")
+        self.put(messages.sequence_of(data), data)
 
 
 def _incarnation(data: bytes) -> int:

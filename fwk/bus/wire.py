@@ -36,6 +36,11 @@ def datagrams(number: int, channel: bytes, data: bytes) -> list[bytes]:
     return made
 
 
+def is_short(datagram: bytes) -> bool:
+    """Whether it looks like a message that came in one datagram."""
+    return datagram.startswith(_SHORT_MAGIC)
+
+
 def short(datagram: bytes) -> tuple[bytes, bytes]:
     """Channel and data of a message that must have come in one datagram, as all of the framework's small ones do.
 

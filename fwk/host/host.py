@@ -6,7 +6,8 @@ import socket
 import struct
 import traceback
 from bdb import BdbQuit
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from importlib import import_module
 
@@ -61,6 +62,7 @@ class Host:
         self._plan = plan
         self._stopping = stopping
         self._ports = Ports.of(plan)
+        self._supervisor_port, self._sync_port = self._ports.supervisor, self._ports.sync
         self._sender = Sender(self._ports.host(assignment.host))
         self._own = [plan.components[index] for index in plan.hosts[assignment.host].components]
         self.figures = {component.name: Figures(component.name) for component in self._own}
@@ -85,10 +87,14 @@ class Host:
         stages = sorted({stage for component in self._own for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
         self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
-        self._poller = select.poll()
+        self._poller = select.epoll()  # unlike poll() it does not look at every socket again each time
         for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
-            self._poller.register(descriptor, select.POLLIN)
+            self._poller.register(descriptor, select.EPOLLIN)
         self._runners: dict[str, Runner] = {}
+        self._members = [
+            [component.name for component in self._own if stage in component.stages]
+            for stage in range(len(plan.stages))
+        ]
         self._waiting: dict[str, dict[str, list[bytes]]] = {}  # what each component has not seen yet, by channel
         self._readers: dict[int, list[str]] = {
             channel.index: [plan.components[reader].name for reader in channel.readers if reader in indices]
@@ -96,6 +102,9 @@ class Host:
         }
         self._answered = (0, -1)  # the newest (tick, stage) done
         self._done = b""
+        self._message = done_t()  # the next done; what stays the same in it is written once
+        self._message.run, self._message.host = assignment.run, assignment.host
+        self._message.incarnation = assignment.incarnation
         self._configured = 0  # number of the newest change of settings taken over
         self._report_us = 0
 
@@ -108,7 +117,7 @@ class Host:
         try:
             self._init()
             while not self._stopping():
-                for descriptor, _ in self._poller.poll(READY_REPORT_MS if self._answered[0] == 0 else 1000):
+                for descriptor, _ in self._poller.poll(0.001 * READY_REPORT_MS if self._answered[0] == 0 else 1):
                     source = self._sockets.get(descriptor)
                     tick = self._receive_tick(source[1]) if source else None
                     if source and tick:
@@ -129,7 +138,7 @@ class Host:
             with self._guard(plan.name, "init"):
                 runner = self._runner(plan)
                 self._runners[plan.name] = runner
-                self._waiting[plan.name] = {channel: [] for channel in runner.readers}
+                self._waiting[plan.name] = {}
                 runner.component.init()
             self.figures[plan.name].state = "running"
         self._report()
@@ -161,9 +170,9 @@ class Host:
         except BlockingIOError:
             return None
         try:
-            if address[1] != self._ports.supervisor:
+            if address[1] != self._supervisor_port:
                 raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
-            tick = sync.decode_tick(wire.short(datagram)[1])
+            tick: tick_t = sync.decode_tick(wire.short(datagram)[1])
         except MessageError as error:
             self._complaints("fwk/tick", f"{error}; refused")
             return None
@@ -185,15 +194,17 @@ class Host:
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
         self._deliver(moved)
-        self._configure(tick.changes)
+        if tick.changes:
+            self._configure(tick.changes)
         self._iterate(tick, stage)
         self._answered = (tick.tick, stage)
 
     def _deliver(self, moved: list[Box]) -> None:
         for box in moved:
-            arrived = box.take()
+            arrived, channel = box.take(), box.plan.name
             for name in self._readers[box.plan.index]:
-                self._waiting[name][box.plan.name] += arrived
+                waiting = self._waiting[name]
+                waiting[channel] = waiting[channel] + arrived if channel in waiting else arrived
 
     def _configure(self, changes: list[change_t]) -> None:
         for change in changes:
@@ -201,29 +212,31 @@ class Host:
             if plan.name in self._runners and change.number > self._configured:
                 with self._guard(plan.name, "config_changed"):
                     self._runners[plan.name].configure(json.loads(change.settings))
-        self._configured = max([self._configured, *(change.number for change in changes)])
+        self._configured = max(self._configured, *(change.number for change in changes))
 
     def _iterate(self, tick: tick_t, stage: int) -> None:
         written: list[tuple[str, bytes]] = []
-        next_us, began_us = -1, monotonic_us()
-        for plan in self._own:
-            if stage not in plan.stages:
-                continue
-            runner, waiting = self._runners[plan.name], self._waiting[plan.name]
-            self._waiting[plan.name] = {channel: [] for channel in waiting}
-            start_us = monotonic_us()
-            with self._guard(plan.name, f"loop, tick {tick.tick}"):
+        next_us = -1
+        began_us = start_us = monotonic_us()
+        for name in self._members[stage]:
+            runner, waiting = self._runners[name], self._waiting[name]
+            self._waiting[name] = {}
+            try:
                 written += runner.iterate(tick.tick, stage, self._plan.stages[stage], tick.time_us, waiting)
-            self.figures[plan.name].ran(monotonic_us() - start_us)
+            except BaseException as error:
+                self._blame(name, f"loop, tick {tick.tick}", error)
+                raise
+            end_us = monotonic_us()
+            self.figures[name].ran(end_us - start_us)
+            start_us = end_us
             next_us = max(next_us, runner.time_source.next_us)
         marks = self._outputs.publish(written)
-        done = done_t()
-        done.run, done.host, done.incarnation = tick.run, self._assignment.host, self._assignment.incarnation
+        done = self._message
         done.tick, done.stage, done.next_time_us = tick.tick, stage, next_us
-        done.busy_us = monotonic_us() - began_us
-        done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
+        done.busy_us = start_us - began_us
+        done.channel, done.sequence = list(marks), list(marks.values())
         self._done = sync.encode_done(done)
-        self._sender.publish(sync.DONE, self._done, self._ports.sync)
+        self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _handle_own(self) -> bool:
         """Handles what was sent to this host's own port; false when it is time to stop."""
@@ -253,16 +266,28 @@ class Host:
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.warning(f"{channel}: {lost} messages of {numbers} lost: their writer no longer has them")
 
-    def _guard(self, name: str, moment: str) -> "_Guard":
-        return _Guard(self, name, moment)
+    @contextmanager
+    def _guard(self, name: str, moment: str) -> Iterator[None]:
+        """Turns whatever a component raises into a `Failure` of that component."""
+        try:
+            yield
+        except BaseException as error:
+            self._blame(name, moment, error)
+            raise
 
-    def fail(self, name: str, moment: str, error: BaseException) -> Failure:
-        """Marks a component as failed and logs why, with the traceback."""
+    def _blame(self, name: str, moment: str, error: BaseException) -> None:
+        """Marks a component as failed and logs why, with the traceback.
+
+        Raises:
+            Failure: always, unless it is no failure of the component: somebody left the debugger, or ends the process.
+        """
+        if isinstance(error, BdbQuit) or not isinstance(error, Exception | SystemExit):
+            return
         place = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"{type(error).__name__}: {error} ({place.filename}:{place.lineno}, in {moment})"
         self.figures[name].state, self.figures[name].reason = "failed", reason
         self.log.error(f"{name} failed in {moment}\n{''.join(traceback.format_exception(error)).rstrip()}")
-        return Failure(f"{name}: {reason}")
+        raise Failure(f"{name}: {reason}") from error
 
     def _report(self) -> None:
         self._report_us = monotonic_us() + (READY_REPORT_MS * 1000 if self._answered[0] == 0 else REPORT_US)
@@ -284,17 +309,3 @@ class Host:
 
     def _send_log(self, line: log_t) -> None:
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)
-
-
-class _Guard:
-    """Turns whatever a component raises into a `Failure` of that component."""
-
-    def __init__(self, host: Host, name: str, moment: str) -> None:
-        self._host, self._name, self._moment = host, name, moment
-
-    def __enter__(self) -> None:
-        pass
-
-    def __exit__(self, kind: object, error: BaseException | None, trace: object) -> None:
-        if isinstance(error, Exception | SystemExit) and not isinstance(error, BdbQuit):
-            raise self._host.fail(self._name, self._moment, error) from error

@@ -7,7 +7,7 @@ from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.messages import sequence_of, tick_of
+from fwk.messages import tick_and_sequence_of
 from fwk.plan.model import ChannelPlan
 from lcmtypes.core import fetch_t, gone_t
 
@@ -41,8 +41,8 @@ class Outputs:
         marks = {}
         for channel, data in written:
             index, name, port, history = self._written[channel]
-            sequence = sequence_of(data)
-            history.add(tick_of(data), sequence, data)
+            tick, sequence = tick_and_sequence_of(data)
+            history.add(tick, sequence, data)
             box = self._local.get(channel)
             if box is not None:
                 box.put(sequence, data)

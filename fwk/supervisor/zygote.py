@@ -179,6 +179,8 @@ class _Forker:
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._connection.close()
             if not debugged:  # who is debugged keeps the terminal
+                # A session each: Linux spreads the processes of one session (its autogroup) badly over the processors.
+                os.setsid()
                 os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
                 os.dup2(output_write, 1)
                 os.dup2(errors_write, 2)
