@@ -52,7 +52,7 @@ def shape(name: str) -> Any:
     return messages.type_named(f"shapes.{name}")
 
 
-def filled(draw: Draw, message_type: Any) -> Any:
+def filled(draw: Draw, message_type: Any, depth: int = 0) -> Any:
     """A message with any values."""
     made = message_type()
     counts: dict[str, int] = {}
@@ -61,25 +61,26 @@ def filled(draw: Draw, message_type: Any) -> Any:
     ):
         if not dimensions:
             if name not in ("n", "m"):
-                setattr(made, name, value(draw, kind))
+                setattr(made, name, value(draw, kind, depth))
             continue
         sizes = [
-            size if isinstance(size, int) else counts.setdefault(size, draw(some.integers(0, 3))) for size in dimensions
+            size if isinstance(size, int) else counts.setdefault(size, draw(some.integers(0, 3 if depth < 2 else 0)))
+            for size in dimensions
         ]
-        setattr(made, name, array(draw, kind, sizes))
+        setattr(made, name, array(draw, kind, sizes, depth))
     for name, count in counts.items():
         setattr(made, name, count)
     return made
 
 
-def array(draw: Draw, kind: str, sizes: list[int]) -> Any:
+def array(draw: Draw, kind: str, sizes: list[int], depth: int) -> Any:
     first, *others = sizes
     if not others and kind == "byte":
         return draw(some.binary(min_size=first, max_size=first))
-    return [array(draw, kind, others) if others else value(draw, kind) for _ in range(first)]
+    return [array(draw, kind, others, depth) if others else value(draw, kind, depth) for _ in range(first)]
 
 
-def value(draw: Draw, kind: str) -> Any:
+def value(draw: Draw, kind: str, depth: int) -> Any:
     if kind in RANGES:
         bits = RANGES[kind]
         return draw(some.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1))
@@ -92,7 +93,7 @@ def value(draw: Draw, kind: str) -> Any:
     if kind == "string":
         return draw(some.text("aé{%", max_size=5))
     package, _, name = kind.rpartition(".")
-    return filled(draw, getattr(import_module(package), name))
+    return filled(draw, getattr(import_module(package), name), depth + 1)
 
 
 def shown(message: Any) -> str:
