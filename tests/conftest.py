@@ -4,6 +4,11 @@ import shutil
 from collections.abc import Callable
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
+settings.register_profile("long", deadline=None, max_examples=5000)
+settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long looks for new ones
 
 _LEFT_OUT = pytest.StashKey[dict[str, list[str]]]()
 

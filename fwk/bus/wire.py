@@ -11,6 +11,7 @@ _SHORT_MAX = 65_499  # channel, its zero byte and data of a message that goes in
 _FRAGMENT = 65_487
 _MESSAGE_MAX = 256 << 20
 _UNFINISHED_MAX = 64  # fragmented messages under way at the same time
+_UNFINISHED_BYTES_MAX = 2 * _MESSAGE_MAX  # of all of them; the oldest go first
 
 DATAGRAM_MAX = 65_535
 
@@ -55,9 +56,34 @@ def short(datagram: bytes) -> tuple[bytes, bytes]:
 
 class _Unfinished:
     def __init__(self, size: int, count: int) -> None:
-        self.data = bytearray(size)
-        self.missing = set(range(count))
+        self.size = size
+        self.count = count
         self.channel = b""
+        self.bytes = 0
+        self._bodies: dict[int, tuple[int, bytes]] = {}
+
+    def add(self, part: int, offset: int, body: bytes) -> bool:
+        """Takes a fragment; says whether it was the last. Memory is used for what came, not for what is announced."""
+        if part not in self._bodies:
+            self._bodies[part] = offset, body
+            self.bytes += len(body)
+        return len(self._bodies) == self.count
+
+    def data(self) -> bytes:
+        """All of it.
+
+        Raises:
+            MessageError: the fragments do not lie one behind the other.
+        """
+        bodies, expected = [], 0
+        for _, (offset, body) in sorted(self._bodies.items()):
+            if offset != expected:
+                raise MessageError(f"fragment at {offset} of a message of {self.size} bytes where {expected} is next")
+            bodies.append(body)
+            expected += len(body)
+        if expected != self.size:
+            raise MessageError(f"{expected} bytes in all fragments of a message of {self.size}")
+        return b"".join(bodies)
 
 
 class Assembler:
@@ -65,6 +91,7 @@ class Assembler:
 
     def __init__(self) -> None:
         self._unfinished: dict[tuple[int, int], _Unfinished] = {}
+        self._bytes = 0  # in all of them
 
     def feed(self, datagram: bytes, source_port: int) -> tuple[bytes, bytes] | None:
         """Takes a datagram; gives (channel, data) when it completes a message.
@@ -88,21 +115,26 @@ class Assembler:
         if size > _MESSAGE_MAX or part >= count or count > size // 1000 + 2:
             raise MessageError(f"fragment {part} of {count} of a message of {size} bytes: impossible")
         key = (source_port, number)
-        message = self._unfinished.get(key)
-        if message is None:
-            if len(self._unfinished) >= _UNFINISHED_MAX:
-                del self._unfinished[next(iter(self._unfinished))]
-            message = self._unfinished[key] = _Unfinished(size, count)
+        message = self._unfinished.get(key) or _Unfinished(size, count)
+        channel = message.channel
         if part == 0:
             end = body.find(b"\0")
             if end < 0:
                 raise MessageError("first fragment without a channel name")
-            message.channel, body = body[:end], body[end + 1 :]
-        if len(message.data) != size or offset + len(body) > size:
+            channel, body = body[:end], body[end + 1 :]
+        if (message.size, message.count) != (size, count) or offset + len(body) > size:
             raise MessageError(f"fragment at {offset} of {len(body)} bytes does not fit into a message of {size}")
-        message.data[offset : offset + len(body)] = body
-        message.missing.discard(part)
-        if message.missing:
-            return None
-        del self._unfinished[key]
-        return message.channel, bytes(message.data)
+        message.channel = channel
+        self._unfinished[key] = message
+        before = message.bytes
+        complete = message.add(part, offset, body)
+        self._bytes += message.bytes - before
+        if complete:
+            self._forget(key)
+            return message.channel, message.data()
+        while len(self._unfinished) > _UNFINISHED_MAX or self._bytes > _UNFINISHED_BYTES_MAX:
+            self._forget(next(iter(self._unfinished)))
+        return None
+
+    def _forget(self, key: tuple[int, int]) -> None:
+        self._bytes -= self._unfinished.pop(key).bytes

@@ -67,10 +67,10 @@ def new_file(text: str) -> Path:
         BadParameter: it names a folder, or lies where nothing may be written.
     """
     path = Path(text).absolute()
-    if path.is_dir():
+    if os.path.isdir(path):
         raise typer.BadParameter(f"'{text}' is a folder; name a file in it")
-    nearest = next(folder for folder in path.parents if folder.exists())
-    if not nearest.is_dir() or not os.access(path if path.exists() else nearest, os.W_OK):
+    nearest = next(folder for folder in path.parents if os.path.exists(folder))
+    if not os.path.isdir(nearest) or not os.access(path if os.path.exists(path) else nearest, os.W_OK):
         raise typer.BadParameter(f"'{text}' cannot be written: {nearest} is no folder that you may write to")
     return path
 

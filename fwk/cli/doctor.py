@@ -12,7 +12,7 @@ _HOSTS, _CHANNELS = 100, 250  # a soccer match, every component a process
 
 
 def doctor(
-    bus_port: Annotated[int, typer.Option(help="as for fwk-launch")] = Plan.bus_port,
+    bus_port: Annotated[int, typer.Option(min=1024, max=65535, help="as for fwk-launch")] = Plan.bus_port,
 ) -> None:
     """Checks multicast, buffers, ports, shared memory, generator and Java, and says what to type.
 

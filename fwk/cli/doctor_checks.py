@@ -16,6 +16,7 @@ from fwk.bus.sockets import BUFFER_BYTES, GROUP, LOOPBACK
 from fwk.typegen import lcm_gen
 
 _WAIT_S = 1.0
+_PORTS_END = 65536
 _FILES = 1024  # a supervisor of a hundred processes, or a gateway to a few hundred channels
 
 
@@ -66,6 +67,9 @@ def receive_buffers() -> Finding:
 def ports(wanted: Ports) -> Finding:
     """Whether a run can have the ports that it takes by default."""
     subject = f"ports {wanted.base} to {wanted.end - 1}"
+    if wanted.end > _PORTS_END:
+        advice = f"fwk-launch FILE --bus-port {_PORTS_END - wanted.end + wanted.base}"
+        return Finding(Level.BAD, subject, f"there are none above {_PORTS_END - 1}", advice)
     try:
         PortLock(wanted, "the next run").release()
     except PortsInUse as error:

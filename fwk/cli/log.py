@@ -77,7 +77,7 @@ def _find(run_dir: Path | None, bus_port: int | None) -> tuple[Path, Callable[[]
             if bus_port is not None or running() or not folders:
                 raise
             run_dir = folders[-1]
-    if not (run_dir / FILE).is_file():
+    if not os.path.isfile(run_dir / FILE):
         raise typer.BadParameter(f"{run_dir}: no run directory, there is no {FILE} in it")
     return run_dir / FILE, lambda: False
 

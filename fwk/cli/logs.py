@@ -1,5 +1,6 @@
 """What the commands on recordings share: finding the log in a run directory, and ending with a plain sentence."""
 
+import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -26,7 +27,7 @@ def find_log(path: Path) -> Path:
     Raises:
         LogError: the directory holds no log, or several.
     """
-    if not path.is_dir():
+    if not os.path.isdir(path):  # False, too, for what can be no path or is forbidden
         return path
     found = [file for file in sorted(path.iterdir()) if file.is_file() and _is_log(file)]
     if len(found) != 1:

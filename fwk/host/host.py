@@ -281,7 +281,7 @@ class Host:
         Raises:
             Failure: always, unless it is no failure of the component: somebody left the debugger, or ends the process.
         """
-        if isinstance(error, BdbQuit) or not isinstance(error, Exception | SystemExit):
+        if isinstance(error, BdbQuit | KeyboardInterrupt):
             return
         place = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"{type(error).__name__}: {error} ({place.filename}:{place.lineno}, in {moment})"

@@ -66,7 +66,7 @@ def _together(alike: list[Problem]) -> Problem:
 
 def _position(problem: Problem) -> tuple[bool, str, int]:
     file, _, line = problem.place.rpartition(":")
-    return (False, file, int(line)) if line.isdecimal() else (True, problem.place, 0)
+    return (False, file, int(line)) if line.isdecimal() and len(line) < 10 else (True, problem.place, 0)
 
 
 def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str = "") -> str:

@@ -1,5 +1,6 @@
 """Finds a launch file, what it includes and its host-specific file, and reads them into layers."""
 
+import os
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from pathlib import Path
@@ -60,7 +61,7 @@ def find_launch_file(file: str, problems: Problems) -> Path | None:
     """Looks for a launch file as given, then in `launch/` here, then among those that come with fwk."""
     places = [Path(), Path(FOLDER), INSTALLED / FOLDER]
     for place in places:
-        if (place / file).is_file():
+        if os.path.isfile(place / file):  # False, too, for what can be no path or is forbidden
             return (place / file).absolute()
     there = [name for place in places[1:] for name in _launch_files(place)]
     near = get_close_matches(file, there, 1)
@@ -78,7 +79,7 @@ def read_files(path: Path, problems: Problems) -> Files:
     files = Files(path)
     _Reader(files, problems).read(path, [])
     beside = host_file(path)
-    node = read_yaml(beside, shown(beside), problems) if beside.is_file() else None
+    node = read_yaml(beside, shown(beside), problems) if os.path.isfile(beside) else None
     if node:
         lay_over(files, beside, node, problems)
     return files
@@ -118,7 +119,7 @@ class _Reader:
 
     def _include(self, name: str, place: str, above: list[Path]) -> None:
         here = above[-1].parent
-        found = next((folder / name for folder in (here, INSTALLED / FOLDER) if (folder / name).is_file()), None)
+        found = next((folder / name for folder in (here, INSTALLED / FOLDER) if os.path.isfile(folder / name)), None)
         if found is None:
             there = [*_launch_files(here), *_launch_files(INSTALLED / FOLDER)]
             near = get_close_matches(name, there, 1)

@@ -9,6 +9,9 @@ import yaml
 
 from fwk.plan.errors import Problems
 
+VALUES_MAX = 100_000
+"""Of a file with its aliases written out; more is a mistake or meant to hurt."""
+
 
 @dataclass(frozen=True, slots=True)
 class Node:
@@ -107,10 +110,18 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
     except yaml.reader.ReaderError as error:
         line = text[: error.position].count("\n") + 1
         problems.add(f"{shown}:{line}", "", f"this is no YAML: character {chr(error.character)!r} is not allowed")
+    except RecursionError:
+        problems.add(f"{shown}:1", "", "values lie too deep in each other; a few levels are enough")
+    except _TooMuch:
+        problems.add(f"{shown}:1", "", f"more than {VALUES_MAX} values when its aliases are written out; use fewer")
     finally:
         if loader:
             loader.dispose()
     return None
+
+
+class _TooMuch(Exception):  # noqa: N818 - what the file holds
+    pass
 
 
 class _Converter:
@@ -118,10 +129,14 @@ class _Converter:
         self._shown = shown
         self._problems = problems
         self._around: list[yaml.Node] = []
+        self._values = 0
 
     def convert(self, node: yaml.Node, line: int) -> Node:
         """Turns a YAML node whose key stands in `line` into ours."""
         place = f"{self._shown}:{line}"
+        self._values += 1
+        if self._values > VALUES_MAX:
+            raise _TooMuch
         if node in self._around:
             self._problems.add(place, "", "this value contains itself; write it out")
             return Node(None, place)

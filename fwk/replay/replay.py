@@ -1,8 +1,10 @@
 """Replays a recording tick by tick and compares what the components write with what they wrote."""
 
 import json
+import traceback
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from fnmatch import fnmatchcase
 from importlib import import_module
 from typing import Any
@@ -24,7 +26,7 @@ class Replay:
     replayed with it, because frames are not in the recording.
 
     Raises:
-        RecordingError: no component has such a name.
+        RecordingError: no component has such a name. While it runs: the log is damaged, or a component fails.
     """
 
     def __init__(self, recording: Recording, only: Sequence[str] = ()) -> None:
@@ -81,7 +83,8 @@ class Replay:
         self._changes.setdefault(change.component, []).append((tick, settings))
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
-                actor.runner.configure(settings)
+                with self._failing(actor.plan, f"the change of its settings in tick {tick}"):
+                    actor.runner.configure(settings)
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings of that tick, then takes over what was changed since."""
@@ -91,9 +94,10 @@ class Replay:
                 continue
             component, changes = self._plan.components[index], self._changes.get(index, [])
             before = [settings for tick, settings in changes if tick <= started_with]
-            actor = Actor(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
-            for _, settings in changes[len(before) :]:
-                actor.runner.configure(settings)
+            with self._failing(component, "its start"):
+                actor = Actor(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
+                for _, settings in changes[len(before) :]:
+                    actor.runner.configure(settings)
             for channel, data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():
@@ -104,9 +108,21 @@ class Replay:
         made = []
         for actor in self._actors.get(host, []):
             if stage in actor.plan.stages:
-                made.append((actor, actor.iterate(tick, stage, time_us)))
+                with self._failing(actor.plan, f"tick {tick}"):
+                    made.append((actor, actor.iterate(tick, stage, time_us)))
                 self.iterations += 1
         self._pending[host, tick, stage] = made
+
+    @contextmanager
+    def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
+        try:
+            yield
+        except Exception as error:
+            trace = "".join(traceback.format_exception(error)).rstrip()
+            raise RecordingError(
+                f"{self.recording.path}: {component.name} fails in {moment} as it did not in the run: the recording is "
+                f"damaged, or the component was changed or depends on something else\n{trace}"
+            ) from error
 
     def _done(self, host: int, tick: int, stage: int) -> None:
         recorded: dict[str, list[bytes]] = {}

@@ -146,6 +146,8 @@ class HostEntry:
             self.state, self.restart_us = ("waiting" if self.wanted and not stopping else "stopped"), now_us
             return
         how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        if code == 0:
+            how = "it left by itself (exit code 0), which nobody had asked it to"
         if stopping and code == 0:
             self.state = "stopped"
             return
@@ -157,9 +159,8 @@ class HostEntry:
         if code == LEFT and not stopping:  # on with it, and nobody counts it as a failure
             self.state, self.restart_us, self.reason = "waiting", now_us, "given back"
             return
-        wanted = self.policy.when == "always" or (self.policy.when == "on-failure" and code != 0)
-        if stopping or not wanted:
-            self.state = "stopped" if code == 0 else "failed"
+        if stopping or self.policy.when == "never":
+            self.state = "failed"
             return
         while self._starts_us and self._starts_us[0] < now_us - self.policy.window_s * US_PER_S:
             self._starts_us.popleft()

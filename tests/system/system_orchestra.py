@@ -211,6 +211,19 @@ def fail():
     raise RuntimeError("a wrong note")
 
 
+class GiveUp(BaseException):
+    pass
+
+
+def give_up():
+    raise GiveUp("no more")
+
+
+def spin():
+    while True:
+        pass
+
+
 def kill():
     os.kill(os.getpid(), signal.SIGKILL)
 
@@ -247,6 +260,9 @@ MAKE = {
     "exit": lambda: sys.exit(0),
     "exit text": lambda: sys.exit("enough"),
     "os._exit": lambda: os._exit(3),
+    "leave": lambda: os._exit(0),
+    "give up": give_up,
+    "spin": spin,
     "kill": kill,
     "kill after publish": kill_after_publish,
     "crash": lambda: ctypes.string_at(0),

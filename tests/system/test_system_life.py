@@ -123,7 +123,9 @@ def test_who_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None
         ("loop:raise", "d/player ended: RuntimeError: a wrong note"),
         ("loop:exit", "d/player ended: SystemExit: 0"),
         ("loop:exit text", "d/player ended: SystemExit: enough"),
+        ("loop:give up", "d/player ended: GiveUp: no more"),
         ("loop:os._exit", "d/player ended: exit code 3"),
+        ("loop:leave", "d/player ended: it left by itself (exit code 0), which nobody had asked it to"),
         ("loop:crash", "d/player ended: killed by signal 11"),
     ],
 )

@@ -13,10 +13,10 @@ def entry(when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10
 @pytest.mark.parametrize(
     ("when", "code", "state"),
     [
-        ("never", 0, "stopped"),
+        ("never", 0, "failed"),
         ("never", 1, "failed"),
         ("never", -9, "failed"),
-        ("on-failure", 0, "stopped"),
+        ("on-failure", 0, "waiting"),
         ("on-failure", 1, "waiting"),
         ("on-failure", -11, "waiting"),
         ("always", 0, "waiting"),
@@ -69,6 +69,13 @@ def test_the_reason_names_the_signal() -> None:
     host.starting(0)
     host.ended(-9, 1, stopping=False)
     assert host.reason == "killed by signal 9"
+
+
+def test_who_leaves_without_having_been_asked_is_told_so() -> None:
+    host = entry("never")
+    host.starting(0)
+    host.ended(0, 1, stopping=False)
+    assert "left by itself" in host.reason
 
 
 def running(when: RestartWhen = "on-failure") -> HostEntry:

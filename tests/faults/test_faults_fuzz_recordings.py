@@ -1,0 +1,181 @@
+"""Whatever stands in a log, the commands on recordings end with what is in it, or with a sentence."""
+
+import json
+from collections.abc import Callable
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as some
+
+from fwk import Component, Reads, Writes
+from fwk.record.compare import Comparison
+from fwk.record.log import LogError, LogReader, LogWriter
+from fwk.record.log_info import log_info
+from fwk.replay.recording import Recording, RecordingError
+from fwk.replay.replay import Replay
+from fwk.testing import MemorySystem
+from fwk.testing.plans import plan_of
+from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+from tests.faults.faults_fuzz import damaged
+
+TICKS = 4
+FIXTURE = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+
+
+class Sensor(Component):
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 0.1
+        self.imu.write()
+
+
+class Thinker(Component):
+    stage = "think"
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        self.pose.value.heading_rad = self.imu.value.heading_rad
+        self.pose.write()
+
+
+PARTS: dict[str, type[Component]] = {"r/sensor": Sensor, "r/thinker": Thinker}
+
+
+def recorded() -> list[tuple[str, bytes]]:
+    """What a run of both records."""
+    plan, system = plan_of(PARTS), MemorySystem(PARTS)
+    system.tick(TICKS)
+    said = plan_t()
+    said.json = json.dumps(plan.to_json())
+    made = [("fwk/plan", said.encode())]
+    for tick in range(TICKS):
+        made += [("r/imu", system.sent["r/imu"][tick]), ("r/pose", system.sent["r/pose"][tick])]
+        made.append(("fwk/record", record(tick + 1, [1, 5]).encode()))
+    return made
+
+
+def record(tick: int, stages: list[int]) -> tick_record_t:
+    made = tick_record_t()
+    made.tick, made.time_us = tick, tick * 50_000
+    if tick == 1:
+        made.events += [event(tick_event_t.STARTED, host, stage=1) for host in range(2)]
+    for host, stage in enumerate(stages):
+        made.events += [event(tick_event_t.STAGE, stage), event(tick_event_t.DONE, host, tick, stage)]
+    made.n_events = len(made.events)
+    return made
+
+
+def event(kind: int, index: int, tick: int = 0, stage: int = 0) -> tick_event_t:
+    made = tick_event_t()
+    made.kind, made.index, made.tick, made.stage = kind, index, tick, stage
+    return made
+
+
+def write(path: Path, entries: list[tuple[str, bytes]]) -> Path:
+    with LogWriter(path, print) as log:
+        for channel, data in entries:
+            log.append(channel, data, 0)
+    return path
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    return write(tmp_path / "log.lcm", recorded())
+
+
+def replay(path: Path) -> Replay:
+    made = Replay(Recording(path))
+    made.run()
+    return made
+
+
+def test_what_is_damaged_here_is_right_before(log: Path) -> None:
+    done = replay(log)
+    assert (done.compared, done.differences) == (2 * TICKS, [])
+
+
+USES: tuple[Callable[[Path, Path], object], ...] = (
+    lambda broken, _: log_info(broken),
+    lambda broken, log: Comparison(log, broken),
+    lambda broken, log: Comparison(broken, log, common=True),
+    lambda broken, _: replay(broken),
+)
+
+
+def use(broken: Path, log: Path) -> None:
+    for each in USES:
+        with suppress(LogError, RecordingError):
+            each(broken, log)
+
+
+@FIXTURE
+@given(some.data())
+def test_a_damaged_log_is_read_as_far_as_it_goes(log: Path, data: some.DataObject) -> None:
+    broken = log.with_name("broken.lcm")
+    broken.write_bytes(data.draw(damaged(log.read_bytes())))
+    use(broken, log)
+
+
+@FIXTURE
+@given(some.data())
+def test_a_log_of_damaged_messages_is_read_as_far_as_it_goes(log: Path, data: some.DataObject) -> None:
+    entries = recorded()
+    place = data.draw(some.integers(0, len(entries) - 1))
+    entries[place] = (entries[place][0], data.draw(damaged(entries[place][1])))
+    use(write(log.with_name("broken.lcm"), entries), log)
+
+
+@FIXTURE
+@given(some.binary(max_size=60), some.sampled_from(["fwk/plan", "fwk/record", "r/imu", "fwk/log", "fwk/status"]))
+def test_any_bytes_may_stand_on_any_channel_of_a_log(log: Path, junk: bytes, channel: str) -> None:
+    entries = recorded()
+    use(write(log.with_name("broken.lcm"), [*entries[:3], (channel, junk), *entries[3:]]), log)
+
+
+PLAN = plan_of(PARTS).to_json()
+
+
+@pytest.mark.parametrize("key", PLAN)
+@pytest.mark.parametrize("value", [None, 3, "x", [], {}, [3], [{}], [[]]], ids=repr)
+def test_a_plan_of_another_shape_is_read_or_refused(tmp_path: Path, key: str, value: Any) -> None:
+    made = plan_t()
+    made.json = json.dumps({**PLAN, key: value})
+    path = write(tmp_path / "log.lcm", [("fwk/plan", made.encode())])
+    with suppress(RecordingError):
+        replay(path)
+
+
+@pytest.mark.parametrize("text", ["", "null", "[]", "{}", "[" * 100_000, '{"components": 3}'])
+def test_a_plan_that_is_none_is_named(tmp_path: Path, text: str) -> None:
+    made = plan_t()
+    made.json = text
+    with pytest.raises(RecordingError, match="its plan cannot be read"):
+        replay(write(tmp_path / "log.lcm", [("fwk/plan", made.encode())]))
+
+
+def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None:
+    change = change_t()
+    change.settings = "{"
+    unknown, broken = record(9, [1, 5]), record(9, [1, 5])
+    unknown.events[1].index = 77
+    broken.changes, broken.n_changes = [change], 1
+    entries = [(each.channel, each.data) for each in LogReader(log)]
+    for wrong in (unknown, broken):
+        write(log, [*entries, ("fwk/record", wrong.encode())])
+        with pytest.raises(RecordingError, match=f"event {len(entries)}, a record of the main loop"):
+            replay(log)
+
+
+def test_a_component_that_fails_in_replay_is_named_with_its_place(log: Path) -> None:
+    entries = [(each.channel, each.data) for each in LogReader(log)]
+    cut = [(channel, data[:50] if channel == "r/imu" else data) for channel, data in entries]
+    with pytest.raises(RecordingError, match=r"r/thinker fails in tick 1 .*(?s:.*)in loop"):
+        replay(write(log, cut))
