@@ -11,7 +11,7 @@ from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, Wri
 from fwk.aspects.logging import Logger
 from fwk.aspects.vision import Image, VisionMaster
 from fwk.clock import Clock, TimeSource
-from fwk.config import Config
+from fwk.config import LOG_LEVEL, Config, with_log_level
 from lcmtypes.robot import frame_t
 
 DEFAULT_STAGES = (
@@ -47,6 +47,8 @@ class Component:
     stage: ClassVar[str | tuple[str, ...]]
     name: str
     """Full name: `cyan1/omni_ball`."""
+    changed_settings: frozenset[str] = frozenset()
+    """What the newest change of settings has changed; dotted names, for `config_changed`."""
 
     @classmethod
     def preload(cls, config: Any) -> None:
@@ -65,7 +67,7 @@ class Component:
     def config_changed(self) -> None:
         """Called between two iterations when settings were changed; `self.config` has the new ones.
 
-        What `init` has made of the old ones has to be made anew here.
+        What `init` has made of the old ones has to be made anew here; `self.changed_settings` says which they are.
         """
 
     def finalize(self) -> None:
@@ -117,7 +119,8 @@ class Declaration:
     component: type[Component]
     stages: tuple[str, ...]
     ports: tuple[Port, ...]
-    config: type[Config] | None = None
+    config: type[Config]
+    """With `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
     """Attribute to aspect name: clock, log, rng, time_source."""
 
@@ -139,9 +142,9 @@ def declaration(component: type[Component]) -> Declaration:
         hints = typing.get_type_hints(component)
     except (NameError, TypeError, AttributeError) as error:
         raise DeclarationError(f"{where}: an annotation cannot be read: {error}") from error
-    ports, aspects, config = [], {}, None
+    ports, aspects, config = [], {}, Config
     for attribute, wish in hints.items():
-        if attribute in ("stage", "name") or attribute.startswith("_"):
+        if attribute in ("stage", "name", "changed_settings") or attribute.startswith("_"):
             continue
         default = getattr(component, attribute, None)
         if get_origin(wish) in _PORT_KINDS:
@@ -154,6 +157,8 @@ def declaration(component: type[Component]) -> Declaration:
         elif isinstance(wish, type) and issubclass(wish, Config):
             if attribute != "config":
                 raise DeclarationError(f"{where}.{attribute}: settings are called 'config'")
+            if LOG_LEVEL in wish.model_fields:
+                raise DeclarationError(f"{where}: every component has a setting '{LOG_LEVEL}'; call its own otherwise")
             config = wish
         elif get_origin(wish) is not ClassVar and default is None:
             raise DeclarationError(
@@ -163,7 +168,11 @@ def declaration(component: type[Component]) -> Declaration:
                 "and set plain attributes in init()"
             )
     return Declaration(
-        component, (stages,) if isinstance(stages, str) else tuple(stages), tuple(ports), config, aspects
+        component,
+        (stages,) if isinstance(stages, str) else tuple(stages),
+        tuple(ports),
+        with_log_level(config),
+        aspects,
     )
 
 

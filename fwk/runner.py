@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 
 from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
-from fwk.aspects.logging import Logger
+from fwk.aspects.logging import LEVELS, Logger
+from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.vision import Image, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import Component, Declaration, Port
-from fwk.config import Config
+from fwk.config import LOG_LEVEL, Config
 from lcmtypes.core import log_t
 
 NOTHING: list[bytes] = []
@@ -28,6 +29,8 @@ class Surroundings:
     sink: Callable[[log_t], None]
     rings: Mapping[str, Ring]
     """Shared-memory rings by channel."""
+    lines_per_s: int = 0
+    """That each component may log; 0: as many as it likes."""
 
 
 class Runner:
@@ -52,23 +55,26 @@ class Runner:
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
-        self.log = Logger(name, self.clock, surroundings.sink)
+        self._config = config or declaration.config()
+        limit = RateLimit(surroundings.lines_per_s)
+        self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
         self.component: Component = declaration.component()
         self._rings = surroundings.rings
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         for attribute, aspect in declaration.aspects.items():
             setattr(self.component, attribute, self._aspect(aspect, surroundings.seed))
-        if declaration.config:
-            setattr(self.component, "config", config or declaration.config())  # noqa: B010 - not every component declares one
+        setattr(self.component, "config", self._config)  # noqa: B010 - not every component declares one
         for port in declaration.ports:
             setattr(self.component, port.attribute, self._port(port, channels[port.attribute]))
 
     def configure(self, settings: Mapping[str, Any]) -> None:
-        """Between two iterations: gives the component new settings, all of them, and tells it."""
-        config: Config = getattr(self.component, "config")  # noqa: B009 - not every component declares one
-        config.take_over(type(config).model_validate(settings))
-        self.component.config_changed()
+        """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
+        changed = self._config.take_over(type(self._config).model_validate(settings))
+        self.log.level = self._log_level
+        if changed - {LOG_LEVEL}:
+            self.component.changed_settings = changed - {LOG_LEVEL}
+            self.component.config_changed()
 
     def iterate(
         self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
@@ -99,6 +105,10 @@ class Runner:
             if writer.pending:
                 written += [(channel, data) for data in writer.take()]
         return written
+
+    @property
+    def _log_level(self) -> int:
+        return LEVELS[getattr(self._config, LOG_LEVEL)]
 
     def _aspect(self, aspect: str, seed: int) -> Any:
         if aspect == "rng":

@@ -1,7 +1,9 @@
 """What all tests share: a test that needs a program which is not here is left out by name, and the end says so."""
 
 import shutil
-from collections.abc import Callable
+import subprocess
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -19,6 +21,8 @@ _PACKAGES = {
     "jar": "default-jdk-headless",
     "java": "default-jre",
     "javac": "default-jdk-headless",
+    "mount": "mount",
+    "umount": "mount",
     "unshare": "util-linux",
 }
 """Program to Debian package, where the names differ."""
@@ -37,6 +41,31 @@ def needs(request: pytest.FixtureRequest) -> Callable[..., None]:
             pytest.skip(reason)
 
     return check
+
+
+@pytest.fixture
+def small_disk(
+    tmp_path: Path, needs: Callable[..., None], request: pytest.FixtureRequest
+) -> Iterator[Callable[[int], Path]]:
+    """`small_disk(8)` is a folder on a disk of its own of 8 MiB; only root can make one."""
+    needs("mount", "umount")
+    made: list[Path] = []
+
+    def make(size_mib: int) -> Path:
+        folder = tmp_path / f"disk{len(made)}"
+        folder.mkdir()
+        command = ["mount", "-t", "tmpfs", "-o", f"size={size_mib}m", "tmpfs", str(folder)]
+        mounted = subprocess.run(command, capture_output=True, text=True, check=False)
+        if mounted.returncode:
+            reason = "needs the right to mount a small disk: run the tests as root"
+            request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
+            pytest.skip(reason)
+        made.append(folder)
+        return folder
+
+    yield make
+    for folder in made:
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:

@@ -10,11 +10,12 @@ from typing import Annotated
 import typer
 
 from fwk.cli.asking import BusPort, Json, ask, asking
+from fwk.cli.conditions import moment_us, pattern, ticks, times_us
 from fwk.cli.lines import log_line
-from fwk.clock import US_PER_S, wall_us
 from fwk.control.address import running
 from fwk.control.client import ControlError
 from fwk.gateway.json_log import FILE
+from fwk.record.rotating import names
 from fwk.record.text_log import Filter, from_plain, read_lines
 
 RUNS = Path(".cache", "fwk", "runs")
@@ -37,26 +38,36 @@ def log(
     follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
     level: Annotated[Level, typer.Option(help="lines of this level and worse")] = Level.DEBUG,
     component: Annotated[str | None, typer.Option(metavar="NAME", help="of this component or pattern")] = None,
-    tick: Annotated[str | None, typer.Option(metavar="N|A-B", help="of this tick, or from A to B")] = None,
+    tick: Annotated[str | None, typer.Option(metavar="N|A..B", help="of this tick, or from A to B")] = None,
+    time: Annotated[str | None, typer.Option(metavar="A..B", help="from A to B seconds of logical time")] = None,
     file: Annotated[str | None, typer.Option(metavar="NAME", help="written in this source file")] = None,
     line: Annotated[int | None, typer.Option(metavar="N", help="written in this line of the source file")] = None,
-    text: Annotated[str | None, typer.Option(metavar="WORDS", help="that contain this, in capitals or not")] = None,
-    since: Annotated[float | None, typer.Option(metavar="SECONDS", help="of the last so many seconds")] = None,
+    text: Annotated[
+        str | None, typer.Option(metavar="REGEXP", help="in whose text this is found, in capitals or not")
+    ] = None,
+    since: Annotated[
+        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="of the last so many seconds, or from then on")
+    ] = None,
+    until: Annotated[
+        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="older than so many seconds, or until then")
+    ] = None,
     bus_port: BusPort = None,
     as_json: Json = False,
 ) -> None:
     """Shows the lines that components and framework have written; all conditions have to hold.
 
-    With `--json` a line is an object with the fields of core.log_t.
+    In A..B one end may be left out. With `--json` a line is an object with the fields of core.log_t.
     """
     wanted = Filter(
         level=level.value,
         component=component,
-        tick=_ticks(tick) if tick else None,
+        tick=ticks(tick) if tick else None,
+        time_us=times_us(time) if time else None,
         file=file,
         line=line,
-        text=text,
-        since_us=wall_us() - round(since * US_PER_S) if since is not None else None,
+        text=pattern(text, "--text") if text else None,
+        since_us=moment_us(since, "--since") if since else None,
+        until_us=moment_us(until, "--until") if until else None,
     )
     with asking():
         path, runs = _find(run_dir, bus_port)
@@ -71,24 +82,21 @@ def _find(run_dir: Path | None, bus_port: int | None) -> tuple[Path, Callable[[]
         try:
             run = ask(bus_port, "run")
             pid = int(run["pid"])
-            return Path(run["run_dir"]) / FILE, lambda: _lives(pid)
+            return _there(Path(run["run_dir"])), lambda: _lives(pid)
         except ControlError:
             folders = sorted((Path.home() / RUNS).glob("*"))
             if bus_port is not None or running() or not folders:
                 raise
             run_dir = folders[-1]
-    if not os.path.isfile(run_dir / FILE):
-        raise typer.BadParameter(f"{run_dir}: no run directory, there is no {FILE} in it")
-    return run_dir / FILE, lambda: False
+    return _there(run_dir), lambda: False
+
+
+def _there(run_dir: Path) -> Path:
+    if not any(os.path.isfile(each) for each in names(run_dir / FILE, 2)):
+        right = "name a run directory; one of a plan with 'log: {json_lines: off}' has none"
+        raise typer.BadParameter(f"{run_dir}: there is no {FILE} in it; {right}")
+    return run_dir / FILE
 
 
 def _lives(pid: int) -> bool:
     return os.path.exists(f"/proc/{pid}")
-
-
-def _ticks(text: str) -> tuple[int, int]:
-    first, dash, last = text.partition("-")
-    try:
-        return int(first), int(last if dash else first)
-    except ValueError as error:
-        raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100-200") from error

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from typing import Any, get_type_hints
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 
@@ -156,12 +156,12 @@ def _layers(name: str, wishes: dict[str, Node]) -> list[Node]:
     return [node for pattern, node in wishes.items() if matches(name, pattern)]
 
 
-def _config_class(component: ComponentPlan) -> type[Config] | None:
+def _config_class(component: ComponentPlan) -> type[Config]:
     return _config_of(component.module, component.class_name)
 
 
 @cache
-def _config_of(module: str, class_name: str) -> type[Config] | None:
+def _config_of(module: str, class_name: str) -> type[Config]:
     return declaration(getattr(import_module(module), class_name)).config
 
 
@@ -178,14 +178,20 @@ def _value(values: Any, dotted: str) -> Any:
 
 
 @cache
-def _described(kind: type[Config] | None, dotted: str) -> dict[str, Any]:
+def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
     """Type and meaning of a setting; every setting can be edited."""
     annotation: Any = kind
     meaning = ""
     for key in dotted.split("."):
         annotation, meaning = _field(annotation, key)
+    return {"type": _type_name(annotation), "meaning": meaning, "editable": True}
+
+
+def _type_name(annotation: Any) -> str:
+    if get_origin(annotation) is Literal:
+        return " | ".join(map(str, get_args(annotation)))
     name = annotation.__name__ if type(annotation) is type else str(annotation or "any")
-    return {"type": name.replace("typing.", ""), "meaning": meaning, "editable": True}
+    return name.replace("typing.", "")
 
 
 def _field(kind: Any, key: str) -> tuple[Any, str]:

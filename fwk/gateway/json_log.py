@@ -1,11 +1,10 @@
 """The text log once more for programs: one JSON object a line."""
 
-import contextlib
 import json
-from pathlib import Path
 
 from fwk.aspects.logging import LEVEL_NAMES
 from fwk.messages import to_dict
+from fwk.record.rotating import RotatingFile
 from lcmtypes.core import log_t
 
 FILE = "fwk.log.jsonl"
@@ -14,8 +13,8 @@ FILE = "fwk.log.jsonl"
 class JsonLog:
     """A sink of the gateway: the fields of `core.log_t`, the level as a word."""
 
-    def __init__(self, path: Path) -> None:
-        self._file = open(path, "a", buffering=1, encoding="utf-8")  # noqa: SIM115 - closed by close()
+    def __init__(self, file: RotatingFile) -> None:
+        self._file = file
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Adds a line of text; anything else is not its business."""
@@ -23,13 +22,11 @@ class JsonLog:
             return
         line = to_dict(log_t.decode(data))
         line["level"] = LEVEL_NAMES.get(line["level"], str(line["level"]))
-        with contextlib.suppress(OSError):  # a full disk: the run goes on, the bus still has the lines
-            self._file.write(json.dumps(line) + "\n")
+        self._file.write(json.dumps(line))
 
     def tick(self) -> None:
         """Nothing to do."""
 
     def close(self) -> None:
         """Closes the file."""
-        with contextlib.suppress(OSError):
-            self._file.close()
+        self._file.close()

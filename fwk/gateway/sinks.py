@@ -1,16 +1,15 @@
-"""Where the gateway's messages go: LCM log, public bus, text log, display, and the newest of each for the summary."""
+"""Where the gateway's messages go: LCM log, public bus, display, and the newest of each for the summary."""
 
 import json
 import socket
 from collections.abc import Callable
 from pathlib import Path
 
-from fwk.aspects.logging import LEVEL_NAMES
 from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.plan.model import Plan
 from fwk.record.log import LogWriter
-from lcmtypes.core import log_t, plan_t
+from lcmtypes.core import plan_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
 
@@ -58,34 +57,6 @@ class Mirror:
 
     def close(self) -> None:
         """Nothing to do."""
-
-
-class TextLog:
-    """Writes the lines of text into a file."""
-
-    def __init__(self, path: Path) -> None:
-        self._file = open(path, "a", buffering=1, encoding="utf-8")  # noqa: SIM115 - closed by close()
-
-    def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Adds a line of text; anything else is not its business."""
-        if channel != "fwk/log":
-            return
-        line = log_t.decode(data)
-        place = f"{line.file}:{line.line}"
-        try:
-            self._file.write(
-                f"{line.wall_us / US_PER_S:.6f} tick {line.tick} {line.time_us / US_PER_S:.3f} s "
-                f"{LEVEL_NAMES.get(line.level, '?')} {line.component} {place}: {line.text}\n"
-            )
-        except OSError:  # a full disk: the run goes on, the bus still has the lines
-            return
-
-    def tick(self) -> None:
-        """Nothing to do."""
-
-    def close(self) -> None:
-        """Closes the file."""
-        self._file.close()
 
 
 class Display:

@@ -129,6 +129,8 @@ class Host:
             self._finalize()
         finally:
             self._report()
+            for runner in self._runners.values():
+                runner.log.tell_dropped(at_the_end=True)
 
     def _init(self) -> None:
         for index in start_order(self._plan.components, [plan.index for plan in self._own]):
@@ -146,12 +148,18 @@ class Host:
     def _runner(self, plan: ComponentPlan) -> Runner:
         component = getattr(import_module(plan.module), plan.class_name)
         declared = declaration(component)
-        surroundings = Surroundings(self._plan.seed, self._plan.period_us, self._send_log, self._assignment.rings)
+        surroundings = Surroundings(
+            self._plan.seed,
+            self._plan.period_us,
+            self._send_log,
+            self._assignment.rings,
+            self._plan.log.lines_per_s,
+        )
         if {port.attribute for port in declared.ports} != set(plan.channels):
             raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
         changed = self._assignment.settings.get(plan.name)
         settings = json.loads(changed) if changed else plan.config
-        config = declared.config.model_validate(settings) if declared.config else None
+        config = declared.config.model_validate(settings)
         runner = Runner(declared, plan.name, config, plan.channels, surroundings, self._assignment.incarnation)
         for channel, writer in runner.writers.items():
             writer.sequence = self._assignment.sequences.get(channel, 0)
@@ -286,7 +294,7 @@ class Host:
         place = traceback.extract_tb(error.__traceback__)[-1]
         reason = f"{type(error).__name__}: {error} ({place.filename}:{place.lineno}, in {moment})"
         self.figures[name].state, self.figures[name].reason = "failed", reason
-        self.log.error(f"{name} failed in {moment}\n{''.join(traceback.format_exception(error)).rstrip()}")
+        self.log.named(name).exception(f"failed in {moment}", error)
         raise Failure(f"{name}: {reason}") from error
 
     def _report(self) -> None:
@@ -306,6 +314,8 @@ class Host:
         first.lost += self.inputs.lost
         first.fetched, first.strangers = self.inputs.fetched, self._complaints.total
         self._sender.publish(b"fwk/actual", actual.encode(), self._ports.sync)
+        for runner in self._runners.values():
+            runner.log.tell_dropped()
 
     def _send_log(self, line: log_t) -> None:
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)

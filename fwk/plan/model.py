@@ -74,6 +74,20 @@ class HostPlan:
 
 
 @dataclass(frozen=True)
+class LogPlan:
+    """Where lines of text go: each target with the lowest level that it takes, or `off`."""
+
+    console: str = "info"
+    file: str = "debug"
+    json_lines: str = "debug"
+    bus: str = "debug"
+    recording: str = "debug"
+    file_mb: float = 16.0
+    files: int = 4
+    lines_per_s: int = 200
+
+
+@dataclass(frozen=True)
 class Plan:
     """Everything that processes of a run have to know."""
 
@@ -100,6 +114,7 @@ class Plan:
     """`module:function` that makes the display's headline of the newest messages."""
     video: str = ""
     """`module:function` that draws the top view of a recording."""
+    log: LogPlan = LogPlan()
 
     def to_json(self) -> dict[str, Any]:
         """Plain data for JSON."""
@@ -122,5 +137,9 @@ class Plan:
         )
         channels = tuple(ChannelPlan(**{**item, "readers": tuple(item["readers"])}) for item in data["channels"])
         hosts = tuple(HostPlan(**{**item, "components": tuple(item["components"])}) for item in data["hosts"])
-        simple = {"folders": tuple(data["folders"]), "stages": tuple(data["stages"])}
+        simple = {
+            "folders": tuple(data["folders"]),
+            "stages": tuple(data["stages"]),
+            "log": LogPlan(**data.get("log", {})),
+        }
         return cls(**{**data, **simple, "components": components, "channels": channels, "hosts": hosts})

@@ -30,6 +30,8 @@ Words = Annotated[list[str], BeforeValidator(_as_list)]
 Pace = Annotated[float, BeforeValidator(_as_pace)]
 """Logical seconds per wall second; `max` is 0: as fast as it goes."""
 Scalar = Annotated[Any, BeforeValidator(_as_scalar)]
+TargetLevel = Literal["debug", "info", "warning", "error", "off"]
+"""Lines of this level and worse; `off`: none."""
 SettingsByComponent = dict[str, dict[str, Any]]
 
 
@@ -73,6 +75,22 @@ class RobotEntry(_Entry):
     config: SettingsByComponent = {}
 
 
+class LogEntry(_Entry):
+    """Where lines of text go, and how many of them."""
+
+    console: TargetLevel | None = None
+    file: TargetLevel | None = None
+    json_lines: TargetLevel | None = None
+    bus: TargetLevel | None = None
+    recording: TargetLevel | None = None
+    file_mb: float | None = Field(None, ge=0.01)
+    """Size at which a file is put aside and a new one begun."""
+    files: int | None = Field(None, ge=1, le=1000)
+    """How many are kept, with the one that is written."""
+    lines_per_s: int | None = Field(None, ge=0)
+    """Of one component, and of what one process prints; 0: any number."""
+
+
 class HostFile(_Entry):
     """What differs from machine to machine; the file beside a launch file may say only this."""
 
@@ -82,6 +100,7 @@ class HostFile(_Entry):
     seed: int | None = Field(None, ge=0)
     stage_time_s: float | None = Field(None, ge=0.0)
     public_url: str | None = None
+    log: LogEntry = LogEntry()
     outside: dict[str, str] = {}
     """Channels that other programs may write on the public bus: name to type."""
     hosts: dict[str, Words] = {}

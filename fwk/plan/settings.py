@@ -11,7 +11,7 @@ DEFAULT = "default"
 
 
 def effective(
-    config: type[Config] | None, layers: Sequence[Node], place: str, report: Callable[[str, str], None]
+    config: type[Config], layers: Sequence[Node], place: str, report: Callable[[str, str], None]
 ) -> tuple[dict[str, Any], dict[str, str]]:
     """Every setting of a component with its value, and every setting's dotted name with its origin.
 
@@ -21,11 +21,6 @@ def effective(
     given = Node({}, place)
     for layer in layers:
         given = over(given, layer)
-    if config is None:
-        if given.value:
-            first = next(iter(given.value.values()))
-            report(first.place, "it has no settings; leave 'config' out, or give the class a 'config: MyConfig'")
-        return {}, {}
 
     def mistake(path: Path, where: str, text: str) -> None:
         report(where if path else place, text)

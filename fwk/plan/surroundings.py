@@ -9,7 +9,7 @@ from fwk import messages
 from fwk.plan.classes import UnusableError, find_object
 from fwk.plan.errors import Problems, hint
 from fwk.plan.files import Files
-from fwk.plan.model import Plan
+from fwk.plan.model import LogPlan, Plan
 from fwk.plan.names import mistake_in
 
 _URL = "udpm://"
@@ -83,6 +83,14 @@ def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Prob
     if use:
         _try(lambda: find_object(use, folders), lambda text: problems.add(_place(files, key), "", f"{key}: {text}"))
     return use
+
+
+def log_of(files: Files) -> LogPlan:
+    """Where lines of text go; layers win key by key."""
+    said: dict[str, Any] = {}
+    for layer in files.layers:
+        said |= layer.content.log.model_dump(exclude_none=True)
+    return LogPlan(**said)
 
 
 def _try(find: Callable[[], object], report: Callable[[str], None]) -> None:

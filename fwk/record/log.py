@@ -8,6 +8,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Self
 
+from fwk.record.disk import has_room
+
 _HEAD = struct.Struct(">IqqII")  # sync word, event number, time in µs, length of the channel, length of the data
 SYNC = (0xEDA1DA01).to_bytes(4, "big")
 _CHANNEL_MAX = 999  # what LCM's own reader accepts; on the wire it is 63
@@ -33,8 +35,8 @@ class Event(NamedTuple):
 class LogWriter:
     """Writes a log that lcm-logplayer plays; an existing file is replaced.
 
-    When the disk is full the events at hand are dropped and counted in `dropped`, `report` is told once, and writing
-    goes on as soon as there is room again: a recording never stops what it records. Whatever kills the writer, the file
+    When the disk is full the events at hand are dropped and counted in `dropped`, `report` is told so once, and again
+    when there is room and writing goes on: a recording never stops what it records. Whatever kills the writer, the file
     is readable up to its last `flush`.
 
     Raises:
@@ -47,7 +49,7 @@ class LogWriter:
         self.events = 0
         """Events appended, with those dropped."""
         self._report = report
-        self._reported = False
+        self._full = False
         self._buffer = bytearray()
         self._buffered = 0
         self._buffer_bytes = buffer_bytes
@@ -77,15 +79,14 @@ class LogWriter:
 
     def flush(self) -> None:
         """Hands everything appended so far to the operating system."""
-        rest = memoryview(self._buffer)
-        try:
-            while rest:
-                rest = rest[self._file.write(rest) :]
-            self._good_bytes += len(self._buffer)
-        except OSError as error:
-            self._drop(error)
-        self._buffer = bytearray()
-        self._buffered = 0
+        if not self._buffered:
+            return
+        data, events = self._buffer, self._buffered
+        self._buffer, self._buffered = bytearray(), 0  # first: what is reported may be recorded itself
+        if self._full and not has_room(self.path):
+            self.dropped += events
+        else:
+            self._write(data, events)
 
     def close(self) -> None:
         """Writes the rest and closes the file; more than once does no harm."""
@@ -101,19 +102,32 @@ class LogWriter:
     ) -> None:
         self.close()
 
-    def _drop(self, error: OSError) -> None:
-        self.dropped += self._buffered
-        if not self._reported:
-            self._reported = True
-            self._report(
-                f"{self.path}: cannot record: {error.strerror}; the run goes on, and so does the recording when there "
-                "is room again; until then messages are missing in it"
-            )
+    def _write(self, data: bytearray, events: int) -> None:
+        rest = memoryview(data)
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            self._drop(error, events)
+            return
+        self._good_bytes += len(data)
+        if self._full:
+            self._full = False
+            self._report(f"{self.path}: there is room again; {self.dropped} messages are missing in the recording")
+
+    def _drop(self, error: OSError, events: int) -> None:
+        self.dropped += events
         try:  # take back what was written of a torn event, so that later events follow whole ones
             self._file.truncate(self._good_bytes)
             self._file.seek(self._good_bytes)
         except OSError:
             self._good_bytes = self._file.tell()  # readers find the next whole event
+        if not self._full:
+            self._full = True
+            self._report(
+                f"{self.path}: cannot record: {error.strerror}; the run goes on, and so does the recording when there "
+                "is room again; until then messages are missing in it"
+            )
 
 
 class LogReader:

@@ -1,17 +1,17 @@
-"""Reads a run's text log, the one for programs, to its end or for as long as it grows."""
+"""Reads a run's text log, the one for programs, and chooses lines from it."""
 
 import json
+import re
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from fwk.aspects.logging import LEVELS
-from fwk.clock import sleep_s
 from fwk.plan.selection import matches
+from fwk.record.rotating import read_rotating
 from lcmtypes.core import log_t
-
-_LOOK_S = 0.2
 
 
 @dataclass(frozen=True)
@@ -24,12 +24,17 @@ class Filter:
     """Name or pattern."""
     tick: tuple[int, int] | None = None
     """First and last."""
+    time_us: tuple[int, int] | None = None
+    """Logical time, first and last."""
     file: str | None = None
+    """Name of the source file, with as many of its folders as wanted."""
     line: int | None = None
-    text: str | None = None
-    """Part of the text, in capitals or not."""
+    text: re.Pattern[str] | None = None
+    """Found anywhere in the text."""
     since_us: int | None = None
     """Wall time since the epoch."""
+    until_us: int | None = None
+    """The same."""
 
     def wants(self, line: dict[str, Any]) -> bool:
         """Whether a line is wanted."""
@@ -37,10 +42,12 @@ class Filter:
             (self.level is None or LEVELS.get(line["level"], LEVELS["error"]) >= LEVELS[self.level])
             and (self.component is None or matches(line["component"], self.component))
             and (self.tick is None or self.tick[0] <= line["tick"] <= self.tick[1])
-            and (self.file is None or line["file"] == self.file)
+            and (self.time_us is None or self.time_us[0] <= line["time_us"] <= self.time_us[1])
+            and (self.file is None or f"/{line['file']}".endswith(f"/{self.file}"))
             and (self.line is None or line["line"] == self.line)
-            and (self.text is None or self.text.lower() in line["text"].lower())
+            and (self.text is None or self.text.search(line["text"]) is not None)
             and (self.since_us is None or line["wall_us"] >= self.since_us)
+            and (self.until_us is None or line["wall_us"] <= self.until_us)
         )
 
 
@@ -49,19 +56,9 @@ def read_lines(file: Path, goes_on: Callable[[], bool] = lambda: False) -> Itera
 
     A line that a killed run left unfinished is passed over.
     """
-    rest = ""
-    with open(file, encoding="utf-8", errors="replace") as opened:
-        while True:
-            running = goes_on()  # asked first, so that nothing written meanwhile is missed
-            *whole, rest = (rest + opened.read()).split("\n")
-            for text in whole:
-                try:
-                    yield json.loads(text)
-                except ValueError:
-                    continue
-            if not running:
-                return
-            sleep_s(_LOOK_S)
+    for text in read_rotating(file, goes_on):
+        with suppress(ValueError):
+            yield json.loads(text)
 
 
 def from_plain(line: dict[str, Any]) -> log_t:

@@ -26,7 +26,7 @@ class Actor:
         self._stages = plan.stages
         self._fresh_start = True
         declared = declaration(getattr(import_module(component.module), component.class_name))
-        config = declared.config.model_validate(settings) if declared.config else None
+        config = declared.config.model_validate(settings)
         surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}

@@ -7,13 +7,13 @@ import socket
 from fwk import messages
 from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
-from fwk.gateway import json_log, sinks
+from fwk.gateway import sinks, targets
 from fwk.gateway.board import Board
 from fwk.gateway.gateway import Gateway
-from fwk.gateway.json_log import JsonLog
 from fwk.host.process import die_with_parent, run_forked, wait_for_end
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
+from fwk.record.log import LogError
 from fwk.supervisor.options import RunOptions
 
 _PACKET_MAX = 1 << 20
@@ -82,17 +82,21 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
     gateway = Gateway(plan, run, control, public)
-    if options.record:
-        gateway.sinks.append(sinks.Recorder(plan, options.record, gateway.log.error))
-    if public:
-        gateway.sinks.append(sinks.Mirror(public))
-    gateway.sinks.append(sinks.TextLog(options.run_dir / "fwk.log"))
-    gateway.sinks.append(JsonLog(options.run_dir / json_log.FILE))
     board = Board(plan)
-    gateway.sinks.append(board)
     gateway.watch(board.fileno(), board.handle)
-    gateway.sinks.append(sinks.Display(plan, display))
-    gateway.sinks.append(sinks.Newest(plan, control))
+    gateway.sinks += [
+        *([targets.above(sinks.Mirror(public), plan.log.bus)] if public else []),
+        *targets.files(plan.log, options.run_dir, gateway.log.error),
+        board,
+        targets.above(sinks.Display(plan, display), plan.log.console),
+        sinks.Newest(plan, control),
+    ]
+    if options.record:
+        try:
+            recorder = sinks.Recorder(plan, options.record, gateway.log.error)
+            gateway.sinks.insert(0, targets.above(recorder, plan.log.recording))
+        except LogError as error:
+            gateway.log.error(f"{error}; the run goes on without a recording")
     gateway.serve()
     return 0
 

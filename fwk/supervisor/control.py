@@ -217,7 +217,7 @@ class Control:
         if request.verb == "time_awake":
             return {"name": view["name"], "awake_s": view["awake_s"]}
         if request.verb == "parameters":
-            rows = self.settings.rows([component.name]) if component.config else []
+            rows = self.settings.rows([component.name])
             return {"name": view["name"], "parameters": rows}
         self._steer(requests.Steer(verb="steer", action="kill", names=[component.name]), connection)
         return None

@@ -12,7 +12,7 @@ from fwk.supervisor.hand import Hand, Start
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import RunBroken
-from fwk.supervisor.output import Captured
+from fwk.supervisor.output import Printed
 from fwk.supervisor.standin import StandIn
 from fwk.supervisor.table import HostEntry, host_table
 from fwk.supervisor.zygote import Started, Zygote
@@ -49,6 +49,7 @@ class Hosts:
         self._told: set[int] = set()  # hosts that were said to wait for others
         self._standins: dict[int, StandIn] = {}
         self._hands: dict[int, Hand] = {}
+        self.printed = Printed(mailbox, log, plan.log.lines_per_s)
         mailbox.on_actual = self._on_actual
         mailbox.watch(zygote.socket.fileno(), self._on_zygote)
 
@@ -237,8 +238,7 @@ class Hosts:
                 entry.pid = event.pid
                 if entry.state == "stopping":  # asked to stop before there was a process to ask
                     self._signal(entry, signal.SIGTERM)
-                Captured(event.output, self._mailbox, partial(self._say, self._log.info, entry.name))
-                Captured(event.errors, self._mailbox, partial(self._say, self._log.warning, entry.name))
+                self.printed.listen(entry.name, event.output, event.errors)
             elif event.incarnation == entry.incarnation:
                 self._ended(entry, event.code)
 
@@ -258,6 +258,3 @@ class Hosts:
     def _stand_in(self, entry: HostEntry) -> None:
         if entry.index not in self._standins:
             self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
-
-    def _say(self, log: Callable[[str], None], name: str, text: str) -> None:
-        log(f"{name} printed: {text}")

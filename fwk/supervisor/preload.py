@@ -19,4 +19,4 @@ def preload(plan: Plan) -> None:
         done.add(key)
         config_type = declaration(component).config
         with suppress(Exception):  # whatever is wrong with it, the component's own init says so, with its name
-            component.preload(config_type.model_validate(planned.config) if config_type else None)
+            component.preload(config_type.model_validate(planned.config))

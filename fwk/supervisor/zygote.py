@@ -17,6 +17,7 @@ from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
 from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
+from fwk.host.uncaught import log_uncaught
 from fwk.plan.model import Plan
 from fwk.supervisor.options import RunBroken
 from fwk.supervisor.preload import preload
@@ -214,6 +215,7 @@ def _serve_host(assignment: Assignment, stop: StopSignal, debugged: DebugRequest
     if assignment.fresh_code:
         forget_modules(assignment.plan)
     host = Host(assignment, stop, stop.wakeup)
+    log_uncaught(host.log)
     try:
         if debugged:
             return debug(debugged, host.serve)

@@ -67,7 +67,7 @@ class Bench:
         self._rings = {
             channels[port.attribute][0]: Ring.create(port.attribute) for port in self.declaration.ports if port.images
         }
-        config = self.declaration.config(**settings) if self.declaration.config else None
+        config = self.declaration.config(**settings)
         surroundings = Surroundings(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
         self.runner = Runner(self.declaration, name, config, channels, surroundings)
         self.component: Any = self.runner.component

@@ -50,7 +50,7 @@ class MemorySystem:
         self._by_stage: dict[str, list[Runner]] = {stage: [] for stage in stages}
         for wish, ports in zip(wishes, wiring.ports, strict=True):
             config_type = wish.declaration.config
-            config = config_type(**(settings or {}).get(wish.name, {})) if config_type else None
+            config = config_type(**(settings or {}).get(wish.name, {}))
             runner = Runner(wish.declaration, wish.name, config, ports, surroundings)
             self.runners[wish.name] = runner
             self._seen[wish.name] = dict.fromkeys(runner.readers, 0)

@@ -38,7 +38,7 @@ def plan_of(
     planned = []
     for index, (wish, ports) in enumerate(zip(wishes, wiring.ports, strict=True)):
         kind, config_type = wish.declaration.component, wish.declaration.config
-        config = config_type(**(settings or {}).get(wish.name, {})).model_dump() if config_type else {}
+        config = config_type(**(settings or {}).get(wish.name, {})).model_dump()
         planned.append(
             ComponentPlan(
                 index=index,

@@ -30,7 +30,11 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     assert {each["state"] for each in status["components"]} == {"running"}
     run.launched.until_true(lambda: run.component("r/counter")["iterations"] > 0, "the first report")
     (counter,) = run.json("status", "r/counter")["components"]
-    assert {each["setting"]: each["type"] for each in counter["parameters"]} == {"step": "float", "hang": "bool"}
+    assert {each["setting"]: each["type"] for each in counter["parameters"]} == {
+        "step": "float",
+        "hang": "bool",
+        "log_level": "debug | info | warning | error",
+    }
     text = run.fwk("status", "r")
     assert all(name in text for name in ("r/counter", "sensor_acquire", "worst ms"))
     top = run.json("top", "--once", "--interval", "0.1")
@@ -39,7 +43,8 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     assert run.ask("state", name="r/counter")["state"] == "running"
     assert run.ask("period", name="r/counter")["period_us"] == 50_000
     assert run.ask("time_awake", name="r/counter")["awake_s"] > 0
-    assert [each["setting"] for each in run.ask("parameters", name="r/counter")["parameters"]] == ["step", "hang"]
+    parameters = run.ask("parameters", name="r/counter")["parameters"]
+    assert [each["setting"] for each in parameters] == ["step", "hang", "log_level"]
     for verb, fields in (("kill", {"name": "r"}), ("watch_settings", {"names": ["r/none"]})):
         with pytest.raises(RefusedError, match=r"no component 'r'|no setting 'r/none'"):
             run.ask(verb, **fields)

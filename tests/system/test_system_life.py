@@ -162,8 +162,8 @@ def test_who_fails_in_finalize_is_named(launch: Launch, folder: Path) -> None:
 def test_what_components_print_is_in_the_log_with_their_names(launch: Launch, folder: Path) -> None:
     run = launch(FILE, *trouble("loop:print"), "--ticks", "8")
     assert run.wait() == 0, run.text
-    assert "d/player printed: words on standard output" in run.text
-    assert "d/player printed: words on standard error" in run.text
+    assert "d/player: words on standard output (stdout:1)" in run.text
+    assert "d/player: words on standard error (stderr:1)" in run.text
 
 
 def test_a_second_run_on_the_same_ports_is_refused_and_disturbs_nothing(launch: Launch, traced: Path) -> None:

@@ -71,8 +71,9 @@ def test_the_run_directory_keeps_what_belongs_to_the_run(folder: Path) -> None:
     assert "-cards-" in run_dir.name
     assert {"plan.json", "log.lcm", "fwk.log"} <= {path.name for path in run_dir.iterdir()}
     settings = (run_dir / "config.yaml").read_text().splitlines()
-    assert settings == ["left/counter.last: 700  # --set", "right/counter.last: 1000000  # default"]
-    assert yaml.safe_load("\n".join(settings)) == {"left/counter.last": 700, "right/counter.last": 1000000}
+    assert settings[::2] == ["left/counter.last: 700  # --set", "right/counter.last: 1000000  # default"]
+    assert settings[1::2] == [f'{side}/counter.log_level: "info"  # default' for side in ("left", "right")]
+    assert yaml.safe_load("\n".join(settings))["left/counter.last"] == 700
     assert {"core.lcm", "cards.lcm"} <= {path.name for path in (run_dir / "lcmtypes").iterdir()}
     assert {"python", "fwk", "lcm"} <= set(json.loads((run_dir / "versions.json").read_text()))
 

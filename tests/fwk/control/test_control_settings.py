@@ -103,7 +103,7 @@ def test_a_restarted_process_is_told_what_differs_from_the_plan(settings: RunSet
         (["a/turner.gain=fast"], "a/turner: 'gain' is 'fast'; it should be a valid number"),
         (["a/turner.gain=true"], "it should be a number"),
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
-        (["c/plain.gain=1"], "c/plain: it has no settings"),
+        (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
         (["speed=2"], "'speed=2' is no NAME.SETTING=VALUE"),
         (["a/turner.gain"], "'a/turner.gain' is no PATH=VALUE"),
         (["a/turner.gain=[1"], "'[1' is no YAML value"),

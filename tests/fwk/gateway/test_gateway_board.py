@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import socket
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from fwk import Component, Reads, Writes, messages
 from fwk.control.address import gateway_address
 from fwk.gateway.board import Board, plain
 from fwk.gateway.json_log import JsonLog
+from fwk.record.rotating import RotatingFile
 from fwk.record.text_log import Filter, from_plain, read_lines
 from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t
@@ -117,7 +119,7 @@ def test_long_bytes_are_only_counted() -> None:
 
 def line(**fields: Any) -> log_t:
     made = log_t()
-    made.component, made.level, made.file, made.text = "a/turner", log_t.INFO, "turner.py", "Turned"
+    made.component, made.level, made.file, made.text = "a/turner", log_t.INFO, "procs/turner.py", "Turned"
     for name, value in fields.items():
         setattr(made, name, value)
     return made
@@ -125,7 +127,7 @@ def line(**fields: Any) -> log_t:
 
 def test_the_log_for_programs_keeps_every_field(tmp_path: Path) -> None:
     written = line(tick=3, time_us=150_000, wall_us=5_000_000, line=12, text='two\nlines, "quoted" é')
-    log = JsonLog(tmp_path / "log")
+    log = JsonLog(RotatingFile(tmp_path / "log", 1000, 1, pytest.fail))
     log.message("fwk/log", written.encode(), 0)
     log.message("a/imu", b"", 0)
     log.close()
@@ -136,7 +138,7 @@ def test_the_log_for_programs_keeps_every_field(tmp_path: Path) -> None:
 
 
 def test_what_is_written_later_is_read_too(tmp_path: Path) -> None:
-    log = JsonLog(tmp_path / "log")
+    log = JsonLog(RotatingFile(tmp_path / "log", 1000, 1, pytest.fail))
     log.message("fwk/log", line(tick=1).encode(), 0)
     looks = iter((True, True, False))
     lines = read_lines(tmp_path / "log", lambda: next(looks))
@@ -159,12 +161,19 @@ def test_what_is_written_later_is_read_too(tmp_path: Path) -> None:
         ({"tick": (4, 9)}, False),
         ({"file": "turner.py", "line": 12}, True),
         ({"line": 13}, False),
-        ({"text": "TURN"}, True),
-        ({"text": "burn"}, False),
+        ({"file": "procs/turner.py"}, True),
+        ({"file": "a/procs/turner.py"}, False),
+        ({"file": "ner.py"}, False),
+        ({"text": re.compile("T.*d$")}, True),
+        ({"text": re.compile("burn")}, False),
+        ({"time_us": (0, 150_000)}, True),
+        ({"time_us": (150_001, 200_000)}, False),
         ({"since_us": 5_000_000}, True),
         ({"since_us": 5_000_001}, False),
+        ({"until_us": 5_000_000}, True),
+        ({"until_us": 4_999_999}, False),
     ],
 )
 def test_all_conditions_have_to_hold(conditions: dict[str, Any], wanted: bool) -> None:
-    fields = {**messages.to_dict(line(tick=3, wall_us=5_000_000, line=12)), "level": "info"}
+    fields = {**messages.to_dict(line(tick=3, time_us=150_000, wall_us=5_000_000, line=12)), "level": "info"}
     assert Filter(**conditions).wants(fields) is wanted

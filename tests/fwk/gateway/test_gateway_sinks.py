@@ -6,8 +6,10 @@ from pathlib import Path
 import pytest
 
 from fwk import Component, Writes, channel
-from fwk.gateway.sinks import Display, Newest, Recorder, TextLog
+from fwk.gateway.sinks import Display, Newest, Recorder
+from fwk.gateway.text_log import TextLog
 from fwk.record.log import LogReader
+from fwk.record.rotating import RotatingFile
 from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t
 from lcmtypes.robot import imu_t
@@ -64,7 +66,7 @@ def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:
 
 
 def test_the_text_log_has_a_line_for_each_and_nothing_else(tmp_path: Path) -> None:
-    log = TextLog(tmp_path / "fwk.log")
+    log = TextLog(RotatingFile(tmp_path / "fwk.log", 1000, 1, pytest.fail))
     log.message("world/truth", b"\0" * 100, 0)
     log.message("fwk/log", line("wheels are hot"), 0)
     log.close()

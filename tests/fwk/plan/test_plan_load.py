@@ -103,7 +103,8 @@ def test_settings_lie_over_each_other_and_tell_their_origin(load: Load, folder: 
     wheels = component(plan, "it/wheels")
     limits = {"speed_m_s": 3.0, "turns": [-2.0, 2.0]}
     assert wheels.config == {
-        "gain": 0.2, "count": 2, "brake": True, "mode": "soft", "label": "typed", "limits": limits
+        "gain": 0.2, "count": 2, "brake": True, "mode": "soft", "label": "typed", "limits": limits,
+        "log_level": "info",
     }  # fmt: skip
     assert wheels.origins == {
         "gain": "part.yaml:5",
@@ -113,6 +114,7 @@ def test_settings_lie_over_each_other_and_tell_their_origin(load: Load, folder: 
         "label": "--set",
         "limits.speed_m_s": "--set",
         "limits.turns": "it.yaml:5",
+        "log_level": "default",
     }
 
 

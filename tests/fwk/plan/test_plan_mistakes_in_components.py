@@ -182,7 +182,7 @@ def test_imports(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: it has no settings; leave 'config' out, or give the class a 'config: MyConfig'",
+        "it.yaml:1: it/a: no setting 'gain'; there is log_level",
         "components: {it/a: {use: plan_parts:Odometer, config: {gain: 1}}}",
     ),
     Broken(
@@ -194,7 +194,7 @@ def test_imports(folder: Path, broken: Broken) -> None:
     ),
     Broken(
         """
-        it.yaml:3: it/a: no setting 'gain'; there is key
+        it.yaml:3: it/a: no setting 'gain'; there is key, log_level
         it.yaml:5: no component 'it/c'; there is it/a, it/b
         it.yaml:6: no component 'itt'; did you mean 'it'?
         """,

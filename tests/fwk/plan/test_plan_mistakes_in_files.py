@@ -193,7 +193,7 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, outside, period_s, public_url, "
+        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, log, outside, period_s, public_url, "
         "scoreboard, seed, speed, stage_time_s, video",
         """
         components: {it/a: {use: plan_parts:Odometer}}

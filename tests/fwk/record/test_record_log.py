@@ -165,8 +165,9 @@ def test_a_full_disk_is_reported_once_and_what_fits_later_is_written(tmp_path: P
     assert [(event.number, event.time_us) for event in reader] == [(0, 1), (3, 4)]
     assert reader.skipped_bytes == 0
     assert (writer.events, writer.dropped) == (4, 2)
-    assert len(said) == 1
+    assert len(said) == 2
     assert "File too large" in said[0]
+    assert "there is room again; 2 messages are missing" in said[1]
 
 
 def test_a_disk_that_is_full_from_the_beginning_stops_nobody() -> None:

@@ -1,0 +1,76 @@
+"""Reads conditions of the command line: ranges, moments, patterns."""
+
+import math
+import re
+import sys
+from datetime import UTC, datetime, timedelta
+
+import typer
+
+from fwk.clock import US_PER_S, wall_us
+
+
+def ticks(text: str) -> tuple[int, int]:
+    """First and last of `120`, `100..200`, `100-200`, `100..`, `..200`.
+
+    Raises:
+        BadParameter: it is none of these.
+    """
+    found = re.fullmatch(r"(\d*)(\.\.|-)?(\d*)", text, re.ASCII)
+    if not found or not (found[1] or found[3]):
+        raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100..200")
+    first = int(found[1] or 0)
+    return first, int(found[3] or sys.maxsize) if found[2] else first
+
+
+def times_us(text: str) -> tuple[int, int]:
+    """First and last logical time of `1.5..2`, `1.5..`, `..2`, which are seconds.
+
+    Raises:
+        BadParameter: it is none of these.
+    """
+    first, dots, last = text.partition("..")
+    try:
+        if dots and (first or last):
+            return round(float(first or 0) * US_PER_S), round(float(last) * US_PER_S) if last else sys.maxsize
+    except (ValueError, OverflowError):
+        pass
+    raise typer.BadParameter(f"--time: '{text}' is no range of seconds; say 1.5..2, or 1.5..")
+
+
+def moment_us(text: str, option: str) -> int:
+    """Wall time of `90`, seconds ago, or of `14:05`, `14:05:30`: when it was that time last.
+
+    Raises:
+        BadParameter: it is none of these.
+    """
+    now_us = wall_us()
+    if re.fullmatch(r"\d\d?:\d\d(:\d\d)?", text, re.ASCII):
+        parts = [int(part) for part in text.split(":")]
+        if parts[0] < 24 and max(parts[1:]) < 60:
+            now = datetime.fromtimestamp(now_us / US_PER_S, UTC).astimezone()
+            then = now.replace(hour=parts[0], minute=parts[1], second=(parts[2:] or [0])[0], microsecond=0)
+            return round((then if then <= now else then - timedelta(days=1)).timestamp() * US_PER_S)
+    else:
+        try:
+            seconds = float(text)
+            if 0 <= seconds < math.inf:
+                return now_us - round(seconds * US_PER_S)
+        except ValueError:
+            pass
+    raise typer.BadParameter(f"{option}: '{text}' is no time; say how many seconds ago, or a time of day such as 14:05")
+
+
+def pattern(text: str, option: str) -> re.Pattern[str]:
+    """A regular expression that minds no capitals.
+
+    Raises:
+        BadParameter: it is none.
+    """
+    try:
+        return re.compile(text, re.IGNORECASE)
+    except (re.error, OverflowError, RecursionError) as error:
+        right = re.escape(text)
+        raise typer.BadParameter(
+            f"{option}: '{text}' is no regular expression: {error}; as plain text: {right}"
+        ) from error

@@ -1,0 +1,52 @@
+"""Where lines of text go: the targets of a plan, each from its own level on."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from fwk.aspects.logging import LEVELS
+from fwk.gateway import json_log, text_log
+from fwk.gateway.gateway import Sink
+from fwk.gateway.json_log import JsonLog
+from fwk.gateway.text_log import TextLog
+from fwk.plan.model import LogPlan
+from fwk.record.rotating import RotatingFile
+
+_MB = 1_000_000
+_LEVEL_AT = 8  # of an encoded log_t; the type's fingerprint stands before it
+OFF = "off"
+
+
+class Above:
+    """A sink that gets lines of text of one level and worse, and everything else."""
+
+    def __init__(self, sink: Sink, level: int) -> None:
+        self._sink = sink
+        self._level = level
+        self.tick = sink.tick
+        self.close = sink.close
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Passes a message on, or not."""
+        if channel != "fwk/log" or data[_LEVEL_AT] >= self._level:
+            self._sink.message(channel, data, time_us)
+
+
+def above(sink: Sink, level: str) -> Sink:
+    """The sink itself if it gets all lines; otherwise one before it that keeps some back."""
+    if level == "debug":
+        return sink
+    return Above(sink, LEVELS.get(level, max(LEVELS.values()) + 1))
+
+
+def files(log: LogPlan, folder: Path, report: Callable[[str], None]) -> list[Sink]:
+    """The text log for people and the one for programs, as far as they are wanted."""
+
+    def file(name: str) -> RotatingFile:
+        return RotatingFile(folder / name, round(log.file_mb * _MB), log.files, report)
+
+    wanted: list[Sink] = []
+    if log.file != OFF:
+        wanted.append(above(TextLog(file(text_log.FILE)), log.file))
+    if log.json_lines != OFF:
+        wanted.append(above(JsonLog(file(json_log.FILE)), log.json_lines))
+    return wanted

@@ -1,0 +1,31 @@
+"""What nobody catches goes into the log with its traceback and tick, wherever in the process it happened."""
+
+import sys
+import threading
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+from fwk.aspects.logging import Logger
+
+if TYPE_CHECKING:
+    from sys import UnraisableHookArgs
+
+
+def log_uncaught(log: Logger) -> None:
+    """From now on in this process: exceptions at the end of threads and of the process, and in destructors."""
+
+    def in_process(_kind: type[BaseException], error: BaseException, _trace: TracebackType | None) -> None:
+        log.exception("ends by an exception that nobody caught", error)
+
+    def in_thread(hooked: threading.ExceptHookArgs) -> None:
+        if hooked.exc_value and not isinstance(hooked.exc_value, SystemExit):
+            name = hooked.thread.name if hooked.thread else "?"
+            log.exception(f"thread {name} ends by an exception that nobody caught", hooked.exc_value)
+
+    def nowhere(hooked: "UnraisableHookArgs") -> None:
+        if hooked.exc_value:
+            log.exception(f"{hooked.err_msg or 'exception ignored in'} {hooked.object!r}", hooked.exc_value)
+
+    sys.excepthook = in_process
+    threading.excepthook = in_thread
+    sys.unraisablehook = nowhere

@@ -1,0 +1,65 @@
+"""Conditions on the command line: what is meant, and what is refused."""
+
+import re
+import sys
+from datetime import datetime
+
+import pytest
+import typer
+
+from fwk.cli.conditions import moment_us, pattern, ticks, times_us
+from fwk.clock import US_PER_S, wall_us
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"),
+    [
+        ("7", (7, 7)),
+        ("3..5", (3, 5)),
+        ("3-5", (3, 5)),
+        ("3..", (3, sys.maxsize)),
+        ("..5", (0, 5)),
+    ],
+)
+def test_ticks(text: str, meant: tuple[int, int]) -> None:
+    assert ticks(text) == meant
+
+
+@pytest.mark.parametrize(
+    ("text", "meant"), [("1.5..2", (1_500_000, 2_000_000)), ("..1", (0, 1_000_000)), ("2..", (2_000_000, sys.maxsize))]
+)
+def test_times(text: str, meant: tuple[int, int]) -> None:
+    assert times_us(text) == meant
+
+
+def test_moments() -> None:
+    assert abs(wall_us() - 90 * US_PER_S - moment_us("90", "--since")) < 10 * US_PER_S
+    earlier = moment_us("00:00", "--since")
+    assert datetime.fromtimestamp(earlier / US_PER_S).strftime("%H:%M:%S") == "00:00:00"  # noqa: DTZ006 - as people say it
+    assert 0 <= wall_us() - earlier <= 25 * 3600 * US_PER_S
+    to_come = moment_us("23:59:59", "--since")
+    assert to_come <= wall_us()
+
+
+@pytest.mark.parametrize(
+    ("read", "text", "error"),
+    [
+        (ticks, "soon", "--tick: 'soon' is no tick; say 120, or 100..200"),
+        (ticks, "..", "is no tick"),
+        (ticks, "1..x", "is no tick"),
+        (times_us, "5", "--time: '5' is no range of seconds; say 1.5..2"),
+        (times_us, "..", "is no range"),
+        (times_us, "inf..", "is no range"),
+        (lambda text: moment_us(text, "--since"), "-3", "--since: '-3' is no time; say how many seconds ago"),
+        (lambda text: moment_us(text, "--since"), "25:00", "is no time"),
+        (lambda text: moment_us(text, "--since"), "nan", "is no time"),
+        (lambda text: pattern(text, "--text"), "a(b", r"--text: 'a(b' is no regular expression: "),
+    ],
+)
+def test_what_is_none_is_refused_with_what_would_be_right(read: object, text: str, error: str) -> None:
+    with pytest.raises(typer.BadParameter, match=re.escape(error)):
+        read(text)  # type: ignore[operator]
+
+
+def test_a_pattern_minds_no_capitals() -> None:
+    assert pattern("TURN.*left", "--text").search("it turned left")

@@ -1,0 +1,174 @@
+"""Real processes that log and print too much, at other levels, to other targets, and fail where nobody looks."""
+
+import json
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fwk.record.text_log import read_lines
+from tests.system.control_system import Steered
+from tests.system.system_logs import Recording
+from tests.system.system_runs import Launched, PortBlock, write_files
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""Talks, in several ways."""
+
+import sys
+import threading
+
+from fwk import Clock, Component, Config, Logger, Writes
+from lcmtypes.robot import imu_t
+
+
+class TalkerConfig(Config):
+    lines: int = 0
+    """Lines and errors in the first iteration."""
+    printed: int = 0
+    """Lines printed in the first iteration."""
+    long: int = 0
+    """Letters of a long line."""
+    thread: bool = False
+    """Whether a thread ends by an exception."""
+    fails_at: int = 0
+    """Tick in which it raises."""
+
+
+class Talker(Component):
+    """Talks."""
+
+    stage = "think"
+    config: TalkerConfig
+    clock: Clock
+    log: Logger
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.log.debug(f"in tick {self.clock.tick}")
+        if self.clock.tick == 3:
+            self._talk()
+        if self.clock.tick == self.config.fails_at:
+            raise RuntimeError("not this tick")
+        self.imu.value.heading_rad += 1.0
+        self.imu.write()
+
+    def _talk(self) -> None:
+        for number in range(self.config.lines):
+            self.log.info(f"chatter {number}")
+            if number % 100 == 0:
+                self.log.error(f"error {number}")
+        for number in range(self.config.printed):
+            print(f"printed {number}")
+        if self.config.printed:
+            print("to the other stream", file=sys.stderr)
+        if self.config.long:
+            self.log.warning("x" * self.config.long)
+        if self.config.thread:
+            thread = threading.Thread(target=lambda: 1 / 0, name="aside")
+            thread.start()
+            thread.join()
+'''
+LAUNCH = """
+public_url: {url}
+speed: max
+log: {log}
+components:
+  a/talker: {{use: "parts:Talker", restart: {{when: never}}, config: {config}}}
+  b/talker: {{use: "parts:Talker"}}
+"""
+
+
+@pytest.fixture
+def talk(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Callable[..., Launched]:
+    def start(*arguments: str, log: dict[str, Any] | None = None, **config: Any) -> Launched:
+        text = LAUNCH.format(url=ports.public_url, log=json.dumps(log or {}), config=json.dumps(config))
+        write_files(tmp_path, {"parts.py": PARTS, "talk.yaml": text})
+        return launch("talk.yaml", *arguments)
+
+    return start
+
+
+def lines_of(run: Launched, component: str = "a/talker") -> list[dict[str, Any]]:
+    return [line for line in read_lines(run.run_dir / "fwk.log.jsonl") if line["component"] == component]
+
+
+def test_a_flood_is_cut_off_at_its_source_and_no_error_is_lost(talk: Callable[..., Launched]) -> None:
+    run = talk("--ticks", "200", lines=20_000, log={"lines_per_s": 50})
+    assert run.wait() == 0, run.text
+    lines = lines_of(run)
+    errors = [line["text"] for line in lines if line["level"] == "error"]
+    assert errors == [f"error {number}" for number in range(0, 20_000, 100)]
+    told = [line for line in lines if "lines dropped in the last second" in line["text"]]
+    dropped = sum(int(line["text"].split()[0]) for line in told)
+    chatter = sum(line["text"].startswith("chatter") for line in lines)
+    assert chatter + dropped == 20_000
+    assert dropped > 10_000
+    assert {line["file"] for line in told} == {"parts.py"}
+
+
+def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[..., Launched]) -> None:
+    run = talk("--ticks", "50", printed=100_000, log={"lines_per_s": 50})
+    assert run.wait() == 0, run.text
+    printed = [line for line in lines_of(run) if line["file"] == "stdout"]
+    dropped = [int(line["text"].split()[0]) for line in printed if "lines dropped" in line["text"]]
+    shown = [line for line in printed if line["text"].startswith("printed")]
+    assert len(shown) + sum(dropped) == 100_000
+    assert [line["line"] for line in shown] == [int(line["text"].split()[1]) + 1 for line in shown]
+    assert "to the other stream" in [line["text"] for line in lines_of(run) if line["file"] == "stderr"]
+
+
+def test_long_lines_come_with_their_ends(talk: Callable[..., Launched]) -> None:
+    run = talk("--ticks", "5", long=300_000)
+    assert run.wait() == 0, run.text
+    (line,) = [line for line in lines_of(run) if line["level"] == "warning"]
+    assert "284000 characters left out" in line["text"]
+
+
+def test_exceptions_have_traceback_component_and_tick(talk: Callable[..., Launched]) -> None:
+    run = talk("--ticks", "50", thread=True, fails_at=7)
+    assert run.wait() == 1, run.text
+    thread, failure = [line for line in lines_of(run) if line["level"] == "error"]
+    assert (thread["tick"], thread["file"]) == (3, "parts.py")
+    assert thread["text"].startswith("thread aside ends by an exception that nobody caught\nTraceback")
+    assert thread["text"].endswith("ZeroDivisionError: division by zero")
+    assert (failure["tick"], failure["file"]) == (7, "parts.py")
+    assert re.match("failed in loop, tick 7\nTraceback (.|\n)*RuntimeError: not this tick$", failure["text"])
+
+
+def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
+    talk: Callable[..., Launched], tmp_path: Path
+) -> None:
+    targets = {"console": "error", "file": "off", "recording": "warning", "file_mb": 0.05, "files": 2, "lines_per_s": 0}
+    run = talk("--ticks", "500", "--set", "b/*.log_level=debug", "--record", "loud.log", log=targets)
+    assert run.wait() == 0, run.text
+    assert "in tick" not in run.text
+    assert not list(run.run_dir.glob("fwk.log"))
+    kept = sorted(path.name for path in run.run_dir.glob("fwk.log*"))
+    assert kept == ["fwk.log.jsonl", "fwk.log.jsonl.1"]
+    assert [line["tick"] for line in lines_of(run, "b/talker")][-100:] == list(range(401, 501))
+    assert not lines_of(run, "a/talker")
+    quiet = talk("--ticks", "500", "--record", "quiet.log")
+    assert quiet.wait() == 0, quiet.text
+    loud_heading, quiet_heading = (
+        [imu.heading_rad for imu in Recording(tmp_path / name).decoded("b/imu")] for name in ("loud.log", "quiet.log")
+    )
+    assert loud_heading == quiet_heading
+    assert len(loud_heading) == 500
+
+
+def test_a_level_is_changed_while_it_runs(talk: Callable[..., Launched], ports: PortBlock) -> None:
+    steered = Steered(talk("--speed", "1"), ports)
+    said = steered.json("config", "set", "b/talker.log_level=debug")
+    steered.ticks_pass()
+    (first, *_) = steered.fwk("log", "--component", "b/talker", "--json").splitlines()
+    assert json.loads(first)["tick"] == said["tick"]
+    assert json.loads(first)["level"] == "debug"
+    assert "it should be 'debug', 'info', 'warning' or 'error'" in steered.fwk(
+        "config", "set", "b/talker.log_level=loud", code=2
+    )
+    recorded = steered.end()
+    assert "equal: " in steered.fwk("replay", "--verify", str(recorded.parent))
