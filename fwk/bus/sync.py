@@ -8,6 +8,7 @@ from lcmtypes.core import done_t, tick_record_t, tick_t
 
 TICK = b"fwk/tick"
 DONE = b"fwk/done"
+DONE_START = DONE + b"\0"  # what follows the number of its datagram
 
 encode_tick = encoder(tick_t, "fwk/tick")
 decode_tick = decoder(tick_t, "fwk/tick")

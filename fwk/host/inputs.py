@@ -1,17 +1,18 @@
 """What a host reads: waits until everything that a tick's marks name is here, asking writers for what was lost."""
 
-import select
 from collections.abc import Callable, Sequence
 
 from fwk.bus.inbox import Box, Complain, Inbox
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
+from fwk.bus.waiting import Waiting
 from fwk.clock import monotonic_us
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from lcmtypes.core import fetch_t, gone_t, void_t
 
-FIRST_WAIT_MS = 2  # on one machine a message is there before the tick that names it, unless it was lost
-LONGEST_WAIT_MS = 100
+FIRST_WAIT_US = 300  # on one machine a message is there before the tick that names it, unless it was lost
+SECOND_WAIT_US = 2_000
+LONGEST_WAIT_US = 100_000
 
 
 class Inputs:
@@ -96,24 +97,25 @@ class Inputs:
         lacking = [box for box in boxes if not box.collect()]
         if not lacking:
             return True
-        poller = select.poll()
-        poller.register(self._sender.socket, select.POLLIN)
+        waiting = Waiting()
+        waiting.add(self._sender.socket)
         for box in lacking:
             if isinstance(box, Inbox) and not box.closed:
-                poller.register(box, select.POLLIN)
-        wait_ms, ask_us, asked = FIRST_WAIT_MS, monotonic_us() + FIRST_WAIT_MS * 1000, 0
+                waiting.add(box)
+        next_us, ask_us, asked = SECOND_WAIT_US, monotonic_us() + FIRST_WAIT_US, 0
         while lacking:
-            poller.poll(wait_ms)
+            waiting.wait(ask_us - monotonic_us())
             if not serve():
-                return False
+                break
             lacking = [box for box in lacking if not box.collect()]
             if lacking and monotonic_us() >= ask_us:
                 asked = max(asked, sum(len(box.missing()) for box in lacking))
                 self._ask(lacking)
-                wait_ms = min(2 * wait_ms, LONGEST_WAIT_MS)
-                ask_us = monotonic_us() + wait_ms * 1000
+                ask_us = monotonic_us() + next_us
+                next_us = min(2 * next_us, LONGEST_WAIT_US)
+        waiting.close()
         self.fetched += asked
-        return True
+        return not lacking
 
     def gone(self, message: gone_t) -> int:
         """A writer no longer has some messages; returns how many were lost by that."""

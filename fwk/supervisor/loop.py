@@ -12,12 +12,13 @@ from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.pace import Pace
+from fwk.supervisor.patience import Patience
 from fwk.supervisor.records import Records
 from fwk.supervisor.table import Change, HostEntry
 from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
-REPEAT_US = 2_000  # a tick is repeated after so much more than the stage usually takes; doubles with each time
 REPEAT_LONGEST_US = 100_000
+FOLLOW_US = 20_000  # when the gateway is asked whether it lost a record; doubles with each time
 LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
 WAITS_US = 200_000  # a stage that takes longer is said to wait
 STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
@@ -62,7 +63,7 @@ class MainLoop:
             [entry for entry in hosts.table if any(stage in plan.components[i].stages for i in self._members(entry))]
             for stage in range(len(plan.stages))
         ]
-        self._usual_us = [10 * REPEAT_US] * len(plan.stages)  # what a stage takes, smoothed
+        self._patience = [Patience() for _ in plan.stages]
         self._stage = 0
         self._step = 0
         self._began_us = 0  # wall time at which the stage began
@@ -135,7 +136,7 @@ class MainLoop:
         self._event(tick_event_t.STAGE, stage)
         self._broadcast(members, time_us)
         began_us = sent_us = self._began_us = monotonic_us()
-        first_us = REPEAT_US + 3 * self._usual_us[stage]
+        first_us = self._patience[stage].wait_us
         repeat_us, look_us = first_us, began_us
         now_us = began_us
         while self._outstanding and not self._interrupted():
@@ -148,7 +149,7 @@ class MainLoop:
             self._mailbox.pump(due_us - now_us)
             now_us = monotonic_us()
             if not self._outstanding:
-                self._usual_us[stage] += (now_us - sent_us - self._usual_us[stage]) // 8
+                self._patience[stage].took(now_us - sent_us)
                 return
             if not self._lockstep and now_us >= began_us + self._stage_time_us:
                 self._leave_behind(members, stage)
@@ -282,7 +283,7 @@ class MainLoop:
 
     def _let_gateway_follow(self, tick: int) -> None:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us = 10 * REPEAT_US
+        wait_us = FOLLOW_US
         while self.recorded < tick and not self._interrupted():
             before = self.recorded
             self._mailbox.pump(wait_us)

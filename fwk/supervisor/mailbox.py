@@ -1,7 +1,6 @@
 """Everything that reaches the supervisor from outside its own thread of work, handed out as events."""
 
 import os
-import select
 import signal
 import struct
 from collections.abc import Callable
@@ -9,6 +8,7 @@ from collections.abc import Callable
 from fwk.bus import sync, wire
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import multicast_receiver
+from fwk.bus.waiting import Waiting
 from fwk.clock import US_PER_S, sleep_s
 from fwk.messages import MessageError
 from lcmtypes.core import actual_t, done_t
@@ -32,7 +32,7 @@ class Mailbox:
         self._run = run
         self._complain = complain
         self._socket = multicast_receiver(ports.sync)
-        self._poller = select.poll()
+        self._waiting = Waiting()
         self._handlers: dict[int, Handler] = {}
         self._wakeup, write = os.pipe()
         os.set_blocking(self._wakeup, False)
@@ -46,16 +46,16 @@ class Mailbox:
     def watch(self, descriptor: int, handler: Handler) -> None:
         """Calls `handler` from `pump` when there is something to read."""
         self._handlers[descriptor] = handler
-        self._poller.register(descriptor, select.POLLIN)
+        self._waiting.add(descriptor)
 
     def unwatch(self, descriptor: int) -> None:
         """No longer."""
         if self._handlers.pop(descriptor, None):
-            self._poller.unregister(descriptor)
+            self._waiting.remove(descriptor)
 
     def pump(self, timeout_us: int) -> None:
         """Handles what is there; if nothing is, waits for the first thing or `timeout_us`."""
-        for descriptor, _ in self._poller.poll(max(0, timeout_us) / 1000):
+        for descriptor in self._waiting.wait(timeout_us):
             handler = self._handlers.get(descriptor)
             if handler:
                 handler()
@@ -85,13 +85,14 @@ class Mailbox:
     def _dispatch(self, datagram: bytes, source: int) -> None:
         if source not in self._members:
             raise MessageError(f"datagram from port {source}, which is not of this run")
-        channel, data = self._assembler.feed(datagram, source) or (b"", b"")
-        if channel == sync.DONE:
-            done = sync.decode_done(data)
+        if datagram.startswith(sync.DONE_START, 8) and wire.is_short(datagram):
+            done = sync.decode_done(datagram[8 + len(sync.DONE_START) :])
             self._check(done, source)
             if done.run == self._run:
                 self.on_done(done)
-        elif channel == b"fwk/actual":
+            return
+        channel, data = self._assembler.feed(datagram, source) or (b"", b"")
+        if channel == b"fwk/actual":
             actual = actual_t.decode(data)
             self._check(actual, source)
             if actual.run == self._run:
