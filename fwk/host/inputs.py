@@ -10,7 +10,7 @@ from fwk.clock import monotonic_us
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from lcmtypes.core import fetch_t, gone_t, void_t
 
-FIRST_WAIT_US = 300  # on one machine a message is there before the tick that names it, unless it was lost
+FIRST_WAIT_US = 200  # on one machine a message is there before the tick that names it, unless it was lost
 SECOND_WAIT_US = 2_000
 LONGEST_WAIT_US = 100_000
 

@@ -1,6 +1,6 @@
 """How long the loop waits for answers before it takes a datagram for lost and tells a tick again."""
 
-_MARGIN_US = 200
+_MARGIN_US = 100
 _AT_FIRST_US = 20_000
 
 
@@ -14,7 +14,7 @@ class Patience:
     @property
     def wait_us(self) -> int:
         """No answer within this time: probably lost."""
-        return self._usual_us + 4 * self._deviation_us + _MARGIN_US
+        return self._usual_us + 3 * self._deviation_us + _MARGIN_US
 
     def took(self, duration_us: int) -> None:
         """All answers came within this time after the tick was told."""
