@@ -8,20 +8,34 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
 from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402 - after the limits
+from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
+from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
+from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
 from fwk.aspects.vision import Image, VisionMaster  # noqa: E402
 from fwk.clock import Clock, TimeSource  # noqa: E402
 from fwk.component import Component  # noqa: E402
 from fwk.config import Config  # noqa: E402
 
 __all__ = [
+    "Call",
+    "Calls",
+    "CallsEach",
     "Clock",
+    "Command",
+    "CommandState",
+    "Commands",
     "Component",
     "Config",
+    "Future",
     "Image",
     "Logger",
     "Reads",
     "ReadsEach",
+    "Request",
+    "Sends",
+    "SendsEach",
+    "Serves",
     "TimeSource",
     "VisionMaster",
     "Writes",

@@ -1,17 +1,21 @@
 """The base class of components, and what a component's class says it wants."""
 
 import typing
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal, get_args, get_origin
 
 import numpy as np
 
 from fwk import messages
 from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, WritesEach
+from fwk.aspects.commands import Commands
 from fwk.aspects.logging import Logger
+from fwk.aspects.rpc import Calls, CallsEach, Serves
+from fwk.aspects.sending import Sends, SendsEach
 from fwk.aspects.vision import Image, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.config import LOG_LEVEL, Config, with_log_level
+from lcmtypes.core import acknowledgement_t
 from lcmtypes.robot import frame_t
 
 DEFAULT_STAGES = (
@@ -36,6 +40,10 @@ class Component:
     | `ball: Reads[ball_t]` | newest value and all since the last iteration of `<namespace>/ball` |
     | `pose: Writes[pose_t]` | the one writer of `<namespace>/pose` |
     | `ReadsEach[...]`, `WritesEach[...]` | many instances of an interface, by namespace |
+    | `kick: Commands[kick_t]` | the commands `<namespace>/kick`, to carry out; one such component each |
+    | `kick: Sends[kick_t]` | sends them, and sees what becomes of each |
+    | `path: Serves[path_request_t, path_t]`, `path: Calls[...]` | requests with a typed reply, to answer; to ask |
+    | `SendsEach[...]`, `CallsEach[...]` | to many of those who carry them out, by namespace |
     | `image: Image`, `image: VisionMaster` | frames of a camera, to read or to give out |
     | `config: MyConfig` | checked settings |
     | `clock: Clock` | logical time |
@@ -78,23 +86,46 @@ class DeclarationError(Exception):
     """A component's class wants something that does not exist; says class, attribute and what would be right."""
 
 
-PortKind = Literal["reads", "writes", "reads_each", "writes_each", "image", "vision_master"]
+PortKind = Literal[
+    "reads",
+    "writes",
+    "reads_each",
+    "writes_each",
+    "image",
+    "vision_master",
+    "commands",
+    "serves",
+    "sends",
+    "calls",
+    "sends_each",
+    "calls_each",
+]
 _PORT_KINDS: dict[Any, PortKind] = {
     Reads: "reads",
     Writes: "writes",
     ReadsEach: "reads_each",
     WritesEach: "writes_each",
+    Commands: "commands",
+    Serves: "serves",
+    Sends: "sends",
+    Calls: "calls",
+    SendsEach: "sends_each",
+    CallsEach: "calls_each",
 }
 
 
 @dataclass(frozen=True)
 class Port:
-    """One channel wish: `attribute: Reads[message_type]`, and the channel the class names for it."""
+    """One channel wish: `attribute: Reads[message_type]`, and the channel the class names for it.
+
+    A port for commands has a channel of each sender, and one for the answers, which are of `reply_type`.
+    """
 
     attribute: str
     kind: PortKind
     message_type: type[messages.Message]
     channel: str
+    reply_type: type[messages.Message] | None = None
 
     @property
     def writes(self) -> bool:
@@ -104,7 +135,17 @@ class Port:
     @property
     def each(self) -> bool:
         """Whether it stands for many instances."""
-        return self.kind in ("reads_each", "writes_each")
+        return self.kind in ("reads_each", "writes_each", "sends_each", "calls_each")
+
+    @property
+    def owns(self) -> bool:
+        """Whether the component carries out the commands or answers the requests."""
+        return self.kind in ("commands", "serves")
+
+    @property
+    def sends(self) -> bool:
+        """Whether the component sends commands or requests."""
+        return self.kind in ("sends", "calls", "sends_each", "calls_each")
 
     @property
     def images(self) -> bool:
@@ -148,10 +189,10 @@ def declaration(component: type[Component]) -> Declaration:
             continue
         default = getattr(component, attribute, None)
         if get_origin(wish) in _PORT_KINDS:
-            ports.append(_port(where, attribute, _PORT_KINDS[get_origin(wish)], get_args(wish)[0], default))
+            ports.append(_port(where, attribute, _PORT_KINDS[get_origin(wish)], get_args(wish), default))
         elif wish in (Image, VisionMaster):
             kind: PortKind = "image" if wish is Image else "vision_master"
-            ports.append(_port(where, attribute, kind, frame_t, default))
+            ports.append(_port(where, attribute, kind, (frame_t,), default))
         elif wish in _ASPECTS:
             aspects[attribute] = _ASPECTS[wish]
         elif isinstance(wish, type) and issubclass(wish, Config):
@@ -163,8 +204,8 @@ def declaration(component: type[Component]) -> Declaration:
         elif get_origin(wish) is not ClassVar and default is None:
             raise DeclarationError(
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
-                f"annotate with Reads, Writes, ReadsEach, WritesEach, Image, VisionMaster, a Config, Clock, Logger, "
-                "numpy.random.Generator or TimeSource, "
+                f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
+                "CallsEach, Image, VisionMaster, a Config, Clock, Logger, numpy.random.Generator or TimeSource, "
                 "and set plain attributes in init()"
             )
     return Declaration(
@@ -176,13 +217,27 @@ def declaration(component: type[Component]) -> Declaration:
     )
 
 
-def _port(where: str, attribute: str, kind: PortKind, message_type: Any, default: Any) -> Port:
-    if not hasattr(message_type, "_get_packed_fingerprint"):
-        raise DeclarationError(f"{where}.{attribute}: {message_type!r} is no LCM type; import it from lcmtypes")
-    if not messages.has_header(message_type):
-        name = messages.type_name(message_type)
-        raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
+def _port(where: str, attribute: str, kind: PortKind, types: tuple[Any, ...], default: Any) -> Port:
+    for message_type in types:
+        if not hasattr(message_type, "_get_packed_fingerprint"):
+            raise DeclarationError(f"{where}.{attribute}: {message_type!r} is no LCM type; import it from lcmtypes")
+        if not messages.has_header(message_type):
+            name = messages.type_name(message_type)
+            raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
     channel = default.name if isinstance(default, ChannelDefault) else attribute
-    if kind in ("reads_each", "writes_each") and "*" not in channel:
-        channel = f"*/{channel}"
-    return Port(attribute, kind, message_type, channel)
+    made = Port(attribute, kind, types[0], channel)
+    if made.owns or made.sends:
+        made = replace(made, reply_type=types[1] if len(types) > 1 else acknowledgement_t)
+        _check_second(where, attribute, types[0], "command", "command")
+        _check_second(where, attribute, made.reply_type, "answer", "reply")
+    if made.each and "*" not in channel:
+        made = replace(made, channel=f"*/{channel}")
+    return made
+
+
+def _check_second(where: str, attribute: str, message_type: Any, member: str, what: str) -> None:
+    if not messages.has_second(message_type, member, f"core.{member}_t"):
+        name = messages.type_name(message_type)
+        raise DeclarationError(
+            f"{where}.{attribute}: {name} is no {what}: its second member is not 'core.{member}_t {member};'"
+        )

@@ -108,6 +108,11 @@ def has_header(message_type: type[Message]) -> bool:
     return list(message_type.__slots__[:1]) == ["header"] and message_type.__typenames__[0].endswith("core.header_t")
 
 
+def has_second(message_type: type[Message], name: str, kind: str) -> bool:
+    """Whether the type's second member is `kind name;`: what makes commands and replies of interfaces."""
+    return message_type.__slots__[1:2] == [name] and message_type.__typenames__[1].endswith(kind)
+
+
 def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
     """Decodes a message.
 

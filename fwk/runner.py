@@ -8,8 +8,11 @@ from typing import Any
 import numpy as np
 
 from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
+from fwk.aspects.commands import Commands, Queue, Source
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.rate_limit import RateLimit
+from fwk.aspects.rpc import Calls, CallsEach, Serves
+from fwk.aspects.sending import Outbox, Sends, SendsEach
 from fwk.aspects.vision import Image, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import Component, Declaration, Port
@@ -52,6 +55,7 @@ class Runner:
         self.readers: dict[str, Reads[Any]] = {}
         self.writers: dict[str, Writes[Any]] = {}
         self.images: list[Image] = []
+        self._command_ports: list[Queue[Any] | Outbox[Any, Any]] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
@@ -95,6 +99,8 @@ class Runner:
             reader.freeze(arrived)
         self.time_source.next_us = -1
         try:
+            for port in self._command_ports:
+                port.begin()
             self.component.loop()
         except BaseException:
             for writer in self.writers.values():
@@ -116,6 +122,15 @@ class Runner:
         return {"clock": self.clock, "log": self.log, "time_source": self.time_source}[aspect]
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:
+        if port.owns:
+            return self._queue(port, *channels)
+        if port.sends:
+            pairs = list(zip(channels[::2], channels[1::2], strict=True))
+            made_each = {sent: self._outbox(port, sent, answers) for sent, answers in pairs}
+            if port.each:
+                each = {channel.partition("@")[0]: outbox for channel, outbox in made_each.items()}
+                return (CallsEach if port.kind == "calls_each" else SendsEach)(_by_namespace(each))
+            return made_each[channels[0]]
         if port.writes:
             made: dict[str, Writes[Any]] = {name: Writes(name, port.message_type, self.stamp) for name in channels}
             self.writers.update(made)
@@ -128,6 +143,25 @@ class Runner:
             self.images.append(image)
             return image
         return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+
+    def _queue(self, port: Port, answers: str, *sources: str) -> Queue[Any]:
+        assert port.reply_type
+        made: dict[str, Source[Any]] = {name: Source(name, port.message_type) for name in sources}
+        self.readers.update(made)
+        self.writers[answers] = Writes(answers, port.reply_type, self.stamp)
+        kind: type[Queue[Any]] = Serves if port.kind == "serves" else Commands
+        queue = kind(answers.partition("@")[0], self.name, self.clock, made, self.writers[answers])
+        self._command_ports.append(queue)
+        return queue
+
+    def _outbox(self, port: Port, sent: str, answers: str) -> Outbox[Any, Any]:
+        assert port.reply_type
+        self.writers[sent] = Writes(sent, port.message_type, self.stamp)
+        self.readers[answers] = Reads(answers, port.reply_type)
+        kind: type[Outbox[Any, Any]] = Calls if port.kind in ("calls", "calls_each") else Sends
+        outbox = kind(sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers])
+        self._command_ports.append(outbox)
+        return outbox
 
 
 def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from fnmatch import fnmatchcase
 
 from fwk import messages
 from fwk.component import Declaration, Port
+from fwk.plan.command_lines import CommandLines
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan
 from fwk.plan.names import mistake_in, mistake_in_pattern
@@ -77,14 +78,16 @@ class _Wiring:
             (index, wish, port) for index, wish in enumerate(self._wishes) for port in wish.declaration.ports
             if self._well_named(wish, port)
         ]  # fmt: skip
-        read = {wish.pattern(port) for _, wish, port in asked if not port.writes and not port.each}
-        for index, wish, port in asked:
+        plain = [each for each in asked if not each[2].owns and not each[2].sends]
+        read = {wish.pattern(port) for _, wish, port in plain if not port.writes and not port.each}
+        for index, wish, port in plain:
             if port.writes:
                 self._write(index, wish, port, read)
         written = sorted(self._writers)
-        for index, wish, port in asked:
+        for index, wish, port in plain:
             if not port.writes:
                 self._read(index, wish, port, written)
+        self._add_commands(CommandLines(asked, self._report, self._may_lack_writer))
         channels = tuple(
             ChannelPlan(
                 number,
@@ -97,6 +100,13 @@ class _Wiring:
             for number, (name, (writer, port)) in enumerate(sorted(self._writers.items()))
         )
         return Wiring(channels, tuple(self._ports))
+
+    def _add_commands(self, commands: CommandLines) -> None:
+        for line in commands.lines.values():
+            self._writers[line.name] = (line.writer, Port(line.name, "writes", line.message_type, line.name))
+            self._readers[line.name] = list(line.readers)
+        for (index, attribute), names in commands.ports.items():
+            self._ports[index][attribute] = names
 
     def _well_named(self, wish: Wish, port: Port) -> bool:
         mistake = (mistake_in_pattern if port.each else mistake_in)(wish.pattern(port))

@@ -1,37 +1,18 @@
 """A test bench for one component: put messages in, iterate, look at what it sent. No process, no bus."""
 
-from typing import Any, cast
+from typing import Any
 
 from fwk import messages
 from fwk.aspects.vision import Ring, VisionMaster
 from fwk.clock import US_PER_S
-from fwk.component import Component, Declaration, declaration
+from fwk.component import Component, Declaration, Port, declaration
+from fwk.plan.command_lines import ANSWERS
 from fwk.runner import Runner, Surroundings
+from fwk.testing.ports import OtherOwner, OtherSender, PortBench
 from lcmtypes.core import log_t
 
 NAMESPACE = "robot"
-
-
-class PortBench:
-    """The outside of one port: what the test puts in, or finds sent."""
-
-    def __init__(self, channel: str, message_type: type[messages.Message]) -> None:
-        self.channel = channel
-        self.message_type = message_type
-        self.waiting: list[bytes] = []
-        self.sent: list[Any] = []
-        self._sequence = 0
-
-    def put(self, message: Any = None, **fields: Any) -> None:
-        """Makes a message visible to the next iteration: a whole one, or some fields of one that is otherwise zero."""
-        made = cast(Any, message if message is not None else self.message_type())
-        for name, value in fields.items():
-            if name not in self.message_type.__slots__:
-                raise AttributeError(f"{messages.type_name(self.message_type)} has no field '{name}'")
-            setattr(made, name, value)
-        self._sequence += 1
-        made.header.sequence = self._sequence
-        self.waiting.append(messages.encode(made, self.channel))
+SENDER = "test/sender"
 
 
 class Bench:
@@ -39,6 +20,9 @@ class Bench:
 
     Ports of many instances have one `PortBench` for each namespace given in `namespaces`:
     `bench.port("motors", "cyan1")`.
+
+    Commands go to a component that carries them out by `bench.port("kick").put(speed_m_s=3.0)`, its answers are in
+    `sent`. What a component sends to be carried out is in `sent`; `bench.owner_of("kick").answer()` answers the newest.
     """
 
     def __init__(
@@ -55,15 +39,21 @@ class Bench:
         self.tick = 0
         self.time_us = 0
         self._ports: dict[str, PortBench] = {}
+        self._by_name: dict[str, PortBench] = {}  # what a test sees of them
         self._camera: dict[str, VisionMaster] = {}
+        self._by_attribute: dict[str, list[str]] = {}
         channels = {}
         namespace = name.rpartition("/")[0]
         for port in self.declaration.ports:
             short = port.channel.rpartition("/")[2]
             names = [f"{each}/{short}" for each in namespaces] if port.each else [f"{namespace}/{port.attribute}"]
+            self._by_attribute[port.attribute] = names
             channels[port.attribute] = names
-            self._ports.update({channel: PortBench(channel, port.message_type) for channel in names})
-        self._by_attribute = channels
+            if port.owns or port.sends:
+                channels[port.attribute] = [made for each in names for made in self._command_ports(port, each, name)]
+            else:
+                self._ports.update({channel: PortBench(channel, port.message_type) for channel in names})
+                self._by_name.update({channel: self._ports[channel] for channel in names})
         self._rings = {
             channels[port.attribute][0]: Ring.create(port.attribute) for port in self.declaration.ports if port.images
         }
@@ -73,10 +63,31 @@ class Bench:
         self.component: Any = self.runner.component
         self.component.init()
 
+    def _command_ports(self, port: Port, target: str, name: str) -> tuple[str, str]:
+        """Makes the other side of a port for commands; returns the channels that the component's side stands for."""
+        assert port.reply_type
+        answers = PortBench(f"{target}@{ANSWERS}", port.reply_type)
+        self._ports[answers.channel] = answers
+        other: PortBench
+        if port.owns:
+            other = OtherSender(f"{target}@{SENDER}", port.message_type, answers)
+            made = (answers.channel, other.channel)
+        else:
+            other = OtherOwner(f"{target}@{name}", port.message_type, answers, name)
+            made = (other.channel, answers.channel)
+        self._ports[other.channel] = self._by_name[target] = other
+        return made
+
     def port(self, attribute: str, namespace: str = "") -> PortBench:
         """The outside of a port; of one of several instances if a namespace is given."""
         names = self._by_attribute[attribute]
-        return self._ports[next(name for name in names if not namespace or name.startswith(f"{namespace}/"))]
+        return self._by_name[next(name for name in names if not namespace or name.startswith(f"{namespace}/"))]
+
+    def owner_of(self, attribute: str, namespace: str = "") -> OtherOwner:
+        """The owner of the commands that the component sends by a port."""
+        owner = self.port(attribute, namespace)
+        assert isinstance(owner, OtherOwner), f"{attribute} sends no commands"
+        return owner
 
     def show(self, attribute: str, pixels: Any) -> None:
         """Makes a frame visible to the next iteration of an `Image` port."""

@@ -33,6 +33,14 @@ def expected(broken: Broken) -> list[str]:
 
 def said(broken: Broken, folder: Path) -> list[str]:
     """What the check says of the row's files, written into `folder`."""
+    write(broken, folder)
+    with pytest.raises(PlanError) as caught:
+        load_plan("it.yaml", LaunchOptions(**broken.options))
+    return str(caught.value).replace(f"{folder}/", "").splitlines()
+
+
+def write(broken: Broken, folder: Path) -> None:
+    """Writes the row's files."""
     name, files = "it.yaml", dict[str, list[str]]()
     for line in dedent(broken.text).strip("\n").split("\n"):
         if line.startswith("--- "):
@@ -43,6 +51,3 @@ def said(broken: Broken, folder: Path) -> list[str]:
     for file, lines in files.items():
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
         (folder / file).write_text("\n".join(lines))
-    with pytest.raises(PlanError) as caught:
-        load_plan("it.yaml", LaunchOptions(**broken.options))
-    return str(caught.value).replace(f"{folder}/", "").splitlines()

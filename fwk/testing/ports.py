@@ -1,0 +1,60 @@
+"""The other side of a component's ports on the bench: what a test puts in, and finds sent."""
+
+from typing import Any, cast
+
+from fwk import messages
+from fwk.clock import US_PER_S
+from lcmtypes.core import answer_t, command_t
+
+
+class PortBench:
+    """The outside of one port: what the test puts in, or finds sent."""
+
+    def __init__(self, channel: str, message_type: type[messages.Message]) -> None:
+        self.channel = channel
+        self.message_type = message_type
+        self.waiting: list[bytes] = []
+        self.sent: list[Any] = []
+        self._sequence = 0
+
+    def put(self, message: Any = None, **fields: Any) -> None:
+        """Makes a message visible to the next iteration: a whole one, or some fields of one that is otherwise zero."""
+        made = cast(Any, message if message is not None else self.message_type())
+        for name, value in fields.items():
+            if name not in self.message_type.__slots__:
+                raise AttributeError(f"{messages.type_name(self.message_type)} has no field '{name}'")
+            setattr(made, name, value)
+        self._sequence += 1
+        made.header.sequence = self._sequence
+        self.waiting.append(messages.encode(made, self.channel))
+
+
+class OtherSender(PortBench):
+    """The sender of a component that carries out commands; `sent` are its answers."""
+
+    def __init__(self, channel: str, message_type: type[messages.Message], answers: PortBench) -> None:
+        super().__init__(channel, message_type)
+        self.sent = answers.sent
+
+    def put(self, message: Any = None, expires_s: float | None = None, **fields: Any) -> None:
+        """Sends a command, which is not to be begun after `expires_s` of logical time on the bench's clock."""
+        if expires_s is not None:
+            fields["command"] = command_t()
+            fields["command"].expires_us = round(expires_s * US_PER_S)
+        super().put(message, **fields)
+
+
+class OtherOwner(PortBench):
+    """The owner of commands that a component sends; `sent` are the commands."""
+
+    def __init__(self, channel: str, message_type: type[messages.Message], answers: PortBench, sender: str) -> None:
+        super().__init__(channel, message_type)
+        self._answers = answers
+        self._sender = sender
+
+    def answer(self, state: int = answer_t.DONE, reason: str = "", sequence: int = 0, **fields: Any) -> None:
+        """Answers the newest command, or the one with that number; `fields` are those of a reply."""
+        answer = answer_t()
+        answer.state, answer.reason, answer.sender = state, reason, self._sender
+        answer.sequence = sequence or self.sent[-1].header.sequence
+        self._answers.put(answer=answer, **fields)

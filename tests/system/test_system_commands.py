@@ -1,0 +1,229 @@
+"""Commands and requests between real processes: carried out once at most, whatever is lost and whoever dies."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fwk.record.types import use_types_of
+from tests.system.command_system import TYPES, command_system
+from tests.system.conftest import Launch
+from tests.system.system_logs import Recording, difference
+from tests.system.system_runs import BIN, Launched, PortBlock, write_files
+from tests.system.test_system_determinism import MEMORY
+
+pytestmark = pytest.mark.system
+
+TICKS = 60
+FILE = "launch/lift.yaml"
+RUN = (FILE, "--ticks", str(TICKS), "--seed", "3", "--record", "log.lcm")
+WORKERS = ("one", "two")
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.mktemp("types")
+    write_files(folder, {"lcmtypes/lift.lcm": TYPES})
+    use_types_of(folder)
+
+
+@pytest.fixture
+def folder(tmp_path: Path, ports: PortBlock) -> Path:
+    """A user's folder with the lifting system."""
+    write_files(tmp_path, command_system(ports.public_url))
+    (tmp_path / "traces").mkdir()
+    return tmp_path
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of an undisturbed run, a process a component."""
+    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
+    write_files(folder, command_system(ports.public_url))
+    run = Launched(folder, ports, RUN, {})
+    try:
+        assert run.wait() == 0, run.text
+    finally:
+        run.end()
+        ports.release()
+    return folder / "log.lcm"
+
+
+def begun(recording: Recording) -> list[tuple[str, int]]:
+    """Sender and number of the lifts that were begun, in order."""
+    return [(lifted.sender, lifted.sequence) for lifted in recording.decoded("r/lifted")]
+
+
+def sent(recording: Recording) -> list[tuple[int, str, int]]:
+    """Tick, sender and number of the lifts that were wanted."""
+    return [
+        (header.tick, f"{worker}/worker", header.sequence)
+        for worker in WORKERS
+        for header in recording.headers(f"r/lift@{worker}/worker")
+    ]
+
+
+def verified(folder: Path, log: str = "log.lcm") -> str:
+    """What `fwk replay --verify` says, which has to find no difference."""
+    done = subprocess.run(
+        [BIN / "fwk", "replay", log, "--verify"], cwd=folder, capture_output=True, text=True, check=False, timeout=120
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    return done.stdout
+
+
+def test_every_command_is_carried_out_once_and_in_order(reference: Path) -> None:
+    recording = Recording(reference)
+    assert recording.gaps() == {}
+    lifts = begun(recording)
+    assert len(lifts) == len(set(lifts)) > TICKS // 2
+    ticks = {(sender, number): tick for tick, sender, number in sent(recording)}
+    assert [(ticks[each], *each) for each in lifts] == sorted((ticks[each], *each) for each in lifts)
+    for worker in WORKERS:
+        tally = recording.decoded(f"{worker}/tally")[-1]
+        assert tally.sent > tally.ended > tally.done > 20
+        sums = [
+            answer.sum for answer in recording.decoded("r/sum@answers") if answer.answer.sender == f"{worker}/worker"
+        ]
+        assert tally.sum in (sum(sums), sum(sums[:-1]))
+
+
+@pytest.mark.parametrize("hosting", ["robot", "single"])
+def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, reference: Path, hosting: str) -> None:
+    run = launch(*RUN, "--hosting", hosting)
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+
+
+@pytest.mark.parametrize("loss", ["0.02", "0.2"])
+def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, loss: str) -> None:
+    run = launch(*RUN, env={"FWK_TEST_LOSS": loss})
+    assert run.wait() == 0, run.text
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "fetched" in run.text
+
+
+def test_a_system_in_memory_gives_the_same(folder: Path, reference: Path) -> None:
+    write_files(folder, {"memory.py": MEMORY.replace("orchestra", "lift")})
+    command = [sys.executable, "memory.py", str(TICKS), "3"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert difference(reference, folder / "memory.lcm") == ""
+
+
+def test_a_recording_replays_byte_for_byte(reference: Path) -> None:
+    verified(reference.parent)
+
+
+@pytest.mark.parametrize("loss", ["0", "0.05"])
+def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: Launch, folder: Path, loss: str) -> None:
+    run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
+    for start in (2, 3):
+        run.until_ticks("r/lifter", 10)
+        os.kill(run.host("r/lifter"), signal.SIGKILL)
+        run.until(f"r/lifter runs again, start number {start}")
+        os.kill(run.host("r/adder"), signal.SIGKILL)
+        run.until(f"r/adder runs again, start number {start}")
+    run.until_ticks("r/lifter", 20)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    assert recording.gaps() == {}
+    lifts = begun(recording)
+    assert len(lifts) == len(set(lifts))
+    assert lifts[-1][1] > 20
+    restarted = {header.writer for header in recording.headers("r/lifted")}
+    assert restarted == {"r/lifter", "r/lifter#2", "r/lifter#3"}
+    for worker in WORKERS:
+        tally = recording.decoded(f"{worker}/tally")[-1]
+        assert "failed: r/lifter was started after it had been sent" in tally.reasons
+        assert tally.sent - tally.ended < 64 + 10
+    if loss == "0":
+        verified(folder)
+
+
+@pytest.mark.parametrize("loss", ["0", "0.05"])
+def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder: Path, loss: str) -> None:
+    run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
+    for start in (2, 3):
+        run.until_ticks("one/worker", 10)
+        os.kill(run.host("one/worker"), signal.SIGKILL)
+        run.until(f"one/worker runs again, start number {start}")
+    run.until_ticks("one/worker", 20)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    assert recording.gaps() == {}
+    lifts = begun(recording)
+    assert len(lifts) == len(set(lifts))
+    assert set(lifts) <= {(sender, number) for _, sender, number in sent(recording)}
+    writers = {header.writer for header in recording.headers("r/lift@one/worker")}
+    assert writers == {"one/worker", "one/worker#2", "one/worker#3"}
+    assert recording.decoded("one/tally")[-1].done > 0
+    if loss == "0":
+        verified(folder)
+
+
+def test_an_owner_that_does_not_come_back_lets_futures_end(launch: Launch, folder: Path) -> None:
+    file = folder / FILE
+    file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { when: never } }'))
+    run = launch(FILE, "--record", "log.lcm")
+    run.until_ticks("r/lifter", 10)
+    os.kill(run.host("r/lifter"), signal.SIGKILL)
+    run.until("r/lifter ended: killed by signal 9")
+    run.until_ticks("one/worker", 100)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 1, run.text
+    tally = Recording(folder / "log.lcm").decoded("one/tally")[-1]
+    assert "timed out: r/lift: was not answered in time" in tally.reasons
+
+
+@pytest.fixture
+def wall(folder: Path) -> Path:
+    """The system by the clock on the wall."""
+    file = folder / FILE
+    file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.1"))
+    return folder
+
+
+def test_in_real_time_an_owner_that_was_late_begins_everything_once(launch: Launch, wall: Path) -> None:
+    run = launch(FILE, "--record", "log.lcm")
+    run.until_ticks("one/worker", 10)
+    os.kill(run.host("r/lifter"), signal.SIGSTOP)
+    run.until("r/lifter is late")
+    run.until_ticks("one/worker", 20)
+    os.kill(run.host("r/lifter"), signal.SIGCONT)
+    run.until("r/lifter is on time again")
+    run.until_ticks("r/lifter", 20)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    recording = Recording(wall / "log.lcm")
+    lifts = begun(recording)
+    assert len(lifts) == len(set(lifts)) > 20
+    verified(wall)
+
+
+def test_in_real_time_with_losses_nothing_is_begun_twice(launch: Launch, wall: Path) -> None:
+    run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": "0.05"})
+    run.until_ticks("r/lifter", 20)
+    os.kill(run.host("r/lifter"), signal.SIGKILL)
+    run.until("r/lifter runs again, start number 2")
+    run.until_ticks("r/lifter", 20)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    lifts = begun(Recording(wall / "log.lcm"))
+    assert len(lifts) == len(set(lifts)) > 20
+
+
+def test_a_flood_of_commands_is_held_back_and_said(launch: Launch, folder: Path) -> None:
+    sets = ("--set", "one/worker.flood=1000", "--set", "r/lifter.ticks=1000")
+    run = launch(*RUN, *sets)
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    assert len(recording.headers("r/lift@one/worker")) <= 64 * 2
+    reasons = recording.decoded("one/tally")[-1].reasons
+    assert "rejected: queue full: 64 commands to r/lift are not finished" in reasons
+    verified(folder)
