@@ -131,7 +131,6 @@ def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: La
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
     recording = Recording(folder / "log.lcm")
-    assert recording.gaps() == {}
     lifts = begun(recording)
     assert len(lifts) == len(set(lifts))
     assert lifts[-1][1] > 20
@@ -141,7 +140,8 @@ def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: La
         tally = recording.decoded(f"{worker}/tally")[-1]
         assert "failed: r/lifter was started after it had been sent" in tally.reasons
         assert tally.sent - tally.ended < 64 + 10
-    if loss == "0":
+    if loss == "0":  # otherwise the dead take along what was lost on its way
+        assert recording.gaps() == {}
         verified(folder)
 
 
@@ -156,14 +156,14 @@ def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder:
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
     recording = Recording(folder / "log.lcm")
-    assert recording.gaps() == {}
     lifts = begun(recording)
     assert len(lifts) == len(set(lifts))
     assert set(lifts) <= {(sender, number) for _, sender, number in sent(recording)}
     writers = {header.writer for header in recording.headers("r/lift@one/worker")}
     assert writers == {"one/worker", "one/worker#2", "one/worker#3"}
     assert recording.decoded("one/tally")[-1].done > 0
-    if loss == "0":
+    if loss == "0":  # otherwise the dead take along what was lost on its way
+        assert recording.gaps() == {}
         verified(folder)
 
 

@@ -1,4 +1,4 @@
-"""docs/first-component.md, word for word: its files are written, its commands typed, its outputs compared."""
+"""Pages to be followed, word for word: their files are written, their commands typed, their outputs compared."""
 
 import re
 import shlex
@@ -8,7 +8,7 @@ import pytest
 
 from tests.fwk.cli.cli_processes import free_bus_port, run, write_files
 
-PAGE = Path(__file__).parents[3] / "docs" / "first-component.md"
+DOCS = Path(__file__).parents[3] / "docs"
 _FILE = re.compile(r"this as `([^`]+)`:\n\n```\w+\n(.*?)```", re.S)
 _CONSOLE = re.compile(r"```console\n(.*?)```", re.S)
 
@@ -31,11 +31,14 @@ def shows(output: str, line: str) -> bool:
 
 
 @pytest.mark.system
-def test_the_page_does_what_it_says(tmp_path: Path) -> None:
-    page = PAGE.read_text()
+@pytest.mark.parametrize(
+    ("name", "n_files", "n_commands"), [("first-component.md", 5, 7), ("commands-between-components.md", 5, 4)]
+)
+def test_the_page_does_what_it_says(tmp_path: Path, name: str, n_files: int, n_commands: int) -> None:
+    page = (DOCS / name).read_text()
     files, commands = dict(_FILE.findall(page)), steps(page)
-    assert len(files) == 5
-    assert len(commands) == 7
+    assert len(files) == n_files
+    assert len(commands) == n_commands
     write_files(tmp_path, files)
     for command, lines in commands:
         words = shlex.split(command)
