@@ -201,7 +201,7 @@ def test_in_real_time_an_owner_that_was_late_begins_everything_once(launch: Laun
     assert run.wait() == 0, run.text
     recording = Recording(wall / "log.lcm")
     lifts = begun(recording)
-    assert len(lifts) == len(set(lifts)) > 20
+    assert len(lifts) == len(set(lifts)) > 5
     verified(wall)
 
 
@@ -212,7 +212,7 @@ def test_in_real_time_with_losses_nothing_is_begun_twice(launch: Launch, wall: P
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
     lifts = begun(Recording(wall / "log.lcm"))
-    assert len(lifts) == len(set(lifts)) > 20
+    assert len(lifts) == len(set(lifts)) > 5
 
 
 def test_a_flood_of_commands_is_held_back_and_said(launch: Launch, folder: Path) -> None:
