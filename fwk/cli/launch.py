@@ -10,6 +10,7 @@ import typer
 
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
+from fwk.cli.profile import write_profiles
 from fwk.cli.run_dir import RunDirError, make_run_dir
 from fwk.cli.run_files import write_run_files
 from fwk.cli.summary import introduction, summary
@@ -17,7 +18,7 @@ from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
-from fwk.supervisor import DebuggerMissing, PortsInUse, RunOptions, run
+from fwk.supervisor import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
 
 RUN_BROKEN = 1
 BAD_INPUT = 2
@@ -62,6 +63,9 @@ def launch(
         int | None,
         typer.Option(min=1, max=65535, metavar="PORT", help="with --debug: wait for debugpy at this port, not for pdb"),
     ] = None,
+    profile: Annotated[
+        str | None, typer.Option(metavar="NAME", help="find out where this component's iterations take their time")
+    ] = None,
     bus_port: Annotated[
         int | None, typer.Option(min=1024, max=65535, metavar="N", help="first port of the inner buses")
     ] = None,
@@ -92,7 +96,8 @@ def launch(
     )
     with _ending():
         plan = load_plan(file, wishes)
-        _check(plan, debug, video)
+        _check_names(plan, {"--debug": debug, "--profile": profile})
+        _check_video(plan, video)
         run_dir = make_run_dir(plan.name)
         write_run_files(run_dir, plan)
         options = RunOptions(
@@ -104,6 +109,7 @@ def launch(
             video=video,
             debug=debug,
             debugpy_port=debugpy or 0,
+            profile=profile,
             plain=plain or debug is not None,
         )
         for line in introduction(plan):
@@ -112,6 +118,9 @@ def launch(
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
     for line in summary(plan, options, outcome):
         typer.echo(line)
+    if profile:
+        for line in write_profiles(run_dir):
+            typer.echo(line)
     if options.record and options.video:
         _draw(plan, options.record, options.video)
     raise typer.Exit(outcome.exit_code)
@@ -122,7 +131,7 @@ def _ending() -> Iterator[None]:
     """Turns what keeps a run from starting into a sentence and an exit code."""
     try:
         yield
-    except (DebuggerMissing, PlanError, PortsInUse, RunDirError) as error:
+    except (DebuggerMissing, PlanError, PortsInUse, ProfilerMissing, RunDirError) as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error
     except KeyboardInterrupt as interrupt:
@@ -130,12 +139,16 @@ def _ending() -> Iterator[None]:
         raise typer.Exit(0) from interrupt
 
 
-def _check(plan: Plan, debug: str | None, video: Path | None) -> None:
+def _check_names(plan: Plan, named: dict[str, str | None]) -> None:
+    names = [component.name for component in plan.components]
+    for option, name in named.items():
+        if name and name not in names:
+            raise typer.BadParameter(f"{option}: no component '{name}' in {plan.file}; {hint(name, names)}")
+
+
+def _check_video(plan: Plan, video: Path | None) -> None:
     if video and not plan.video:
         raise typer.BadParameter(f"--video: {plan.file} names no drawing; add a line 'video: module:function'")
-    names = [component.name for component in plan.components]
-    if debug and debug not in names:
-        raise typer.BadParameter(f"--debug: no component '{debug}' in {plan.file}; {hint(debug, names)}")
 
 
 def _draw(plan: Plan, record: Path, video: Path) -> None:

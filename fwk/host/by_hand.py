@@ -13,6 +13,7 @@ from fwk.aspects.vision import Ring
 from fwk.component import DeclarationError
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.host import Assignment, Failure, Host
+from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, raise_file_limit
 from fwk.plan.model import ComponentPlan, Plan
 
@@ -48,6 +49,9 @@ class Place:
         os.chdir(self.folder)
         try:
             self._import_modules()
+            limit = self.plan.memory_limit_mb(self.component.host)
+            if limit:
+                limit_memory(limit)
             told = self.ask()
         except (NoPlace, DeclarationError) as reason:
             print(f"error: {reason}", file=sys.stderr)

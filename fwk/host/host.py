@@ -20,6 +20,7 @@ from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import US_PER_S, Clock, monotonic_us
 from fwk.component import DeclarationError, declaration
 from fwk.host.inputs import Inputs
+from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
@@ -56,11 +57,18 @@ class Failure(Exception):  # noqa: N818 - a failure of a component, not an error
 class Host:
     """Takes its components from `init` to `finalize`."""
 
-    def __init__(self, assignment: Assignment, stopping: Callable[[], bool], wakeup: int) -> None:
+    def __init__(
+        self,
+        assignment: Assignment,
+        stopping: Callable[[], bool],
+        wakeup: int,
+        make_runner: Callable[..., Runner] = Runner,
+    ) -> None:
         plan = assignment.plan
         self._assignment = assignment
         self._plan = plan
         self._stopping = stopping
+        self._make_runner = make_runner
         self._ports = Ports.of(plan)
         self._supervisor_port, self._sync_port = self._ports.supervisor, self._ports.sync
         self._sender = Sender(self._ports.host(assignment.host))
@@ -127,6 +135,8 @@ class Host:
                 if monotonic_us() >= self._report_us:
                     self._report()
             self._finalize()
+        except MemoryError as error:  # between two iterations
+            self._blame(self._own[0].name, "its process", error)
         finally:
             self._report()
             for runner in self._runners.values():
@@ -160,7 +170,8 @@ class Host:
         changed = self._assignment.settings.get(plan.name)
         settings = json.loads(changed) if changed else plan.config
         config = declared.config.model_validate(settings)
-        runner = Runner(declared, plan.name, config, plan.channels, surroundings, self._assignment.incarnation)
+        incarnation = self._assignment.incarnation
+        runner = self._make_runner(declared, plan.name, config, plan.channels, surroundings, incarnation)
         for channel, writer in runner.writers.items():
             writer.sequence = self._assignment.sequences.get(channel, 0)
         return runner
@@ -291,11 +302,18 @@ class Host:
         """
         if isinstance(error, BdbQuit | KeyboardInterrupt):
             return
+        if isinstance(error, MemoryError):
+            lift_limit()
         place = traceback.extract_tb(error.__traceback__)[-1]
-        reason = f"{type(error).__name__}: {error} ({place.filename}:{place.lineno}, in {moment})"
+        reason = f"{self._what(error)} ({place.filename}:{place.lineno}, in {moment})"
         self.figures[name].state, self.figures[name].reason = "failed", reason
         self.log.named(name).exception(f"failed in {moment}", error)
         raise Failure(f"{name}: {reason}") from error
+
+    def _what(self, error: BaseException) -> str:
+        limit = self._plan.memory_limit_mb(self._assignment.host)
+        over = f"more memory than its memory_limit_mb of {limit:g}" if limit and isinstance(error, MemoryError) else ""
+        return f"{type(error).__name__}: {over or error}"
 
     def _report(self) -> None:
         self._report_us = monotonic_us() + (READY_REPORT_MS * 1000 if self._answered[0] == 0 else REPORT_US)

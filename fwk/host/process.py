@@ -34,6 +34,12 @@ def raise_file_limit() -> None:
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
 
 
+def allow_core_dumps() -> None:
+    """Lets a crash leave a core dump where the system's limits and its `core_pattern` allow one."""
+    _, hard = resource.getrlimit(resource.RLIMIT_CORE)
+    resource.setrlimit(resource.RLIMIT_CORE, (hard, hard))
+
+
 def keep_memory() -> None:
     """Tells the C library to keep freed memory: pictures come and go, and giving each back costs page faults."""
     mallopt = ctypes.CDLL(None).mallopt
@@ -69,6 +75,7 @@ def run_forked(work: Callable[[StopSignal], int]) -> None:
     code = 1
     try:
         faulthandler.enable()
+        allow_core_dumps()
         keep_memory()
         cv2.setNumThreads(1)
         code = work(StopSignal())

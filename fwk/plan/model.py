@@ -42,6 +42,8 @@ class ComponentPlan:
     """Indices of components that have to be ready before this one starts, whoever grants it an aspect among them."""
     start: bool = True
     """Whether it starts with the run; otherwise it waits until somebody asks for it."""
+    memory_limit_mb: float | None = None
+    """Memory that it may take beyond what its process begins with; None: as much as there is."""
 
     @property
     def namespace(self) -> str:
@@ -115,6 +117,11 @@ class Plan:
     video: str = ""
     """`module:function` that draws the top view of a recording."""
     log: LogPlan = LogPlan()
+
+    def memory_limit_mb(self, host: int) -> float | None:
+        """Memory that a process may take: what its components may together; None if one of them has no limit."""
+        limits = [self.components[index].memory_limit_mb for index in self.hosts[host].components]
+        return None if None in limits else sum(limit for limit in limits if limit)
 
     def to_json(self) -> dict[str, Any]:
         """Plain data for JSON."""

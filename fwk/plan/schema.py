@@ -64,6 +64,8 @@ class ComponentEntry(_Entry):
     """Whether it starts with the run."""
     restart: RestartEntry = RestartEntry()
     ready_timeout_s: float = Field(20.0, gt=0.0)
+    memory_limit_mb: float | None = Field(None, gt=0.0)
+    """What it may take beyond what its process begins with."""
 
 
 class RobotEntry(_Entry):

@@ -13,6 +13,7 @@ from fwk.bus.sockets import Sender
 from fwk.clock import US_PER_S, Clock
 from fwk.host.debugger import DebuggerMissing, DebugRequest, check
 from fwk.host.process import raise_file_limit
+from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
 from fwk.host.report import Complaints
 from fwk.plan.model import Plan
 from fwk.supervisor.children import Children, decoded
@@ -28,7 +29,7 @@ from fwk.supervisor.status import StatusReport
 from fwk.supervisor.zygote import Zygote
 from lcmtypes.core import log_t, status_t
 
-__all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "RunOptions", "run"]
+__all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "ProfilerMissing", "RunOptions", "run"]
 
 
 def run(plan: Plan, options: RunOptions) -> Outcome:
@@ -37,15 +38,17 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     Raises:
         PortsInUse: another run on this machine has the ports.
         DebuggerMissing: debugpy is asked for and not installed.
+        ProfilerMissing: a profile is asked for and pyinstrument is not installed.
     """
     ports = Ports.of(plan)
     debug = _debug_request(plan, options)
+    profile = _profile_request(plan, options)
     lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
     (options.run_dir / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
     number = secrets.randbits(62)
     rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
-    zygote = Zygote(plan, number, rings, debug)
+    zygote = Zygote(plan, number, rings, debug, profile)
     children = Children(plan, number, options)
     supervisor = Supervisor(plan, options, number, zygote, rings, debug)
     reason, failed = supervisor.work(children)
@@ -64,6 +67,14 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         status,
         newest,
     )
+
+
+def _profile_request(plan: Plan, options: RunOptions) -> ProfileRequest | None:
+    for component in plan.components:
+        if component.name == options.profile:
+            check_profiler()
+            return ProfileRequest(component, options.run_dir)
+    return None
 
 
 def _debug_request(plan: Plan, options: RunOptions) -> DebugRequest | None:

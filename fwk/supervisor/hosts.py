@@ -240,11 +240,11 @@ class Hosts:
                     self._signal(entry, signal.SIGTERM)
                 self.printed.listen(entry.name, event.output, event.errors)
             elif event.incarnation == entry.incarnation:
-                self._ended(entry, event.code)
+                self._ended(entry, event.code, event.core)
 
-    def _ended(self, entry: HostEntry, code: int) -> None:
+    def _ended(self, entry: HostEntry, code: int, core: bool = False) -> None:
         asked = entry.state == "stopping"
-        entry.ended(code, monotonic_us(), self._stopping)
+        entry.ended(code, monotonic_us(), self._stopping, core)
         self._ledger.void(entry.index, entry.incarnation + 1)
         if not asked:
             self.on_lost(entry)

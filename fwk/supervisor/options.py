@@ -27,6 +27,8 @@ class RunOptions:
     """Component that runs under pdb in this terminal."""
     debugpy_port: int = 0
     """Instead of pdb, the component waits for an editor's debugger at this port of 127.0.0.1."""
+    profile: str | None = None
+    """Component whose iterations are profiled."""
     plain: bool = False
     """Lines of text instead of the live display, on a terminal too."""
 

@@ -139,13 +139,13 @@ class HostEntry:
         self._starts_us.append(now_us)
         return self.incarnation
 
-    def ended(self, code: int, now_us: int, stopping: bool) -> None:
+    def ended(self, code: int, now_us: int, stopping: bool, core: bool = False) -> None:
         """Its process ended; decides whether and when it is started again."""
         self.pid, self.busy, self.held, self.since_us, self.changes = 0, None, False, now_us, []
         if self.state == "stopping":
             self.state, self.restart_us = ("waiting" if self.wanted and not stopping else "stopped"), now_us
             return
-        how = f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+        how = f"killed by signal {-code}{', core dumped' if core else ''}" if code < 0 else f"exit code {code}"
         if code == 0:
             how = "it left by itself (exit code 0), which nobody had asked it to"
         if stopping and code == 0:

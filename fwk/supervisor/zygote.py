@@ -16,9 +16,12 @@ from fwk.aspects.vision import Ring
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure, Host
+from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
+from fwk.host.profile import Profile, ProfileRequest
 from fwk.host.uncaught import log_uncaught
 from fwk.plan.model import Plan
+from fwk.runner import Runner
 from fwk.supervisor.options import RunBroken
 from fwk.supervisor.preload import preload
 
@@ -44,12 +47,21 @@ class Ended:
     incarnation: int
     pid: int
     code: int
+    core: bool
+    """Whether it left a core dump."""
 
 
 class Zygote:
     """The supervisor's side of the zygote."""
 
-    def __init__(self, plan: Plan, run: int, rings: Mapping[str, Ring], debug: DebugRequest | None = None) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        run: int,
+        rings: Mapping[str, Ring],
+        debug: DebugRequest | None = None,
+        profile: ProfileRequest | None = None,
+    ) -> None:
         self.socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         parent = os.getpid()
         gc.collect()
@@ -59,7 +71,7 @@ class Zygote:
             self.socket.close()
             os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
             die_with_parent(parent)
-            run_forked(lambda stop: _Forker(plan, run, rings, other, debug).serve(stop))
+            run_forked(lambda stop: _Forker(plan, run, rings, other, debug, profile).serve(stop))
         other.close()
         self.socket.setblocking(False)
         self._debugged = debug.host if debug else None
@@ -129,8 +141,10 @@ class _Forker:
         rings: Mapping[str, Ring],
         connection: socket.socket,
         debug: DebugRequest | None,
+        profile: ProfileRequest | None,
     ) -> None:
         self._debug = debug
+        self._profile = profile
         self._plan = plan
         self._run = run
         self._rings = rings
@@ -171,6 +185,7 @@ class _Forker:
         self, host: int, incarnation: int, sequences: dict[str, int], settings: dict[str, str], fresh_code: bool
     ) -> None:
         debugged = self._debug if self._debug and self._debug.host == host and incarnation == 1 else None
+        profiled = self._profile if self._profile and self._profile.component.host == host else None
         output, output_write = os.pipe()
         errors, errors_write = os.pipe()
         parent = os.getpid()
@@ -190,7 +205,7 @@ class _Forker:
             assignment = Assignment(
                 self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code
             )
-            run_forked(lambda stop: _serve_host(assignment, stop, debugged))
+            run_forked(lambda stop: _serve_host(assignment, stop, debugged, profiled))
         os.close(output_write)
         os.close(errors_write)
         self._children[pid] = (host, incarnation)
@@ -207,14 +222,21 @@ class _Forker:
             host, incarnation = self._children.pop(pid)
             code = os.waitstatus_to_exitcode(status)
             event = {"event": "ended", "host": host, "incarnation": incarnation, "pid": pid, "code": code}
+            event["core"] = os.WCOREDUMP(status)
             self._connection.send(json.dumps(event).encode())
 
 
-def _serve_host(assignment: Assignment, stop: StopSignal, debugged: DebugRequest | None) -> int:
+def _serve_host(
+    assignment: Assignment, stop: StopSignal, debugged: DebugRequest | None, profiled: ProfileRequest | None
+) -> int:
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     if assignment.fresh_code:
         forget_modules(assignment.plan)
-    host = Host(assignment, stop, stop.wakeup)
+    limit = assignment.plan.memory_limit_mb(assignment.host)
+    if limit:
+        limit_memory(limit)
+    profile = Profile(profiled, assignment.incarnation) if profiled else None
+    host = Host(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
     log_uncaught(host.log)
     try:
         if debugged:
@@ -222,4 +244,7 @@ def _serve_host(assignment: Assignment, stop: StopSignal, debugged: DebugRequest
         host.serve()
     except Failure:
         return 1  # logged and reported already
+    finally:
+        if profile:
+            profile.keep()
     return 0
