@@ -12,7 +12,7 @@ from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
 from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
-from fwk.aspects.vision import Image, VisionMaster  # noqa: E402
+from fwk.aspects.vision import Image, ImagesEach, VisionMaster  # noqa: E402
 from fwk.clock import Clock, TimeSource  # noqa: E402
 from fwk.component import Component  # noqa: E402
 from fwk.config import Config  # noqa: E402
@@ -29,6 +29,7 @@ __all__ = [
     "Config",
     "Future",
     "Image",
+    "ImagesEach",
     "Logger",
     "Reads",
     "ReadsEach",

@@ -12,7 +12,7 @@ from fwk.aspects.commands import Commands
 from fwk.aspects.logging import Logger
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Sends, SendsEach
-from fwk.aspects.vision import Image, VisionMaster
+from fwk.aspects.vision import Image, ImagesEach, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.config import LOG_LEVEL, Config, with_log_level
 from lcmtypes.core import acknowledgement_t
@@ -45,6 +45,7 @@ class Component:
     | `path: Serves[path_request_t, path_t]`, `path: Calls[...]` | requests with a typed reply, to answer; to ask |
     | `SendsEach[...]`, `CallsEach[...]` | to many of those who carry them out, by namespace |
     | `image: Image`, `image: VisionMaster` | frames of a camera, to read or to give out |
+    | `image: ImagesEach` | frames of many cameras, by namespace |
     | `config: MyConfig` | checked settings |
     | `clock: Clock` | logical time |
     | `log: Logger` | the system's log |
@@ -92,6 +93,7 @@ PortKind = Literal[
     "reads_each",
     "writes_each",
     "image",
+    "images_each",
     "vision_master",
     "commands",
     "serves",
@@ -112,6 +114,7 @@ _PORT_KINDS: dict[Any, PortKind] = {
     SendsEach: "sends_each",
     CallsEach: "calls_each",
 }
+_IMAGE_KINDS: dict[Any, PortKind] = {Image: "image", ImagesEach: "images_each", VisionMaster: "vision_master"}
 
 
 @dataclass(frozen=True)
@@ -135,7 +138,7 @@ class Port:
     @property
     def each(self) -> bool:
         """Whether it stands for many instances."""
-        return self.kind in ("reads_each", "writes_each", "sends_each", "calls_each")
+        return self.kind in ("reads_each", "writes_each", "sends_each", "calls_each", "images_each")
 
     @property
     def owns(self) -> bool:
@@ -150,7 +153,7 @@ class Port:
     @property
     def images(self) -> bool:
         """Whether frames lie in a shared-memory ring beside the channel."""
-        return self.kind in ("image", "vision_master")
+        return self.kind in ("image", "images_each", "vision_master")
 
 
 @dataclass(frozen=True)
@@ -190,9 +193,8 @@ def declaration(component: type[Component]) -> Declaration:
         default = getattr(component, attribute, None)
         if get_origin(wish) in _PORT_KINDS:
             ports.append(_port(where, attribute, _PORT_KINDS[get_origin(wish)], get_args(wish), default))
-        elif wish in (Image, VisionMaster):
-            kind: PortKind = "image" if wish is Image else "vision_master"
-            ports.append(_port(where, attribute, kind, (frame_t,), default))
+        elif wish in _IMAGE_KINDS:
+            ports.append(_port(where, attribute, _IMAGE_KINDS[wish], (frame_t,), default))
         elif wish in _ASPECTS:
             aspects[attribute] = _ASPECTS[wish]
         elif isinstance(wish, type) and issubclass(wish, Config):
@@ -205,8 +207,8 @@ def declaration(component: type[Component]) -> Declaration:
             raise DeclarationError(
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
                 f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
-                "CallsEach, Image, VisionMaster, a Config, Clock, Logger, numpy.random.Generator or TimeSource, "
-                "and set plain attributes in init()"
+                "CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
+                "numpy.random.Generator or TimeSource, and set plain attributes in init()"
             )
     return Declaration(
         component,

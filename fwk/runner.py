@@ -13,7 +13,7 @@ from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Outbox, Sends, SendsEach
-from fwk.aspects.vision import Image, Ring, VisionMaster
+from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import Component, Declaration, Port
 from fwk.config import LOG_LEVEL, Config
@@ -138,10 +138,10 @@ class Runner:
                 return VisionMaster(made[channels[0]], self._rings[channels[0]])
             return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
         read = {channel: self.readers.setdefault(channel, Reads(channel, port.message_type)) for channel in channels}
-        if port.kind == "image":
-            image = Image(read[channels[0]], self._rings[channels[0]], self.log)
-            self.images.append(image)
-            return image
+        if port.images:
+            images = {channel: Image(read[channel], self._rings[channel], self.log) for channel in channels}
+            self.images += images.values()
+            return ImagesEach(_by_namespace(images)) if port.each else images[channels[0]]
         return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
 
     def _queue(self, port: Port, answers: str, *sources: str) -> Queue[Any]:

@@ -1,9 +1,12 @@
 """The vision aspects: camera frames in a shared-memory ring, written by one vision master and read by many."""
 
+import math
 import mmap
 import os
 import struct
-from typing import Any
+from collections.abc import ItemsView, Iterator, Mapping
+from pathlib import Path
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +18,9 @@ from lcmtypes.robot import frame_t
 SLOTS = 4
 SLOT_BYTES = 8 << 20  # room for the largest frame; memory is used only where a frame was written
 _MARKS = struct.Struct("=qq")  # frame number before and after the pixels: different while a frame is being written
+_SHAPE = struct.Struct("=3i")  # height, width, channels; behind the marks
 _PAGE = mmap.PAGESIZE
+_TRIES = 100  # of somebody who looks at a ring from outside, while the camera goes on
 
 Frame = NDArray[np.uint8]
 
@@ -27,9 +32,9 @@ class FrameError(Exception):
 class Ring:
     """A few frames in anonymous shared memory; it vanishes with the last process that has it, whatever kills it."""
 
-    def __init__(self, descriptor: int) -> None:
+    def __init__(self, descriptor: int, access: int = mmap.ACCESS_WRITE) -> None:
         self.descriptor = descriptor
-        self._memory = mmap.mmap(descriptor, SLOTS * (_PAGE + SLOT_BYTES))
+        self._memory = mmap.mmap(descriptor, SLOTS * (_PAGE + SLOT_BYTES), access=access)
 
     @classmethod
     def create(cls, name: str) -> "Ring":
@@ -38,11 +43,26 @@ class Ring:
         os.ftruncate(descriptor, SLOTS * (_PAGE + SLOT_BYTES))
         return cls(descriptor)
 
+    @classmethod
+    def of_process(cls, pid: int, name: str) -> Self | None:
+        """The ring of that name among the open files of another process, to read; None if it has none.
+
+        The kernel allows it to the user of that process and to root.
+        """
+        for link in Path(f"/proc/{pid}/fd").iterdir():
+            try:
+                if os.readlink(link).startswith(f"/memfd:{name} "):
+                    return cls(os.open(link, os.O_RDONLY), mmap.ACCESS_READ)
+            except FileNotFoundError:  # closed meanwhile
+                continue
+        return None
+
     def put(self, number: int, pixels: Frame) -> int:
         """Writes frame `number` and returns its slot."""
         slot = number % SLOTS
         start = slot * (_PAGE + SLOT_BYTES)
         _MARKS.pack_into(self._memory, start, number, -1)
+        _SHAPE.pack_into(self._memory, start + _MARKS.size, *pixels.shape[:2], _channels(pixels))
         target = np.frombuffer(self._memory, np.uint8, pixels.size, start + _PAGE)
         np.copyto(target, pixels.reshape(-1))
         _MARKS.pack_into(self._memory, start, number, number)
@@ -55,6 +75,29 @@ class Ring:
             return None
         pixels = np.frombuffer(self._memory, np.uint8, size, start + _PAGE).copy()
         return pixels if _MARKS.unpack_from(self._memory, start) == (number, number) else None
+
+    def newest(self) -> tuple[int, Frame] | None:
+        """Number and copy of the newest frame, for somebody who is not told of them; None before the first."""
+        starts = [slot * (_PAGE + SLOT_BYTES) for slot in range(SLOTS)]
+        for _ in range(_TRIES):
+            marks = [(*_MARKS.unpack_from(self._memory, start), start) for start in starts]
+            whole = [(before, start) for before, after, start in marks if before == after > 0]
+            if whole:
+                number, start = max(whole)
+                shape = shape_of(*_SHAPE.unpack_from(self._memory, start + _MARKS.size))
+                pixels = self.get(number, math.prod(shape))
+                if pixels is not None:
+                    return number, pixels.reshape(shape)
+        return None
+
+
+def shape_of(height_px: int, width_px: int, channels: int) -> tuple[int, ...]:
+    """The shape of a frame's array: pictures of one channel have two dimensions."""
+    return (height_px, width_px, channels) if channels > 1 else (height_px, width_px)
+
+
+def _channels(pixels: Frame) -> int:
+    return pixels.shape[2] if pixels.ndim == 3 else 1
 
 
 class VisionMaster:
@@ -85,7 +128,7 @@ class VisionMaster:
         frame.frame = self.announcement.sequence + self.announcement.pending + 1  # goes on when the master is restarted
         frame.slot = self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
-        frame.channels = pixels.shape[2] if pixels.ndim == 3 else 1
+        frame.channels = _channels(pixels)
         frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
         self.announcement.write()
 
@@ -124,8 +167,8 @@ class Image:
             flat = (
                 self._ring.get(frame.frame, frame.height_px * frame.width_px * frame.channels) if frame.frame else None
             )
-            shape = (frame.height_px, frame.width_px, frame.channels)
-            self._pixels = None if flat is None else flat.reshape(shape if frame.channels > 1 else shape[:2])
+            shape = shape_of(frame.height_px, frame.width_px, frame.channels)
+            self._pixels = None if flat is None else flat.reshape(shape)
             if flat is None and frame.frame:
                 self._lose(frame.frame)
         return self._pixels
@@ -137,3 +180,23 @@ class Image:
                 f"{self.announcement.channel}: frame {number} was overwritten before it was read: too late by "
                 f"{SLOTS - 1} frames or more ({self.lost} lost so far)"
             )
+
+
+class ImagesEach(Mapping[str, Image]):
+    """The frames of many cameras, by namespace, in alphabetical order; nobody of them is needed for a start."""
+
+    def __init__(self, images: Mapping[str, Image]) -> None:
+        self._images = dict(sorted(images.items()))
+
+    def __getitem__(self, key: str) -> Image:
+        return self._images[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._images)
+
+    def __len__(self) -> int:
+        return len(self._images)
+
+    def items(self) -> ItemsView[str, Image]:
+        """Pairs of namespace and camera."""
+        return self._images.items()

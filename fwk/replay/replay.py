@@ -178,4 +178,5 @@ def _chosen(components: Sequence[ComponentPlan], only: Sequence[str], recording:
 
 def _images_read(component: ComponentPlan) -> list[str]:
     declared = declaration(getattr(import_module(component.module), component.class_name))
-    return [component.channels[port.attribute][0] for port in declared.ports if port.kind == "image"]
+    looks = [port.attribute for port in declared.ports if port.images and not port.writes]
+    return [channel for attribute in looks for channel in component.channels[attribute]]

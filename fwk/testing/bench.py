@@ -55,7 +55,10 @@ class Bench:
                 self._ports.update({channel: PortBench(channel, port.message_type) for channel in names})
                 self._by_name.update({channel: self._ports[channel] for channel in names})
         self._rings = {
-            channels[port.attribute][0]: Ring.create(port.attribute) for port in self.declaration.ports if port.images
+            channel: Ring.create(channel)
+            for port in self.declaration.ports
+            if port.images
+            for channel in channels[port.attribute]
         }
         config = self.declaration.config(**settings)
         surroundings = Surroundings(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
@@ -89,15 +92,15 @@ class Bench:
         assert isinstance(owner, OtherOwner), f"{attribute} sends no commands"
         return owner
 
-    def show(self, attribute: str, pixels: Any) -> None:
-        """Makes a frame visible to the next iteration of an `Image` port."""
-        port = self.port(attribute)
-        if attribute not in self._camera:
+    def show(self, attribute: str, pixels: Any, namespace: str = "") -> None:
+        """Makes a frame visible to the next iteration of an `Image` port, or of one of an `ImagesEach` port."""
+        port = self.port(attribute, namespace)
+        if port.channel not in self._camera:
             from fwk.aspects.blackboard import Writes
 
             writer: Any = Writes(port.channel, port.message_type)
-            self._camera[attribute] = VisionMaster(writer, self._rings[port.channel])
-        master = self._camera[attribute]
+            self._camera[port.channel] = VisionMaster(writer, self._rings[port.channel])
+        master = self._camera[port.channel]
         master.publish(pixels)
         port.waiting += master.announcement.take()
 

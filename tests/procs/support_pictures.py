@@ -89,6 +89,10 @@ def write_video(file: Path, pictures: list[Picture]) -> Path:
     return file
 
 
+def read(file: Path) -> Picture:
+    return np.asarray(cv2.imread(str(file)), np.uint8)
+
+
 class Stream:
     """A network camera: gives whoever connects the same picture again and again."""
 

@@ -1,12 +1,16 @@
 """The match's detectors on recorded pictures, in a real run: `fwk-launch vision.yaml`."""
 
+import os
 import signal
 import subprocess
 from pathlib import Path
 
+import numpy as np
+import pexpect
 import pytest
 
-from tests.procs.support_pictures import simulated, write_folder, write_video
+from procs.vision.colours import Picture
+from tests.procs.support_pictures import read, shades, simulated, write_folder, write_video
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording, difference
@@ -78,3 +82,60 @@ def test_a_missing_source_is_named_and_nothing_starts(launch: Launch) -> None:
     run = launch("vision.yaml", "--set", "cyan1/camera.source=/dev/video99")
     assert run.wait() == 1, run.text
     assert "cyan1/camera: SourceError: '/dev/video99': No such file or directory; video devices" in run.text
+
+
+@pytest.fixture
+def with_pictures(tmp_path: Path) -> tuple[Path, list[Picture]]:
+    """A launch file with exact pictures of all cameras on the bus, and what its camera sees, again and again."""
+    pictures = shades(5)
+    folder = write_folder(tmp_path / "seen", pictures)
+    camera = f"{{use: procs.camera_driver, config: {{source: {folder}, at_end: loop}}}}"
+    on_the_bus = "{use: procs.pictures, config: {rate_hz: 0, format: png}}"
+    text = f"components:\n  cyan1/camera: {camera}\n  world/pictures: {on_the_bus}\n"
+    (tmp_path / "pictures.yaml").write_text(text)
+    return tmp_path / "pictures.yaml", pictures
+
+
+def test_fwk_cam_sees_what_a_running_camera_sees(
+    launch: Launch, ports: PortBlock, with_pictures: tuple[Path, list[Picture]], tmp_path: Path
+) -> None:
+    file, pictures = with_pictures
+    run = Steered(launch(file.name, "--set", f"public_url={ports.public_url}"), ports)
+    assert run.json("cam")[0]["writer"] == "cyan1/camera"
+    for name in ("cyan1/camera", "cyan1/image"):
+        assert "120 x 160 x 3" in run.fwk("cam", name, "--save", "one.png")
+        assert any(np.array_equal(read(tmp_path / "one.png"), each) for each in pictures)
+    assert "did you mean 'cyan1/camera'" in run.fwk("cam", "cyan1/camra", "--save", "one.png", code=2)
+    run.ticks_pass(3)
+    log = run.end()
+    recorded = subprocess.run(
+        [str(BIN / "fwk"), "cam", "cyan1/camera", "--log", str(log), "--save", "all/"],
+        cwd=tmp_path,
+        check=True,
+        timeout=TIMEOUT_S,
+    )
+    assert recorded.returncode == 0
+    saved = sorted((tmp_path / "all").iterdir())
+    assert len(saved) > 3
+    assert all(np.array_equal(read(path), pictures[at % 5]) for at, path in enumerate(saved))
+
+
+def test_fwk_cam_draws_in_a_terminal(
+    launch: Launch, ports: PortBlock, with_pictures: tuple[Path, list[Picture]], tmp_path: Path
+) -> None:
+    run = Steered(launch(with_pictures[0].name, "--set", f"public_url={ports.public_url}"), ports)
+    command = f"{BIN / 'fwk'} cam cyan1/camera --bus-port {ports.bus}"
+    env = {key: value for key, value in os.environ.items() if key not in ("COLUMNS", "LINES", "NO_COLOR")}
+    terminal = pexpect.spawn(
+        command,
+        cwd=tmp_path,
+        timeout=TIMEOUT_S,
+        dimensions=(12, 60),
+        encoding="utf-8",
+        env={**env, "TERM": "xterm-256color"},
+    )
+    terminal.expect("cyan1/image, frame")
+    drawn = terminal.before or ""
+    assert drawn.count("▀") == 10 * 27  # two lines are left for the caption and the prompt
+    terminal.expect(pexpect.EOF)
+    run.end()

@@ -6,12 +6,13 @@ import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from fwk.aspects.vision import SLOTS, Ring
 
 ROOT = Path(__file__).parents[3]
-TIMEOUT_S = 60.0
+TIMEOUT_S = 40.0
 
 COMMON = """
 import os, sys, zlib
@@ -44,7 +45,7 @@ while True:
     number += 1
     pixels = frames[number % 251]
     pixels[:8] = np.frombuffer(number.to_bytes(8, "big"), np.uint8)
-    ring.put(number, pixels)
+    ring.put(number, pixels.reshape(500, 400))
     os.pwrite(newest, number.to_bytes(8, "big"), 0)
 """
 
@@ -122,9 +123,36 @@ def test_a_writer_killed_while_it_writes_leaves_no_torn_frame_and_its_successor_
     assert all(result(reader)[0] >= 300 for reader in readers)
 
 
-def test_a_ring_keeps_as_many_frames_as_it_has_slots() -> None:
-    import numpy as np
+NEIGHBOUR = """
+print("ready", flush=True)
+seen, theirs = 0, Ring.of_process(os.getppid(), "stress")
+while seen < 200:
+    number, pixels = theirs.newest() or (0, None)
+    if number:
+        check(number, pixels.reshape(-1))
+        seen += 1
+print(seen, Ring.of_process(os.getppid(), "none"), flush=True)
+"""
 
+
+def test_somebody_outside_finds_the_ring_by_its_name_and_sees_its_newest_frame(start: Start) -> None:
+    neighbour, _ = start(NEIGHBOUR), start(WRITER)
+    out, errors = neighbour.communicate(timeout=TIMEOUT_S)
+    assert out == "200 None\n", errors
+
+
+@pytest.mark.parametrize("shape", [(6, 4, 3), (6, 4)])
+def test_the_newest_frame_is_there_with_its_shape(shape: tuple[int, ...]) -> None:
+    ring = Ring.create("newest")
+    assert ring.newest() is None
+    for number in range(1, 8):
+        ring.put(number, np.full(shape, number, np.uint8))
+    newest = ring.newest()
+    assert newest is not None
+    assert (newest[0], newest[1].shape, int(newest[1].max())) == (7, shape, 7)
+
+
+def test_a_ring_keeps_as_many_frames_as_it_has_slots() -> None:
     ring = Ring.create("slots")
     for number in range(1, SLOTS + 3):
         ring.put(number, np.full((2, 2), number, np.uint8))
