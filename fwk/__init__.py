@@ -10,6 +10,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402 - after the limits
 from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
+from fwk.aspects.main_loop import MainLoop  # noqa: E402
 from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
 from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
 from fwk.aspects.vision import Image, ImagesEach, VisionMaster  # noqa: E402
@@ -31,6 +32,7 @@ __all__ = [
     "Image",
     "ImagesEach",
     "Logger",
+    "MainLoop",
     "Reads",
     "ReadsEach",
     "Request",

@@ -8,7 +8,8 @@ US_PER_S = 1_000_000
 class Clock:
     """Logical time of the iteration that runs; what every component uses instead of the wall clock.
 
-    `now_us` and `tick` stay the same during an iteration. In a recording's replay they are what they were.
+    `now_us` and `tick` stay the same during an iteration. In a recording's replay they are what they were: then the
+    recording is the only source of time, whatever a time source of the run says.
     """
 
     def __init__(self, period_us: int = 50_000) -> None:
@@ -40,6 +41,11 @@ class TimeSource:
 
     def __init__(self) -> None:
         self.next_us = -1
+
+
+def speed_word(speed: float) -> str:
+    """A speed as it is typed; 0 is as fast as it goes."""
+    return f"{speed:g}" if speed else "max"
 
 
 def monotonic_us() -> int:

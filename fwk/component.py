@@ -10,6 +10,7 @@ from fwk import messages
 from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, WritesEach
 from fwk.aspects.commands import Commands
 from fwk.aspects.logging import Logger
+from fwk.aspects.main_loop import MainLoop
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Sends, SendsEach
 from fwk.aspects.vision import Image, ImagesEach, VisionMaster
@@ -51,6 +52,7 @@ class Component:
     | `log: Logger` | the system's log |
     | `rng: np.random.Generator` | random numbers, seeded from the run's seed and the component's name |
     | `time_source: TimeSource` | says when the next tick happens; one a system |
+    | `main_loop: MainLoop` | takes over the main loop, and gives it back; one at a time |
     """
 
     stage: ClassVar[str | tuple[str, ...]]
@@ -166,10 +168,16 @@ class Declaration:
     config: type[Config]
     """With `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
-    """Attribute to aspect name: clock, log, rng, time_source."""
+    """Attribute to aspect name: clock, log, rng, time_source, main_loop."""
 
 
-_ASPECTS: dict[Any, str] = {Clock: "clock", Logger: "log", np.random.Generator: "rng", TimeSource: "time_source"}
+_ASPECTS: dict[Any, str] = {
+    Clock: "clock",
+    Logger: "log",
+    np.random.Generator: "rng",
+    TimeSource: "time_source",
+    MainLoop: "main_loop",
+}
 
 
 def declaration(component: type[Component]) -> Declaration:

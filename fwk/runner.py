@@ -10,15 +10,18 @@ import numpy as np
 from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
 from fwk.aspects.commands import Commands, Queue, Source
 from fwk.aspects.logging import LEVELS, Logger
+from fwk.aspects.main_loop import MainLoop
 from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Outbox, Sends, SendsEach
 from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
-from fwk.component import Component, Declaration, Port
+from fwk.component import DEFAULT_STAGES, Component, Declaration, Port
 from fwk.config import LOG_LEVEL, Config
 from lcmtypes.core import log_t
 
+AWAY_TICKS = 16
+"""Who took no part for longer is like a newcomer, because writers may no longer have everything."""
 NOTHING: list[bytes] = []
 """No message came. Readers do not change what they are given."""
 
@@ -34,6 +37,7 @@ class Surroundings:
     """Shared-memory rings by channel."""
     lines_per_s: int = 0
     """That each component may log; 0: as many as it likes."""
+    stages: Sequence[str] = DEFAULT_STAGES
 
 
 class Runner:
@@ -58,12 +62,16 @@ class Runner:
         self._command_ports: list[Queue[Any] | Outbox[Any, Any]] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
+        self.main_loop = MainLoop(name, surroundings.stages)
+        self.has_main_loop = "main_loop" in declaration.aspects.values()
+        """Whether the component may take over the main loop."""
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
         self._config = config or declaration.config()
         limit = RateLimit(surroundings.lines_per_s)
         self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
         self.component: Component = declaration.component()
         self._rings = surroundings.rings
+        self._away_after = 1  # tick
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         for attribute, aspect in declaration.aspects.items():
@@ -85,6 +93,8 @@ class Runner:
     ) -> list[tuple[str, bytes]]:
         """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
 
+        Who comes new into a run that goes on, or was away for long, sees of each channel the newest alone.
+
         `fresh` holds for the channels of its readers what became visible since the last iteration. Whatever the
         component raises comes out, and then nothing was written.
         """
@@ -92,6 +102,9 @@ class Runner:
         clock.tick = stamp.tick = tick
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
+        if tick > self._away_after:
+            fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
+        self._away_after = tick + AWAY_TICKS
         for reader in self._refreshed:
             reader.freeze(NOTHING)
         self._refreshed = [self.readers[channel] for channel in fresh]
@@ -119,7 +132,12 @@ class Runner:
     def _aspect(self, aspect: str, seed: int) -> Any:
         if aspect == "rng":
             return np.random.default_rng(seed_of(seed, self.name))
-        return {"clock": self.clock, "log": self.log, "time_source": self.time_source}[aspect]
+        return {
+            "clock": self.clock,
+            "log": self.log,
+            "time_source": self.time_source,
+            "main_loop": self.main_loop,
+        }[aspect]
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:
         if port.owns:

@@ -23,9 +23,14 @@ def status_line(status: status_t) -> str:
     sums = figures.totals(figures.components(status))
     states = ", ".join(f"{count} {state}" for state, count in sums.states.items())
     return (
-        f"tick {status.tick}   {status.time_us / US_PER_S:.2f} s   speed {status.speed:.2f}   "
+        f"tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   "
         f"{status.ticks_per_s:.1f} ticks/s   {states}   {losses(status)}"
     )
+
+
+def pace(status: status_t) -> str:
+    """How fast logical time goes on."""
+    return "paused" if status.paused else f"speed {status.speed:.2f}"
 
 
 def losses(status: status_t) -> str:

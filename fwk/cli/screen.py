@@ -9,7 +9,7 @@ from rich.text import Text
 
 from fwk.aspects.logging import LEVEL_NAMES
 from fwk.cli import figures
-from fwk.cli.lines import losses
+from fwk.cli.lines import losses, pace
 from fwk.cli.view import View
 from fwk.clock import US_PER_S
 from lcmtypes.core import component_state_t, log_t, status_t
@@ -42,7 +42,7 @@ def screen(view: View, rows: int) -> RenderableType:
 def _figures(status: status_t) -> Text:
     sums = figures.totals(figures.components(status))
     text = Text(no_wrap=True, overflow="ellipsis")
-    text.append(f" tick {status.tick}   {status.time_us / US_PER_S:.2f} s   speed {status.speed:.2f}   ")
+    text.append(f" tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   ")
     text.append(f"{status.ticks_per_s:.1f} ticks/s   ")
     clean = not sums.lost and not status.late
     text.append(losses(status), style="dim" if clean else "yellow")

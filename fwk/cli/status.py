@@ -41,6 +41,10 @@ def headline(answer: dict[str, Any]) -> list[str]:
         f"tick {answer['tick']}   {answer['time_us'] / US_PER_S:.2f} s   speed {answer['speed']:.2f}   "
         f"{answer['ticks_per_s']:.1f} ticks/s   late {answer['late']}   repeated {answer['repeated']}",
     ]
+    if answer["main_loop"]:
+        lines.append(f"{answer['main_loop']} has the main loop: {', '.join(answer['order'])}")
+    if answer["paused"]:
+        lines.append(f"paused after tick {answer['tick']}; 'fwk resume' goes on, 'fwk step' runs one tick")
     if answer["waits_for"]:
         lines.append(f"waits for {', '.join(answer['waits_for'])}")
     return lines

@@ -29,6 +29,12 @@ class Status(_Request):
     names: Names = []
 
 
+class Times(_Request):
+    """Histograms of wall time: of ticks, stages and components."""
+
+    verb: Literal["times"]
+
+
 class Steer(_Request):
     """Another desired state for some components; answered when they have it."""
 
@@ -46,6 +52,16 @@ class TakePlace(_Request):
     name: str
     held: bool = False
     """Whether a debugger has it: then nobody hurries it."""
+
+
+class Clock(_Request):
+    """Simulated time stands still, goes on, goes on for some ticks, or at another speed; answered when it does."""
+
+    verb: Literal["pause", "resume", "step", "speed"]
+    ticks: int = Field(1, ge=1)
+    """To step."""
+    speed: float | None = Field(None, ge=0.0, allow_inf_nan=False)
+    """Logical seconds per wall second, 0: as fast as it goes; without it the speed is only told."""
 
 
 class Settings(_Request):
@@ -98,7 +114,7 @@ class Watch(_Request):
     channel: str
 
 
-SupervisorRequest = Run | Status | Steer | TakePlace | Settings | SetSettings | WatchSettings | Common
+SupervisorRequest = Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common
 GatewayRequest = Channels | Show | Watch
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
 to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])

@@ -24,9 +24,9 @@ from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
-from fwk.plan.model import ComponentPlan, Plan
+from fwk.plan.model import NOBODY, ComponentPlan, Plan
 from fwk.plan.starting import start_order
-from fwk.runner import Runner, Surroundings
+from fwk.runner import AWAY_TICKS, Runner, Surroundings
 from lcmtypes.core import actual_t, change_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
@@ -99,6 +99,7 @@ class Host:
         for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
             self._poller.register(descriptor, select.EPOLLIN)
         self._runners: dict[str, Runner] = {}
+        self._takers: list[Runner] = []  # those that may take over the main loop
         self._members = [
             [component.name for component in self._own if stage in component.stages]
             for stage in range(len(plan.stages))
@@ -151,6 +152,8 @@ class Host:
                 runner = self._runner(plan)
                 self._runners[plan.name] = runner
                 self._waiting[plan.name] = {}
+                if runner.has_main_loop:
+                    self._takers.append(runner)
                 runner.component.init()
             self.figures[plan.name].state = "running"
         self._report()
@@ -164,6 +167,7 @@ class Host:
             self._send_log,
             self._assignment.rings,
             self._plan.log.lines_per_s,
+            self._plan.stages,
         )
         if {port.attribute for port in declared.ports} != set(plan.channels):
             raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
@@ -200,13 +204,14 @@ class Host:
     def _answer(self, tick: tick_t, stage: int) -> None:
         if self._assignment.host in tick.absent:
             return
-        if (tick.tick, stage) <= self._answered:
-            if (tick.tick, stage) == self._answered:
+        this = (tick.tick, tick.stage)
+        if this <= self._answered:
+            if this == self._answered:
                 self._sender.publish(sync.DONE, self._done, self._ports.sync)
             return
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
-        if self._answered[0] == 0 and tick.tick > 1:
+        if tick.tick > (self._answered[0] + AWAY_TICKS if self._answered[0] else 1):
             self.inputs.newest_only()
         if not self.inputs.wait(moved, self._handle_own):
             return
@@ -215,8 +220,10 @@ class Host:
         self._deliver(moved)
         if tick.changes:
             self._configure(tick.changes)
+        if self._takers:
+            self._tell_holder(tick.main_loop)
         self._iterate(tick, stage)
-        self._answered = (tick.tick, stage)
+        self._answered = this
 
     def _deliver(self, moved: list[Box]) -> None:
         for box in moved:
@@ -241,7 +248,7 @@ class Host:
             runner, waiting = self._runners[name], self._waiting[name]
             self._waiting[name] = {}
             try:
-                written += runner.iterate(tick.tick, stage, self._plan.stages[stage], tick.time_us, waiting)
+                written += runner.iterate(tick.tick, tick.stage, self._plan.stages[stage], tick.time_us, waiting)
             except BaseException as error:
                 self._blame(name, f"loop, tick {tick.tick}", error)
                 raise
@@ -251,11 +258,23 @@ class Host:
             next_us = max(next_us, runner.time_source.next_us)
         marks = self._outputs.publish(written)
         done = self._message
-        done.tick, done.stage, done.next_time_us = tick.tick, stage, next_us
+        done.tick, done.stage, done.next_time_us = tick.tick, tick.stage, next_us
+        done.wishes = self._wishes() if self._takers else ""
         done.busy_us = start_us - began_us
         done.channel, done.sequence = list(marks), list(marks.values())
         self._done = sync.encode_done(done)
         self._sender.publish(sync.DONE, self._done, self._sync_port)
+
+    def _tell_holder(self, component: int) -> None:
+        """Says to who cares which component has the main loop."""
+        name = self._plan.components[component].name if component != NOBODY else ""
+        for runner in self._takers:
+            runner.main_loop.holder = name
+
+    def _wishes(self) -> str:
+        """What the iterations asked for, in a done's words."""
+        asked = {runner.name: wish for runner in self._takers if (wish := runner.main_loop.take()) is not None}
+        return json.dumps({"main_loop": asked}) if asked else ""
 
     def _handle_own(self) -> bool:
         """Handles what was sent to this host's own port; false when it is time to stop."""
@@ -324,6 +343,7 @@ class Host:
             self._assignment.incarnation,
         )
         actual.components = [figures.message() for figures in self.figures.values()]
+        actual.times = [figures.histogram() for figures in self.figures.values()]
         actual.n = len(actual.components)
         for component in actual.components:
             if component.name in self._runners:

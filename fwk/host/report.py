@@ -1,10 +1,11 @@
 """What a host tells of its components: their states and figures, and what was refused on their channels."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from fwk.aspects.logging import Logger
 from fwk.clock import monotonic_us
-from lcmtypes.core import component_state_t
+from fwk.histogram import Histogram
+from lcmtypes.core import component_state_t, histogram_t
 
 
 @dataclass
@@ -14,26 +15,32 @@ class Figures:
     name: str
     state: str = "loaded"
     reason: str = ""
-    iterations: int = 0
-    busy_us: int = 0
-    worst_us: int = 0
+    times: Histogram = field(default_factory=Histogram)
+    """Of its iterations."""
 
     def __post_init__(self) -> None:
         self._since_us = monotonic_us()
 
     def ran(self, duration_us: int) -> None:
         """Counts an iteration."""
-        self.iterations += 1
-        self.busy_us += duration_us
-        if duration_us > self.worst_us:
-            self.worst_us = duration_us
+        self.times.add(duration_us)
 
     def message(self) -> component_state_t:
         """As it is reported."""
         made = component_state_t()
         made.name, made.state, made.reason = self.name, self.state, self.reason
-        made.iterations, made.busy_us, made.worst_us = self.iterations, self.busy_us, self.worst_us
+        made.iterations, made.busy_us, made.worst_us = self.times.count, self.times.total_us, self.times.worst_us
         made.awake_us = monotonic_us() - self._since_us
+        return made
+
+    def histogram(self) -> histogram_t:
+        """How long its iterations took, as it is reported."""
+        made = histogram_t()
+        made.n, made.bucket, made.count = (
+            len(self.times.counts),
+            list(self.times.counts),
+            list(self.times.counts.values()),
+        )
         return made
 
 

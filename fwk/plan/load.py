@@ -14,7 +14,7 @@ from fwk.plan.hosting import Hosting, share_out
 from fwk.plan.model import ComponentPlan, Plan, RestartPolicy
 from fwk.plan.needs import check_left_out, granted_by, needs_of
 from fwk.plan.overrides import overrides
-from fwk.plan.resolve import Resolved, add_settings, resolve
+from fwk.plan.resolve import Resolved, add_settings, check_clock, resolve
 from fwk.plan.selection import chosen, groups_of
 from fwk.plan.stages import stages_of
 from fwk.plan.starting import check_groups, check_processes, check_starts
@@ -106,6 +106,7 @@ class _Loading:
             outside={channel.name: channel.type_name for channel in whole.channels if channel.name in outside},
             **shared,
         )
+        check_clock(components, shared["clock"], problems)
         self._check_ports(made)
         check_processes(made.hosts, made.components, asked, problems)
         problems.stop_if_any()
@@ -131,6 +132,8 @@ class _Loading:
             "seed": last(files, "seed", 1) if options.seed is None else options.seed,
             "speed": last(files, "speed", 1.0) if options.speed is None else options.speed,
             "stage_time_us": round(last(files, "stage_time_s", 0.0) * US_PER_S),
+            "loop_time_us": round(last(files, "loop_time_s", 0.0) * US_PER_S),
+            "loop_time_warnings": last(files, "loop_time_warnings", True),
             "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": function_of(files, "video", self.folders, problems),

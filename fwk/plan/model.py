@@ -107,7 +107,11 @@ class Plan:
     speed: float = 1.0
     """Logical seconds per wall second; 0: as fast as it goes."""
     stage_time_us: int = 0
-    """Real time only: how long a stage may take; 0: the period."""
+    """How long a stage may take; 0: in real time the period, in lockstep as long as it takes."""
+    loop_time_us: int = 0
+    """Desired wall time of a tick; 0: the period at the run's speed."""
+    loop_time_warnings: bool = True
+    """Whether a tick that takes longer is said, and a component that takes longer than a stage may."""
     bus_port: int = 17700
     public_url: str = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
     outside: dict[str, str] = field(default_factory=dict)

@@ -7,7 +7,7 @@ from fwk.plan.settings import over
 from fwk.plan.source import Node, read_value
 
 PLACE = "--set"
-RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "public_url")
+RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")
 
 
 def overrides(sets: Sequence[str], problems: Problems) -> Node:

@@ -99,6 +99,15 @@ def _check_ports(asked: Asked, declared: Declaration, problems: Problems) -> Non
             problems.add(node.place, asked.name, f"no port '{port}'; {nearest(port, known)}")
 
 
+def check_clock(found: Sequence[Resolved], clock: str, problems: Problems) -> None:
+    """Whether the clock on the wall is a second source of time, beside a component that is one."""
+    for owner in found if clock == "wall" else ():
+        if "time_source" in owner.declaration.aspects.values():
+            name = owner.asked.name
+            text = f"two time sources: the clock on the wall (clock: wall) and {name}; keep one, say 'clock: simulated'"
+            problems.add(owner.asked.node.place, name, text)
+
+
 def _check_time_sources(found: Sequence[Resolved], problems: Problems) -> None:
     owners = [each for each in found if "time_source" in each.declaration.aspects.values()]
     for other in owners[1:]:

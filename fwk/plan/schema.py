@@ -101,6 +101,8 @@ class HostFile(_Entry):
     speed: Pace | None = None
     seed: int | None = Field(None, ge=0)
     stage_time_s: float | None = Field(None, ge=0.0)
+    loop_time_s: float | None = Field(None, ge=0.0)
+    loop_time_warnings: bool | None = None
     public_url: str | None = None
     log: LogEntry = LogEntry()
     outside: dict[str, str] = {}

@@ -24,10 +24,9 @@ class Actor:
     ) -> None:
         self.plan = component
         self._stages = plan.stages
-        self._fresh_start = True
         declared = declaration(getattr(import_module(component.module), component.class_name))
         config = declared.config.model_validate(settings)
-        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings)
+        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}
         self.runner.component.init()
@@ -42,13 +41,10 @@ class Actor:
         if channel in self._waiting:
             self._waiting[channel] += data
 
-    def iterate(self, tick: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
+    def iterate(self, tick: int, place: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
         """One iteration with everything that became visible since the last."""
         waiting, self._waiting = self._waiting, {channel: [] for channel in self._waiting}
-        if self._fresh_start and tick > 1:  # a late joiner had only the newest of what was there before it
-            waiting = {channel: data[-1:] for channel, data in waiting.items()}
-        self._fresh_start = False
-        return self.runner.iterate(tick, stage, self._stages[stage], time_us, waiting)
+        return self.runner.iterate(tick, place, self._stages[stage], time_us, waiting)
 
 
 def _silent(line: log_t) -> None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from fwk.plan.model import Plan
+from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event, LogReader
 from fwk.record.types import header_of
 from lcmtypes.core import plan_t, tick_event_t, tick_record_t
@@ -67,6 +67,8 @@ class Recording:
 
     def _possible(self, event: tick_event_t) -> bool:
         plan = self.plan
+        if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
+            return False
         return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 
     def _plan(self) -> Plan:

@@ -12,7 +12,7 @@ from typing import Any
 from fwk.aspects.vision import Ring
 from fwk.component import declaration
 from fwk.messages import sequence_of
-from fwk.plan.model import ComponentPlan
+from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
@@ -42,7 +42,8 @@ class Replay:
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
         self._actors: dict[int, list[Actor]] = {}
-        self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the ticks and values of its new settings
+        self._holder = ""  # component that has the main loop
+        self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
         self._newest: dict[str, bytes] = {}
         self._sequences: dict[str, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
@@ -58,42 +59,44 @@ class Replay:
 
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
-        record, stage = tick.record, -1
+        record, stage, place = tick.record, -1, -1
         for change in record.changes:
             self._change(record.tick, change)
         events = deque(record.events)
         while events:
             event = events.popleft()
             if event.kind == tick_event_t.STAGE:
-                stage = event.index
+                stage, place = event.index, event.stage
                 self._show()
+            elif event.kind == tick_event_t.MAIN_LOOP:
+                self._holder = self._plan.components[event.tick].name if event.tick != NOBODY else ""
             elif event.kind == tick_event_t.STARTED:
                 self._start(event.index, event.stage, event.tick)
             elif event.kind in (tick_event_t.LOST, tick_event_t.STOPPED):
                 self._actors.pop(event.index, None)
             elif event.kind == tick_event_t.LATE:
-                self._iterate(event.index, record.tick, stage, record.time_us)
+                self._iterate(event.index, record.tick, place, stage, record.time_us)
             elif event.kind == tick_event_t.DONE:
                 if (event.index, event.tick, event.stage) not in self._pending:
-                    self._iterate(event.index, event.tick, event.stage, record.time_us)
+                    self._iterate(event.index, event.tick, event.stage, stage, record.time_us)
                 self._done(event.index, event.tick, event.stage)
 
     def _change(self, tick: int, change: change_t) -> None:
         settings = json.loads(change.settings)
-        self._changes.setdefault(change.component, []).append((tick, settings))
+        self._changes.setdefault(change.component, []).append((change.number, settings))
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
                 with self._failing(actor.plan, f"the change of its settings in tick {tick}"):
                     actor.runner.configure(settings)
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
-        """Starts a host's components with the settings of that tick, then takes over what was changed since."""
+        """Starts a host's components with the settings after that change, then takes over what was changed since."""
         self._actors[host] = []
         for index in self._plan.hosts[host].components:
             if index not in self._chosen:
                 continue
             component, changes = self._plan.components[index], self._changes.get(index, [])
-            before = [settings for tick, settings in changes if tick <= started_with]
+            before = [settings for number, settings in changes if number <= started_with]
             with self._failing(component, "its start"):
                 actor = Actor(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
                 for _, settings in changes[len(before) :]:
@@ -104,14 +107,15 @@ class Replay:
                 actor.continue_at(channel, sequence)
             self._actors[host].append(actor)
 
-    def _iterate(self, host: int, tick: int, stage: int, time_us: int) -> None:
+    def _iterate(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
         made = []
         for actor in self._actors.get(host, []):
+            actor.runner.main_loop.holder = self._holder
             if stage in actor.plan.stages:
                 with self._failing(actor.plan, f"tick {tick}"):
-                    made.append((actor, actor.iterate(tick, stage, time_us)))
+                    made.append((actor, actor.iterate(tick, place, stage, time_us)))
                 self.iterations += 1
-        self._pending[host, tick, stage] = made
+        self._pending[host, tick, place] = made
 
     @contextmanager
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
@@ -124,14 +128,14 @@ class Replay:
                 f"damaged, or the component was changed or depends on something else\n{trace}"
             ) from error
 
-    def _done(self, host: int, tick: int, stage: int) -> None:
+    def _done(self, host: int, tick: int, place: int) -> None:
         recorded: dict[str, list[bytes]] = {}
         for channel in self._host_channels[host]:
-            data = self._hidden.pop((channel, tick, stage), None)
+            data = self._hidden.pop((channel, tick, place), None)
             if data:
                 recorded[channel] = data
                 self._revealed.append((channel, data))
-        for actor, written in self._pending.pop((host, tick, stage)):
+        for actor, written in self._pending.pop((host, tick, place)):
             for channel in actor.runner.writers:
                 ours = [data for name, data in written if name == channel]
                 self._compare(channel, recorded.get(channel, []), ours)

@@ -13,6 +13,7 @@ from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
 from fwk.plan.model import Plan
+from fwk.supervisor.clock_control import ClockControl
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
@@ -20,7 +21,7 @@ from fwk.supervisor.options import RunOptions
 from fwk.supervisor.places import Places
 from fwk.supervisor.steering import Steering
 from fwk.supervisor.table import HostEntry
-from fwk.supervisor.view import component_view
+from fwk.supervisor.view import component_view, times_view
 from lcmtypes.core import status_t
 
 _FRESH_US = 2 * US_PER_S  # rates older than this say nothing
@@ -56,10 +57,10 @@ class Control:
         self._log = log
         self._places = places
         self._steering = Steering(plan, hosts.table)
+        self._clock = ClockControl(loop, log)
         self._status = status_t()
         self._status_us = 0
         self._number = 0  # of the newest change of settings
-        self._boundary_before = 0  # tick whose boundary was passed last
         self._new: list[tuple[NewSettings, str]] = []
         self._waiting: list[_Waiting] = []
         self._watching: list[tuple[Connection, list[str]]] = []
@@ -112,11 +113,16 @@ class Control:
             return self._run()
         if isinstance(request, requests.Status):
             return {**self._run(), **self._now(), "components": self._components(request.names)}
+        if isinstance(request, requests.Times):
+            return times_view(self._plan, self._loop.times, self._hosts.table)
         if isinstance(request, requests.Steer):
             self._steer(request, connection)
             return None
         if isinstance(request, requests.TakePlace):
             self._take_place(request, connection)
+            return None
+        if isinstance(request, requests.Clock):
+            self._wait(connection, self._clock.ask(request))
             return None
         if isinstance(request, requests.Settings):
             return {"settings": self.settings.rows(request.names)}
@@ -148,13 +154,13 @@ class Control:
     def _now(self) -> dict[str, Any]:
         fresh = monotonic_us() < self._status_us + _FRESH_US
         return {
-            "tick": self._loop.tick,
-            "time_us": self._loop.time_us,
+            **self._clock.now(),
             "speed": self._status.speed if fresh else 0.0,
             "ticks_per_s": self._status.ticks_per_s if fresh else 0.0,
             "repeated": self._loop.repeated,
             "late": self._loop.late,
             "waits_for": self._loop.waits_for,
+            **self._loop.turns.view,
         }
 
     def _components(self, names: list[str]) -> list[dict[str, Any]]:
@@ -203,9 +209,12 @@ class Control:
 
     def _taken_over(self, found: list[NewSettings], number: int) -> dict[str, Any] | None:
         entries = [self._hosts.table[self._plan.components[new.component].host] for new in found]
-        if self._number < number or any(change.number <= number for entry in entries for change in entry.changes):
+        if self._number < number:
             return None
-        return {"tick": self._loop.tick, "settings": [self._said(new) for new in found]}
+        stands = self._loop.stands  # then they have them before they do anything else
+        if not stands and any(change.number <= number for entry in entries for change in entry.changes):
+            return None
+        return {"tick": self._loop.tick + stands, "settings": [self._said(new) for new in found]}
 
     def _common(self, request: requests.Common, connection: Connection) -> dict[str, Any] | None:
         component = self._plan.components[self._steering.component(request.name)]
@@ -227,7 +236,6 @@ class Control:
 
     def _boundary(self, tick: int) -> None:
         """Between two ticks: what was asked for since the last one happens now."""
-        self._boundary_before = tick
         new, self._new = self._new, []
         for each, origin in new:
             self._number += 1
@@ -246,5 +254,5 @@ class Control:
                 connection.stream({"ok": True, "tick": self._loop.tick + 1, "settings": rows})
 
     def _settings_of(self, entry: HostEntry) -> dict[str, str]:
-        entry.started_with = self._boundary_before
+        entry.started_with = self._number
         return self.settings.changed(self._plan.hosts[entry.index].components)

@@ -7,21 +7,23 @@ from fwk.bus import sync
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.plan.model import Plan
+from fwk.plan.model import NOBODY, Plan
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.patience import Patience
-from fwk.supervisor.records import Records
+from fwk.supervisor.records import Records, change_message, void_messages
 from fwk.supervisor.table import Change, HostEntry
-from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
+from fwk.supervisor.turns import Turns
+from lcmtypes.core import done_t, tick_event_t, tick_t
 
 REPEAT_LONGEST_US = 100_000
-FOLLOW_US = 20_000  # when the gateway is asked whether it lost a record; doubles with each time
 LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
 WAITS_US = 200_000  # a stage that takes longer is said to wait
 STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
+STANDS_US = 100_000  # how often to look after hosts while the run is paused
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 
 
@@ -43,38 +45,40 @@ class MainLoop:
         self.tick = 0
         self.repeated = 0
         self.late = 0
-        self.recorded = 0  # newest tick that the gateway has
+        self.stands = False
+        """Whether the run is paused and its newest tick has ended."""
         self.on_boundary: Callable[[int], None] = lambda _: None
         """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
+        self.times = LoopTimes(plan, hosts.table, log)
         self._plan = plan
         self._run = run
         self._hosts = hosts
         self._ledger = ledger
         self._mailbox = mailbox
         self._sender = sender
-        self._pace = pace
+        self.pace = pace
         self._log = log
         self._interrupted = interrupted
         self._ports = Ports.of(plan)
         self._gateway = self._ports.gateway
         self._lockstep = plan.clock == "simulated"
         self._stage_time_us = plan.stage_time_us or plan.period_us
-        self._by_stage = [
+        by_stage = [
             [entry for entry in hosts.table if any(stage in plan.components[i].stages for i in self._members(entry))]
             for stage in range(len(plan.stages))
         ]
         self._patience = [Patience() for _ in plan.stages]
+        self.turns = Turns(plan, by_stage, log)
         self._stage = 0
+        self._place = 0  # of the running stage in the tick's order
         self._step = 0
         self._began_us = 0  # wall time at which the stage began
         self._outstanding: set[int] = set()
+        self._said_late: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
-        self._events: list[sync.Event] = []
-        self._changed: dict[int, int] = {}
-        self._changes: list[Change] = []  # that this tick began with
-        self._records = Records(self._ports, run, sender, mailbox)
+        self.records = Records(self._ports, run, sender, mailbox)
         self._told = b""  # the newest tick as it was sent
-        self._owed: dict[int, bytes] = {}  # the tick that a late host works on, or lost
+        self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
         mailbox.on_done = self._on_done
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
@@ -83,7 +87,7 @@ class MainLoop:
     @property
     def time_us(self) -> int:
         """Logical time of the newest tick."""
-        return self._pace.time_us
+        return self.pace.time_us
 
     @property
     def waits_for(self) -> list[str]:
@@ -96,32 +100,49 @@ class MainLoop:
         """At a tick boundary: new settings of a component, which its next iteration has."""
         entry = self._hosts.table[self._plan.components[component].host]
         change = Change(component, number, settings, self._step + 1)
-        self._changes.append(change)
+        self.records.change(change)
         if entry.alive:
             entry.changes.append(change)
 
     def run_tick(self) -> None:
-        """Waits until the next tick may begin, then runs all its stages."""
-        begin_us = self._pace.begin_us(monotonic_us())
-        self._wait_until(begin_us)
-        self._let_gateway_follow(self.tick + 1 - WINDOW)
+        """Waits until the next tick may begin, then runs all its stages; while paused, does what is asked meanwhile."""
+        self._wait()
+        self.records.wait_for(self.tick + 1 - WINDOW, self._interrupted)
         if self._interrupted():
             return
+        stands = self.stands = self.pace.stands
+        if stands:
+            self._mailbox.pump(STANDS_US)
         if self._hosts.unsettled:
             self._hosts.maintain()
         self.on_boundary(self.tick + 1)
         self._hosts.steer()
+        if stands:
+            return
         self._remind()
+        if self.turns.asked:
+            self._decide()
         self.tick += 1
-        time_us = self._pace.advance(monotonic_us())
-        for stage, members in enumerate(self._by_stage):
-            if members and not self._interrupted():
+        now_us = monotonic_us()
+        time_us = self.pace.advance(now_us)
+        self.times.tick_begins(now_us)
+        for place, stage, members in self.turns.now:
+            if not self._interrupted():
+                self._place = place
                 self._run_stage(stage, members, time_us)
-        self._record(time_us)
+        self.times.tick_ended(self.tick, monotonic_us(), self._plan.loop_time_us or self.pace.loop_time_us)
+        self.records.publish(self.tick, time_us, void_messages(self._ledger, self._step - 4 * len(self.turns.now)))
 
     def finish(self) -> None:
         """Waits until the gateway has everything."""
-        self._let_gateway_follow(self.tick)
+        self.records.wait_for(self.tick, self._interrupted)
+
+    def _decide(self) -> None:
+        """At the boundary: who has the main loop from the next tick on."""
+        if self.turns.decide(self.tick + 1):
+            component = self.turns.holder
+            host = self._plan.components[component].host if component != NOBODY else 0
+            self.records.event(tick_event_t.MAIN_LOOP, host, component)
 
     def _members(self, entry: HostEntry) -> tuple[int, ...]:
         return self._plan.hosts[entry.index].components
@@ -133,7 +154,7 @@ class MainLoop:
             self._outstanding = {entry.index for entry in members if entry.expected}
         else:
             self._outstanding = {entry.index for entry in members if entry.state == "running" and not entry.busy}
-        self._event(tick_event_t.STAGE, stage)
+        self.records.event(tick_event_t.STAGE, stage, 0, self._place)
         self._broadcast(members, time_us)
         began_us = sent_us = self._began_us = monotonic_us()
         first_us = self._patience[stage].wait_us
@@ -150,9 +171,11 @@ class MainLoop:
             now_us = monotonic_us()
             if not self._outstanding:
                 self._patience[stage].took(now_us - sent_us)
+                self.times.stage_ended(stage, now_us - began_us)
                 return
             if not self._lockstep and now_us >= began_us + self._stage_time_us:
                 self._leave_behind(members, stage)
+                self.times.stage_ended(stage, now_us - began_us)
                 return
             if self._again or now_us >= sent_us + repeat_us:
                 self.repeated += not self._again
@@ -174,14 +197,15 @@ class MainLoop:
             return
         since = min(entry.seen for entry in told)
         tick = tick_t()
-        tick.run, tick.tick, tick.stage, tick.time_us = self._run, self.tick, self._stage, time_us
+        tick.run, tick.tick, tick.stage, tick.time_us = self._run, self.tick, self._place, time_us
+        tick.main_loop = self.turns.holder
         tick.channel, tick.sequence = self._ledger.news(self._stage, since)
         tick.n_marks = len(tick.channel)
-        tick.voids = self._voids(since)
+        tick.voids = void_messages(self._ledger, since)
         tick.n_voids = len(tick.voids)
         tick.absent = [entry.index for entry in members if entry not in told]
         tick.n_absent = len(tick.absent)
-        tick.changes = [_message(change) for entry in told for change in entry.changes]
+        tick.changes = [change_message(change) for entry in told for change in entry.changes]
         tick.n_changes = len(tick.changes)
         self._told = sync.encode_tick(tick)
         self._sender.publish(sync.TICK, self._told, self._ports.stage(self._stage))
@@ -190,7 +214,8 @@ class MainLoop:
         """Who is late may have lost its tick, or its done was lost: the tick is repeated until it is answered."""
         for entry in self._hosts.table:
             if entry.busy:
-                self._sender.publish(sync.TICK, self._owed[entry.index], self._ports.stage(entry.busy[1]))
+                owed, stage = self._owed[entry.index]
+                self._sender.publish(sync.TICK, owed, self._ports.stage(stage))
 
     def _break_off(self, now_us: int) -> None:
         """Kills what shall stop but keeps the loop from reaching the boundary at which it would."""
@@ -201,103 +226,75 @@ class MainLoop:
                 entry.asked_us = now_us
                 self._hosts.kill(entry)
 
-    def _voids(self, since: int) -> list[void_t]:
-        made = []
-        for void in self._ledger.voids_since(since):
-            message = void_t()
-            message.channel, message.above_sequence = void.channel, void.above_sequence
-            message.before_incarnation = void.before_incarnation
-            made.append(message)
-        return made
-
     def _on_done(self, done: done_t) -> None:
         if done.host == self._gateway:
-            self.recorded = max(self.recorded, done.tick)
+            self.records.taken = max(self.records.taken, done.tick)
             return
         entry = self._hosts.table[done.host]
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
             return
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
-            log = self._log.info if entry.held else self._log.warning
-            log(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
-        elif (done.tick, done.stage) == (self.tick, self._stage) and done.host in self._outstanding:
+            if entry.held or entry.index in self._said_late:
+                self._said_late.discard(entry.index)
+                log = self._log.info if entry.held else self._log.warning
+                log(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
+        elif (done.tick, done.stage) == (self.tick, self._place) and done.host in self._outstanding:
             self._outstanding.discard(done.host)
             entry.seen = self._step
+            self.times.answered(done.host, self._stage, done.busy_us, self.tick)
         else:
             return
         if entry.changes:
             entry.told()
         for channel, sequence in zip(done.channel, done.sequence, strict=True):
             self._ledger.publish(channel, sequence)
-            self._changed[channel] = sequence
+            self.records.mark(channel, sequence)
         if done.next_time_us >= 0:
-            self._pace.source(done.next_time_us)
-        self._event(tick_event_t.DONE, done.host, done.tick, done.stage)
+            self.pace.source(done.next_time_us)
+        if done.wishes:
+            self.turns.ask(done)
+        self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
 
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
         for entry in members:
             if entry.index in self._outstanding:
-                entry.busy, self._owed[entry.index] = (self.tick, stage), self._told
+                entry.busy, self._owed[entry.index] = (self.tick, self._place), (self._told, stage)
                 entry.seen = self._step
-                self._event(tick_event_t.LATE, entry.index)
+                self.records.event(tick_event_t.LATE, entry.index)
                 if entry.held:
                     self._log.info(f"{entry.name} is held by its debugger in tick {self.tick}; the loop goes on")
                     continue
                 self.late += 1
-                self._log.warning(
-                    f"{entry.name} is late: {self._plan.stages[stage]} of tick {self.tick} took longer than "
-                    f"{self._stage_time_us / 1000:g} ms; the loop goes on without it"
-                )
+                if self.times.may_say_overrun(entry.index):
+                    self._said_late.add(entry.index)
+                    self._log.warning(
+                        f"{entry.name} is late: {self._plan.stages[stage]} of tick {self.tick} took longer than "
+                        f"{self._stage_time_us / 1000:g} ms; the loop goes on without it"
+                        f"{self.times.overruns_between(entry.index)}"
+                    )
         self._outstanding = set()
 
     def _on_started(self, entry: HostEntry) -> None:
-        self._event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
+        self.records.event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
         if entry.incarnation > 1:
             self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
         self._again = True
 
     def _on_lost(self, entry: HostEntry) -> None:
-        self._event(tick_event_t.LOST, entry.index)
+        self.records.event(tick_event_t.LOST, entry.index)
+        self.turns.left(entry.index)
         if not self._lockstep or not entry.expected:
             self._outstanding.discard(entry.index)
 
     def _on_stopped(self, entry: HostEntry) -> None:
-        self._event(tick_event_t.STOPPED, entry.index)
+        self.records.event(tick_event_t.STOPPED, entry.index)
+        self.turns.left(entry.index)
 
-    def _event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
-        self._events.append((kind, index, tick, stage))
-
-    def _record(self, time_us: int) -> None:
-        record = tick_record_t()
-        record.run, record.tick, record.time_us = self._run, self.tick, time_us
-        record.channel, record.sequence = list(self._changed), list(self._changed.values())
-        record.n_marks = len(record.channel)
-        record.voids = self._voids(self._step - 4 * len(self._by_stage))
-        record.n_voids = len(record.voids)
-        record.changes = [_message(change) for change in self._changes]
-        record.n_changes = len(record.changes)
-        data = sync.encode_record(record, self._events)
-        self._changed, self._changes, self._events = {}, [], []
-        self._records.publish(self.tick, data)
-
-    def _let_gateway_follow(self, tick: int) -> None:
-        """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us = FOLLOW_US
-        while self.recorded < tick and not self._interrupted():
-            before = self.recorded
-            self._mailbox.pump(wait_us)
-            if self.recorded == before:
-                wait_us = min(2 * wait_us, REPEAT_LONGEST_US)
-                self._records.repeat(self.recorded + 1, self.tick)
-
-    def _wait_until(self, begin_us: int) -> None:
+    def _wait(self) -> None:
+        """Waits until it is time for the next tick, or none may begin."""
+        begin_us = self.pace.begin_us(monotonic_us())
         self._mailbox.pump(0)
-        while not self._interrupted() and (left_us := begin_us - monotonic_us()) > 0:
+        while not self._interrupted() and not self.pace.stands and (left_us := begin_us - monotonic_us()) > 0:
             self._mailbox.pump_until(left_us)
-
-
-def _message(change: Change) -> change_t:
-    made = change_t()
-    made.component, made.number, made.settings = change.component, change.number, change.settings
-    return made
+            begin_us = self.pace.begin_us(monotonic_us())

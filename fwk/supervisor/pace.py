@@ -9,6 +9,8 @@ class Pace:
 
     Simulated: from the time source if there is one, else a period a tick; `speed` logical seconds a wall second, 0
     without waiting. Wall: the wall time since the first tick; a tick begins every period.
+
+    Simulated time can be paused, and then be stepped by some ticks.
     """
 
     def __init__(self, plan: Plan, speed: float) -> None:
@@ -20,6 +22,8 @@ class Pace:
         self._ticks = 0
         self._origin_us = -1  # wall clock only: wall time of logical time 0
         self._anchor: tuple[int, int] | None = None  # wall and logical time at which the pace was last set
+        self._paused = False
+        self._steps = 0  # ticks that may still begin while paused
 
     @property
     def speed(self) -> float:
@@ -30,6 +34,28 @@ class Pace:
     def speed(self, value: float) -> None:
         self._speed = value
         self._anchor = None
+
+    @property
+    def stands(self) -> bool:
+        """Whether no tick may begin."""
+        return self._paused and not self._steps
+
+    def pause(self) -> None:
+        """No further tick begins."""
+        self._paused, self._steps = True, 0
+
+    def resume(self) -> None:
+        """Ticks begin again, at the same pace as before."""
+        self._paused, self._steps, self._anchor = False, 0, None
+
+    def step(self, ticks: int) -> None:
+        """So many more ticks begin, then none."""
+        self._paused, self._steps, self._anchor = True, ticks, None
+
+    @property
+    def loop_time_us(self) -> float:
+        """Wall time that a tick may take if the pace is to be kept; 0: as long as it takes."""
+        return self.period_us if self.wall else self.period_us / self._speed if self._speed > 0 else 0.0
 
     def source(self, next_us: int) -> None:
         """The time source says when the next tick happens."""
@@ -52,6 +78,8 @@ class Pace:
     def advance(self, now_us: int) -> int:
         """Begins the next tick at wall time `now_us`; returns its logical time."""
         self._ticks += 1
+        if self._steps:
+            self._steps -= 1
         if self.wall:
             if self._origin_us < 0:
                 self._origin_us = now_us - self.period_us

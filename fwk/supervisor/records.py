@@ -1,32 +1,74 @@
-"""Tick records on their way to the gateway: kept, and sent again to who lacks them."""
+"""What the main loop decides in each tick, on its way to the gateway: kept, and sent again to who lacks it."""
 
 import contextlib
 import struct
 from collections import deque
+from collections.abc import Callable, Sequence
 
+from fwk.bus import sync
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.messages import MessageError
+from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
-from lcmtypes.core import fetch_t
+from fwk.supervisor.table import Change
+from lcmtypes.core import change_t, fetch_t, tick_record_t, void_t
 
 KEPT = 64  # ticks; the loop is never that far ahead of the gateway
+FIRST_WAIT_US = 20_000
+LONGEST_WAIT_US = 100_000
 
 
 class Records:
-    """The newest tick records. The gateway asks at the supervisor's port for those that it lacks."""
+    """The record of the running tick, and the newest ones before it, for which the gateway asks if it lacks them."""
 
     def __init__(self, ports: Ports, run: int, sender: Sender, mailbox: Mailbox) -> None:
+        self.taken = 0  # newest tick that the gateway has
         self._ports = ports
         self._run = run
         self._sender = sender
+        self._mailbox = mailbox
         self._kept: deque[tuple[int, bytes]] = deque(maxlen=KEPT)
+        self._events: list[sync.Event] = []
+        self._marks: dict[int, int] = {}
+        self._changes: list[Change] = []
         mailbox.watch(sender.socket.fileno(), self._on_asked)
 
-    def publish(self, tick: int, data: bytes) -> None:
-        """Sends the record of a tick and keeps it for a while."""
+    def event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
+        """Something happened, as in core.tick_event_t."""
+        self._events.append((kind, index, tick, stage))
+
+    def mark(self, channel: int, sequence: int) -> None:
+        """A mark moves."""
+        self._marks[channel] = sequence
+
+    def change(self, change: Change) -> None:
+        """The tick begins with new settings of a component."""
+        self._changes.append(change)
+
+    def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
+        """Sends the record of a tick that has ended, and keeps it for a while."""
+        record = tick_record_t()
+        record.run, record.tick, record.time_us = self._run, tick, time_us
+        record.channel, record.sequence = list(self._marks), list(self._marks.values())
+        record.n_marks = len(record.channel)
+        record.voids, record.n_voids = list(voids), len(voids)
+        record.changes = [change_message(change) for change in self._changes]
+        record.n_changes = len(record.changes)
+        data = sync.encode_record(record, self._events)
+        self._events, self._marks, self._changes = [], {}, []
         self._kept.append((tick, data))
         self._sender.publish(b"fwk/record", data, self._ports.record)
+
+    def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> None:
+        """Waits until the gateway has `tick`; what it may have lost is sent again."""
+        wait_us = FIRST_WAIT_US
+        while self.taken < tick and not interrupted():
+            before = self.taken
+            self._mailbox.pump(wait_us)
+            if self.taken == before:
+                wait_us = min(2 * wait_us, LONGEST_WAIT_US)
+                self.repeat(self.taken + 1, tick + KEPT)
 
     def repeat(self, first: int, last: int) -> None:
         """Sends the records of these ticks again."""
@@ -41,3 +83,21 @@ class Records:
                 fetch = fetch_t.decode(message[1])
                 if fetch.run == self._run:
                     self.repeat(fetch.first_sequence, fetch.last_sequence)
+
+
+def change_message(change: Change) -> change_t:
+    """New settings of a component, as they are told and recorded."""
+    made = change_t()
+    made.component, made.number, made.settings = change.component, change.number, change.settings
+    return made
+
+
+def void_messages(ledger: Ledger, since: int) -> list[void_t]:
+    """What is void, for somebody who was told at step `since` last."""
+    made = []
+    for void in ledger.voids_since(since):
+        message = void_t()
+        message.channel, message.above_sequence = void.channel, void.above_sequence
+        message.before_incarnation = void.before_incarnation
+        made.append(message)
+    return made

@@ -44,6 +44,7 @@ class StatusReport:
         made.speed = (self._pace.time_us - time_us) / elapsed_us
         made.ticks_per_s = (self._loop.tick - tick) * US_PER_S / elapsed_us
         made.repeated, made.late = self._loop.repeated, self._loop.late
+        made.paused = self._loop.stands
         made.hosts = [_host(entry) for entry in self._table]
         made.n = len(made.hosts)
         return made

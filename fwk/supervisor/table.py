@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from fwk.clock import US_PER_S
 from fwk.host.debugger import LEFT
 from fwk.plan.model import Plan, RestartPolicy
-from lcmtypes.core import component_state_t
+from lcmtypes.core import component_state_t, histogram_t
 
 NOT_STARTED = "does not start with the run"
 
@@ -45,8 +45,10 @@ class HostEntry:
     seen: int = 0
     """Step of the last tick that it answered; 0: none since it was started."""
     busy: tuple[int, int] | None = None
-    """(tick, stage) that it still works on, late."""
+    """Tick, and place in its order of stages, that it still works on, late."""
     components: list[component_state_t] = field(default_factory=list)
+    times: list[histogram_t] = field(default_factory=list)
+    """How long the iterations of its components took."""
     wanted: bool = True
     """Whether it should run: the one half of the desired state."""
     desired_run: int = 1
@@ -62,7 +64,7 @@ class HostEntry:
     held: bool = False
     """Whether a debugger has its process: nobody hurries it."""
     started_with: int = 0
-    """Newest tick whose changes of settings it was started with."""
+    """Number of the newest change of settings that it was started with."""
 
     def __post_init__(self) -> None:
         self._starts_us: deque[int] = deque()

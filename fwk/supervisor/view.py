@@ -1,9 +1,12 @@
 """A run and its components as plain data, for whoever asks."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from fwk.clock import US_PER_S
+from fwk.histogram import Histogram
 from fwk.plan.model import ComponentPlan, Plan
+from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.table import HostEntry
 from lcmtypes.core import component_state_t
 
@@ -30,6 +33,22 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
         "strangers": told.strangers,
         "reason": told.reason or entry.reason,
         "needs": [plan.components[index].name for index in component.needs],
+    }
+
+
+def times_view(plan: Plan, times: LoopTimes, table: Sequence[HostEntry]) -> dict[str, Any]:
+    """Histograms of wall time, as `Histogram.to_json`: of ticks, of the stages that ran, and of components."""
+    stages = [(plan.stages[index], histogram) for index, histogram in enumerate(times.stages) if histogram.count]
+    components = {}
+    for entry in table:
+        for told, counted in zip(entry.components, entry.times, strict=True):
+            counts = zip(counted.bucket, counted.count, strict=True)
+            components[told.name] = Histogram.of(counts, told.busy_us, told.worst_us).to_json()
+    return {
+        "loop": times.loop.to_json(),
+        "cycle": times.cycle.to_json(),
+        "stages": {name: histogram.to_json() for name, histogram in stages},
+        "components": components,
     }
 
 

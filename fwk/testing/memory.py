@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fwk import messages
+from fwk.aspects.main_loop import Holding
 from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
@@ -44,7 +45,8 @@ class MemorySystem:
         self._stages = stages
         self._time_source: Runner | None = None
         rings = {channel.name: Ring.create(channel.name) for channel in wiring.channels if channel.images}
-        surroundings = Surroundings(seed, self._period_us, self.logged.append, rings)
+        surroundings = Surroundings(seed, self._period_us, self.logged.append, rings, stages=stages)
+        self._holding = Holding({wish.name: wish.declaration.stages for wish in wishes})
         self.runners: dict[str, Runner] = {}
         self._seen: dict[str, dict[str, int]] = {}
         self._by_stage: dict[str, list[Runner]] = {stage: [] for stage in stages}
@@ -69,7 +71,8 @@ class MemorySystem:
                 self.now_us = self._time_source.time_source.next_us
             else:
                 self.now_us += self._period_us
-            for number, stage in enumerate(self._stages):
+            self._holding.decide()
+            for number, stage in enumerate(self._holding.order or self._stages):
                 visible = {channel: len(sent) for channel, sent in self.sent.items()}
                 for runner in self._by_stage[stage]:
                     self._iterate(runner, number, stage, visible)
@@ -84,5 +87,9 @@ class MemorySystem:
         fresh = {channel: self.sent[channel][seen[channel] : visible[channel]] for channel in seen}
         for channel in seen:
             seen[channel] = visible[channel]
+        runner.main_loop.holder = self._holding.holder
         for channel, data in runner.iterate(self.ticks, number, stage, self.now_us, fresh):
             self.sent[channel].append(data)
+        wish = runner.main_loop.take()
+        if wish is not None:
+            self._holding.ask(self.ticks, number, runner.name, wish)

@@ -40,6 +40,14 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     top = run.json("top", "--once", "--interval", "0.1")
     assert top["processes"][0]["name"] == "supervisor"
     assert all(each["memory_bytes"] > 1_000_000 for each in top["processes"])
+    times = top["times"]
+    assert list(times["stages"]) == ["sensor_acquire", "sensor_prepare", "think", "act"]
+    assert times["components"].keys() == {"r/counter", "r/follower", "r/camera", "r/finder"}
+    measured = (*times["stages"].values(), *times["components"].values(), times["loop"], times["cycle"])
+    assert all(0 < each["p50_ms"] <= each["p95_ms"] <= each["p99_ms"] <= each["max_ms"] for each in measured)
+    (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now"))["times"]]
+    assert newer["loop"]["count"] < times["loop"]["count"]
+    assert "cycle" in run.fwk("top", "--once", "--interval", "0.1")
     assert run.ask("state", name="r/counter")["state"] == "running"
     assert run.ask("period", name="r/counter")["period_us"] == 50_000
     assert run.ask("time_awake", name="r/counter")["awake_s"] > 0

@@ -80,7 +80,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     children = Children(plan, number, options) if recorded else None
     supervisor = MeasuredSupervisor(plan, options, number, zygote, {})
     if not recorded:
-        supervisor.loop.recorded = _NEVER  # there is no gateway to wait for
+        supervisor.loop.records.taken = _NEVER  # there is no gateway to wait for
     try:
         supervisor.measure(control)
     except StartFailure as failure:

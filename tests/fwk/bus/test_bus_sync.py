@@ -15,6 +15,7 @@ INT16, INT32, INT64 = (some.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) fo
 def ticks(draw: some.DrawFn) -> tick_t:
     tick = tick_t()
     tick.run, tick.tick, tick.stage, tick.time_us = draw(INT64), draw(INT64), draw(INT16), draw(INT64)
+    tick.main_loop = draw(INT32)
     marks = draw(some.dictionaries(INT32, INT64, max_size=20))
     tick.n_marks, tick.channel, tick.sequence = len(marks), list(marks), list(marks.values())
     tick.absent = draw(some.lists(INT32, max_size=5))
@@ -40,6 +41,7 @@ def dones(draw: some.DrawFn) -> done_t:
     done.stage, done.next_time_us, done.busy_us = draw(INT16), draw(INT64), draw(INT64)
     marks = draw(some.dictionaries(INT32, INT64, max_size=20))
     done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
+    done.wishes = draw(some.text('a{:}"é', max_size=20))
     return done
 
 

@@ -57,11 +57,12 @@ def test_a_file_says_what_the_run_is_like(load: Load) -> None:
     plan = load(
         "name: other\nperiod_s: 0.01\nclock: wall\nspeed: max\nseed: 9\nstage_time_s: 0.002\n"
         "stages: [act_exec, sensor_acquire]\npublic_url: udpm://239.255.76.67:7777?ttl=1\n"
-        "scoreboard: plan_parts:greet\n"
+        "scoreboard: plan_parts:greet\nloop_time_s: 0.02\nloop_time_warnings: false\n"
         "components: {it/a: {use: plan_parts:Odometer, restart: {when: never, limit: 2}, ready_timeout_s: 3}}\n"
     )
     assert (plan.name, plan.period_us, plan.clock, plan.speed, plan.seed) == ("other", 10_000, "wall", 0.0, 9)
     assert (plan.stage_time_us, plan.stages) == (2_000, ("act_exec", "sensor_acquire"))
+    assert (plan.loop_time_us, plan.loop_time_warnings) == (20_000, False)
     assert plan.public_url == "udpm://239.255.76.67:7777?ttl=1&recv_buf_size=4194304"
     assert plan.scoreboard == "plan_parts:greet"
     only = plan.components[0]

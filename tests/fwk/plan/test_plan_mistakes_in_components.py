@@ -387,6 +387,21 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
           b/sun: {use: plan_parts:Sun}
         """,
     ),
+    Broken(
+        "it.yaml:3: a/sun: two time sources: the clock on the wall (clock: wall) and a/sun; "
+        "keep one, say 'clock: simulated'",
+        """
+        clock: wall
+        components:
+          a/sun: {use: plan_parts:Sun}
+        """,
+    ),
+    Broken(
+        "it.yaml:1: a/sun: two time sources: the clock on the wall (clock: wall) and a/sun; "
+        "keep one, say 'clock: simulated'",
+        "components: {a/sun: {use: plan_parts:Sun}}",
+        {"sets": ["clock=wall"]},
+    ),
 )
 def test_needs_and_time(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)

@@ -193,8 +193,8 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, log, outside, period_s, public_url, "
-        "scoreboard, seed, speed, stage_time_s, video",
+        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, log, loop_time_s, loop_time_warnings, "
+        "outside, period_s, public_url, scoreboard, seed, speed, ...",
         """
         components: {it/a: {use: plan_parts:Odometer}}
         --- it.host.yaml

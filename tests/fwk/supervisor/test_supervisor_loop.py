@@ -36,7 +36,7 @@ class Played:
     """A main loop of two hosts in one stage; each pump of the mailbox plays the next step of the script."""
 
     def __init__(self, clock: str = "simulated") -> None:
-        plan = plan_of({"r/left": Left, "r/right": Right}, clock=clock, period_s=0.001)
+        plan = plan_of({"r/left": Left, "r/right": Right}, clock=clock, period_s=0.001, loop_time_warnings=False)
         self.table = host_table(plan)
         self.ledger = Ledger(plan)
         self.script: list[Callable[[], None]] = []
@@ -154,3 +154,18 @@ def test_in_real_time_the_late_one_is_named_left_out_and_reminded_until_it_answe
     played.play(lambda: played.dones((LEFT, 4, 4), (RIGHT, 2, 4)), *idle)
     assert [(tick.tick, list(tick.absent)) for tick in played.ticks] == [(4, [])]
     assert dict(zip(played.ticks[0].channel, played.ticks[0].sequence, strict=True)) == {LEFT: 3, RIGHT: 1}
+
+
+def test_while_paused_no_tick_runs_but_what_is_asked_between_ticks_happens() -> None:
+    played = Played()
+    boundaries: list[int] = []
+    played.loop.on_boundary = boundaries.append
+    played.loop.pace.pause()
+    for _ in range(3):
+        played.play(lambda: None)
+    assert (played.loop.tick, played.loop.stands, played.ticks) == (0, True, [])
+    assert boundaries == [1, 1, 1]
+    played.loop.pace.step(1)
+    played.play(lambda: played.dones((LEFT, 1, 1), (RIGHT, 1, 1)), lambda: None)
+    played.play(lambda: None)
+    assert (played.loop.tick, played.loop.stands, len(played.ticks)) == (1, True, 1)

@@ -64,3 +64,30 @@ def test_the_wall_clock_is_what_it_is() -> None:
     assert clock.advance(1_000_000) == 50_000
     assert clock.begin_us(1_000_500) == 1_050_000
     assert clock.advance(1_063_000) == 113_000
+
+
+def test_paused_no_tick_begins_and_afterwards_none_runs_after_lost_time() -> None:
+    clock = pace(1.0)
+    clock.begin_us(0)
+    clock.advance(0)
+    clock.pause()
+    assert clock.stands
+    clock.resume()
+    assert not clock.stands
+    assert clock.begin_us(300_000) == 300_000
+    clock.advance(300_000)
+    assert clock.begin_us(300_000) == 350_000
+    assert clock.time_us == 100_000
+
+
+def test_steps_are_counted() -> None:
+    clock = pace(1.0)
+    clock.step(2)
+    assert not clock.stands
+    clock.advance(0)
+    assert not clock.stands
+    clock.advance(50_000)
+    assert clock.stands
+    clock.step(5)
+    clock.pause()
+    assert clock.stands

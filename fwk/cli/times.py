@@ -1,0 +1,62 @@
+"""Wall times of ticks, stages and components as `fwk top` shows them: percentiles of histograms."""
+
+from collections.abc import Mapping
+from typing import Any, Literal
+
+from rich.table import Table
+
+from fwk.histogram import Histogram
+
+Since = Literal["start", "now", "picture"]
+TITLES = ("p50 ms", "p95 ms", "p99 ms", "max ms")
+_LOOPS = ("loop", "cycle")
+
+
+class Stopwatch:
+    """Turns the run's histograms into percentiles since a moment.
+
+    `start`: since the run, or the component, was started; `now`: since the first answer; `picture`: since the last.
+    """
+
+    def __init__(self, since: Since) -> None:
+        self._since = since
+        self._before: dict[str, Histogram] = {}
+
+    def measure(self, answer: Mapping[str, Any]) -> dict[str, Any]:
+        """Loop, cycle, and stages and components by name."""
+        found = {name: Histogram.from_json(answer[name]) for name in _LOOPS}
+        for kind in ("stages", "components"):
+            found |= {f"{kind} {name}": Histogram.from_json(each) for name, each in answer[kind].items()}
+        before = self._before
+        if self._since == "picture" or (self._since == "now" and not before):
+            self._before = found
+        shown = {key: percentiles(each.since(before[key]) if key in before else each) for key, each in found.items()}
+        return {
+            **{name: shown[name] for name in _LOOPS},
+            **{kind: {name: shown[f"{kind} {name}"] for name in answer[kind]} for kind in ("stages", "components")},
+        }
+
+
+def percentiles(times: Histogram) -> dict[str, float]:
+    """A histogram in figures, milliseconds."""
+    return {
+        "count": times.count,
+        "mean_ms": times.mean_us / 1000,
+        **{f"p{percent}_ms": times.percentile_us(percent) / 1000 for percent in (50, 95, 99)},
+        "max_ms": times.worst_us / 1000,
+    }
+
+
+def words(times: Mapping[str, float]) -> list[str]:
+    """The columns of `TITLES`."""
+    return [f"{times[key]:.2f}" for key in ("p50_ms", "p95_ms", "p99_ms", "max_ms")]
+
+
+def stage_table(measured: Mapping[str, Any]) -> Table:
+    """A row a stage, and one for whole ticks."""
+    table = Table("stage", box=None, pad_edge=False)
+    for title in ("runs", *TITLES):
+        table.add_column(title, justify="right")
+    for name, times in (*measured["stages"].items(), ("loop", measured["loop"]), ("cycle", measured["cycle"])):
+        table.add_row(name, str(times["count"]), *words(times))
+    return table

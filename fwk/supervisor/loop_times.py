@@ -1,0 +1,121 @@
+"""How long stages and ticks take, and warnings about those that take too long."""
+
+import sys
+from collections.abc import Sequence
+
+from fwk.aspects.logging import Logger
+from fwk.clock import US_PER_S
+from fwk.histogram import Histogram
+from fwk.plan.model import Plan
+from fwk.supervisor.table import HostEntry
+
+TOLERANCE = 1.1  # a tick that takes up to so many times the desired time is no reason for a warning
+_QUIET_US = 10 * US_PER_S
+_OVERRUNS_SAID = 10
+
+
+class Limited:
+    """Lets some warnings of a kind through at once, then one each ten seconds, and counts those between."""
+
+    def __init__(self, at_once: int) -> None:
+        self.left_out = 0
+        self._at_once = at_once
+        self._quiet_until_us = 0
+
+    def lets_through(self, now_us: int) -> bool:
+        """Whether a warning may be said now; if not, it is counted."""
+        if self._at_once > 0:
+            self._at_once -= 1
+        elif now_us < self._quiet_until_us:
+            self.left_out += 1
+            return False
+        self._quiet_until_us = now_us + _QUIET_US
+        return True
+
+    def between(self) -> str:
+        """Words for what was left out since the last warning that was said, which begins anew."""
+        left_out, self.left_out = self.left_out, 0
+        return f" ({left_out} more since the last such line)" if left_out else ""
+
+
+class LoopTimes:
+    """Histograms of wall time by stage, and of whole ticks.
+
+    A tick that takes longer than desired is said with its slowest stage and component; so is a component that takes
+    longer than a stage may.
+    """
+
+    def __init__(self, plan: Plan, table: Sequence[HostEntry], log: Logger) -> None:
+        self.stages = [Histogram() for _ in plan.stages]
+        self.loop = Histogram()
+        """From the beginning of a tick's first stage to the end of its last."""
+        self.cycle = Histogram()
+        """From the beginning of a tick to that of the next."""
+        self._plan = plan
+        self._table = table
+        self._log = log
+        self._began_us = 0
+        self._slowest_stage = (0, 0)  # of this tick: how long, which
+        self._slowest_host = (0, 0, 0)  # of this tick: how long, which, in which stage
+        warns = plan.loop_time_warnings
+        lockstep = plan.clock == "simulated"  # in real time it is the loop that says who is late
+        self._allowed_us = plan.stage_time_us if warns and lockstep and plan.stage_time_us else sys.maxsize
+        self._warns = warns
+        self._missed = Limited(1)
+        self._overrun = [Limited(_OVERRUNS_SAID) for _ in table]
+
+    def tick_begins(self, now_us: int) -> None:
+        """A tick begins at this wall time."""
+        if self._began_us:
+            self.cycle.add(now_us - self._began_us)
+        self._began_us = now_us
+        self._slowest_stage = (0, 0)
+        self._slowest_host = (0, 0, 0)
+
+    def answered(self, host: int, stage: int, busy_us: int, tick: int) -> None:
+        """A host took so long for its iterations of a stage."""
+        if busy_us > self._slowest_host[0]:
+            self._slowest_host = (busy_us, host, stage)
+        if busy_us > self._allowed_us and self.may_say_overrun(host):
+            self._log.warning(
+                f"{self.name_of(host, stage)} overran its stage: {self._plan.stages[stage]} of tick {tick} took it "
+                f"{busy_us / 1000:.1f} ms, allowed are {self._allowed_us / 1000:g} ms{self._overrun[host].between()}"
+            )
+
+    def stage_ended(self, stage: int, duration_us: int) -> None:
+        """A stage took so long."""
+        self.stages[stage].add(duration_us)
+        if duration_us > self._slowest_stage[0]:
+            self._slowest_stage = (duration_us, stage)
+
+    def tick_ended(self, tick: int, now_us: int, desired_us: float) -> None:
+        """A tick ends at this wall time; `desired_us` is how long it should take at most, 0 if nobody cares."""
+        took_us = now_us - self._began_us
+        self.loop.add(took_us)
+        if not self._warns or not 0 < desired_us * TOLERANCE < took_us or any(entry.held for entry in self._table):
+            return
+        if self._missed.lets_through(now_us):
+            stage_us, stage = self._slowest_stage
+            busy_us, host, its_stage = self._slowest_host
+            self._log.warning(
+                f"loop time missed: tick {tick} took {took_us / 1000:.1f} ms, desired are {desired_us / 1000:g} ms; "
+                f"slowest stage {self._plan.stages[stage]} ({stage_us / 1000:.1f} ms), "
+                f"slowest component {self.name_of(host, its_stage)} ({busy_us / 1000:.1f} ms){self._missed.between()}"
+            )
+
+    def may_say_overrun(self, host: int) -> bool:
+        """Whether it may be said now that a host is late or takes too long."""
+        return self._overrun[host].lets_through(self._began_us)
+
+    def overruns_between(self, host: int) -> str:
+        """Words for those that were not said."""
+        return self._overrun[host].between()
+
+    def name_of(self, host: int, stage: int) -> str:
+        """The component of a host that takes longest in a stage, and its process if that has another name."""
+        entry = self._table[host]
+        members = [self._plan.components[index] for index in self._plan.hosts[host].components]
+        busy_us = {each.name: each.busy_us / max(1, each.iterations) for each in entry.components}
+        inside = [each.name for each in members if stage in each.stages] or [each.name for each in members]
+        slowest = max(inside, key=lambda name: busy_us.get(name, 0.0))
+        return slowest if slowest == entry.name else f"{slowest} in process {entry.name}"
