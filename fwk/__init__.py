@@ -11,6 +11,7 @@ from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel
 from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
+from fwk.aspects.provided import Aspect  # noqa: E402
 from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
 from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
 from fwk.aspects.vision import Image, ImagesEach, VisionMaster  # noqa: E402
@@ -19,6 +20,7 @@ from fwk.component import Component  # noqa: E402
 from fwk.config import Config  # noqa: E402
 
 __all__ = [
+    "Aspect",
     "Call",
     "Calls",
     "CallsEach",

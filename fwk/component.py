@@ -11,6 +11,7 @@ from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, Wri
 from fwk.aspects.commands import Commands
 from fwk.aspects.logging import Logger
 from fwk.aspects.main_loop import MainLoop
+from fwk.aspects.provided import Aspect
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Sends, SendsEach
 from fwk.aspects.vision import Image, ImagesEach, VisionMaster
@@ -53,9 +54,12 @@ class Component:
     | `rng: np.random.Generator` | random numbers, seeded from the run's seed and the component's name |
     | `time_source: TimeSource` | says when the next tick happens; one a system |
     | `main_loop: MainLoop` | takes over the main loop, and gives it back; one at a time |
+    | `tf: Transforms`, any class derived from `Aspect` | what another component provides |
     """
 
     stage: ClassVar[str | tuple[str, ...]]
+    provides: ClassVar[type[Aspect] | tuple[type[Aspect], ...]] = ()
+    """Aspects that others get from this component."""
     name: str
     """Full name: `cyan1/omni_ball`."""
     changed_settings: frozenset[str] = frozenset()
@@ -169,6 +173,9 @@ class Declaration:
     """With `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
     """Attribute to aspect name: clock, log, rng, time_source, main_loop."""
+    asks: dict[str, type[Aspect]] = field(default_factory=dict)
+    """Attribute to an aspect that another component provides; its own attributes are `attribute.own` above."""
+    provides: tuple[type[Aspect], ...] = ()
 
 
 _ASPECTS: dict[Any, str] = {
@@ -190,13 +197,10 @@ def declaration(component: type[Component]) -> Declaration:
     stages = getattr(component, "stage", None)
     if not stages:
         raise DeclarationError(f'{where}: no stage; say for example: stage = "think"')
-    try:
-        hints = typing.get_type_hints(component)
-    except (NameError, TypeError, AttributeError) as error:
-        raise DeclarationError(f"{where}: an annotation cannot be read: {error}") from error
-    ports, aspects, config = [], {}, Config
+    hints = _hints(component, where)
+    ports, aspects, asks, config = [], {}, {}, Config
     for attribute, wish in hints.items():
-        if attribute in ("stage", "name", "changed_settings") or attribute.startswith("_"):
+        if attribute in ("stage", "name", "changed_settings", "provides") or attribute.startswith("_"):
             continue
         default = getattr(component, attribute, None)
         if get_origin(wish) in _PORT_KINDS:
@@ -205,6 +209,11 @@ def declaration(component: type[Component]) -> Declaration:
             ports.append(_port(where, attribute, _IMAGE_KINDS[wish], (frame_t,), default))
         elif wish in _ASPECTS:
             aspects[attribute] = _ASPECTS[wish]
+        elif isinstance(wish, type) and issubclass(wish, Aspect):
+            asks[attribute] = wish
+            inner_ports, inner_aspects = _inside(wish, attribute)
+            ports += inner_ports
+            aspects |= inner_aspects
         elif isinstance(wish, type) and issubclass(wish, Config):
             if attribute != "config":
                 raise DeclarationError(f"{where}.{attribute}: settings are called 'config'")
@@ -216,7 +225,7 @@ def declaration(component: type[Component]) -> Declaration:
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
                 f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
                 "CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
-                "numpy.random.Generator or TimeSource, and set plain attributes in init()"
+                "numpy.random.Generator, TimeSource or an Aspect, and set plain attributes in init()"
             )
     return Declaration(
         component,
@@ -224,7 +233,54 @@ def declaration(component: type[Component]) -> Declaration:
         tuple(ports),
         with_log_level(config),
         aspects,
+        asks,
+        _provided(component, where, ports),
     )
+
+
+def _hints(kind: type, where: str) -> dict[str, Any]:
+    try:
+        return typing.get_type_hints(kind)
+    except (NameError, TypeError, AttributeError) as error:
+        raise DeclarationError(f"{where}: an annotation cannot be read: {error}") from error
+
+
+def _inside(aspect: type[Aspect], attribute: str) -> tuple[list[Port], dict[str, str]]:
+    """Ports and aspects of a provided aspect, as those of the component that asks for it."""
+    where = f"{aspect.__module__}.{aspect.__qualname__}"
+    ports, aspects = [], {}
+    for own, wish in _hints(aspect, where).items():
+        default, dotted = getattr(aspect, own, None), f"{attribute}.{own}"
+        if get_origin(wish) in (Reads, ReadsEach):
+            port = _port(where, own, _PORT_KINDS[get_origin(wish)], get_args(wish), default)
+            ports.append(replace(port, attribute=dotted))
+        elif wish is Image:
+            ports.append(replace(_port(where, own, "image", (frame_t,), default), attribute=dotted))
+        elif wish in (Clock, Logger):
+            aspects[dotted] = _ASPECTS[wish]
+        elif not own.startswith("_") and get_origin(wish) is not ClassVar and default is None:
+            raise DeclarationError(
+                f"{where}.{own}: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "
+                f"not {getattr(wish, '__name__', wish)}; what a component writes stands in its own class"
+            )
+    return ports, aspects
+
+
+def _provided(component: type[Component], where: str, ports: list[Port]) -> tuple[type[Aspect], ...]:
+    """What a class says that it provides, if it writes what that takes."""
+    said = component.provides if isinstance(component.provides, tuple) else (component.provides,)
+    for aspect in said:
+        if not (isinstance(aspect, type) and issubclass(aspect, Aspect)):
+            raise DeclarationError(f"{where}: it provides {aspect!r}, which is no aspect; derive it from fwk.Aspect")
+        written = {port.attribute: port for port in ports if port.kind in ("writes", "vision_master")}
+        for port in _inside(aspect, "")[0]:
+            own = port.attribute[1:]
+            if not port.each and (own not in written or written[own].message_type is not port.message_type):
+                wish = "VisionMaster" if port.images else f"Writes[{port.message_type.__name__}]"
+                raise DeclarationError(
+                    f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {wish}"
+                )
+    return said
 
 
 def _port(where: str, attribute: str, kind: PortKind, types: tuple[Any, ...], default: Any) -> Port:

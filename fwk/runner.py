@@ -74,11 +74,20 @@ class Runner:
         self._away_after = 1  # tick
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
+        self._provided = [kind() for kind in declaration.asks.values()]
+        for attribute, made in zip(declaration.asks, self._provided, strict=True):
+            setattr(self.component, attribute, made)
         for attribute, aspect in declaration.aspects.items():
-            setattr(self.component, attribute, self._aspect(aspect, surroundings.seed))
+            self._put(attribute, self._aspect(aspect, surroundings.seed))
         setattr(self.component, "config", self._config)  # noqa: B010 - not every component declares one
         for port in declaration.ports:
-            setattr(self.component, port.attribute, self._port(port, channels[port.attribute]))
+            self._put(port.attribute, self._port(port, channels[port.attribute]))
+
+    def init(self) -> None:
+        """Prepares the component, and before it the aspects that other components provide it with."""
+        for aspect in self._provided:
+            aspect.init()
+        self.component.init()
 
     def configure(self, settings: Mapping[str, Any]) -> None:
         """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
@@ -114,6 +123,8 @@ class Runner:
         try:
             for port in self._command_ports:
                 port.begin()
+            for aspect in self._provided:
+                aspect.begin()
             self.component.loop()
         except BaseException:
             for writer in self.writers.values():
@@ -128,6 +139,11 @@ class Runner:
     @property
     def _log_level(self) -> int:
         return LEVELS[getattr(self._config, LOG_LEVEL)]
+
+    def _put(self, attribute: str, value: Any) -> None:
+        """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
+        outer, _, own = attribute.rpartition(".")
+        setattr(getattr(self.component, outer) if outer else self.component, own, value)
 
     def _aspect(self, aspect: str, seed: int) -> Any:
         if aspect == "rng":

@@ -154,7 +154,7 @@ class Host:
                 self._waiting[plan.name] = {}
                 if runner.has_main_loop:
                     self._takers.append(runner)
-                runner.component.init()
+                runner.init()
             self.figures[plan.name].state = "running"
         self._report()
 

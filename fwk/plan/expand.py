@@ -10,6 +10,9 @@ from fwk.plan.schema import ComponentEntry
 from fwk.plan.source import Node
 from fwk.plan.substitution import substitute
 
+_FILLED = ("config", "channels", "providers", "needs")
+"""Keys of a component in whose texts braces stand for values."""
+
 
 @dataclass
 class Asked:
@@ -117,7 +120,7 @@ class _Maker:
             self._problems.add(node.place, name, f"there is a component of this name at {first} already; rename one")
         else:
             asked = Asked(name, entry, node, {**values, "namespace": name.rpartition("/")[0], "name": name})
-            keys = {key: below for key, below in node.value.items() if key in ("config", "channels", "needs")}
+            keys = {key: below for key, below in node.value.items() if key in _FILLED}
             filled = self._filled(Node(keys, node.place), asked)
             asked.node = Node({**node.value, **filled.value}, node.place)
             asked.config = [(layer, filled.value["config"])] if "config" in keys else []

@@ -1,6 +1,7 @@
 """Who needs whom: what the launch file says, who grants an aspect, and the ring that must not be in it."""
 
 from collections.abc import Collection, Mapping, Sequence
+from itertools import pairwise
 
 from fwk.plan.errors import Problems
 from fwk.plan.expand import Asked
@@ -8,15 +9,18 @@ from fwk.plan.files import Files
 from fwk.plan.model import NOBODY
 from fwk.plan.selection import matches, nearest
 from fwk.plan.source import Node
-from fwk.plan.wiring import Wiring, Wish
+from fwk.plan.wiring import Wiring
+from fwk.plan.wish import Wish
 
 Needs = dict[str, list[str]]
 """Component to the components it needs."""
 
 
 def granted_by(wishes: Sequence[Wish], wiring: Wiring) -> Needs:
-    """From whom each component gets an aspect: the vision masters of the images that it looks at."""
-    found: Needs = {}
+    """From whom each component gets an aspect: its providers, and the vision masters of the images it looks at."""
+    found: Needs = {
+        wish.name: list(granted.values()) for wish, granted in zip(wishes, wiring.granted, strict=True) if granted
+    }
     for wish, ports in zip(wishes, wiring.ports, strict=True):
         images = {name for port in wish.declaration.ports if port.kind == "image" for name in ports[port.attribute]}
         for channel in wiring.channels:
@@ -27,13 +31,13 @@ def granted_by(wishes: Sequence[Wish], wiring: Wiring) -> Needs:
 
 def needs_of(asked: Sequence[Asked], granted: Needs, files: Files, problems: Problems) -> Needs:
     """Who needs whom: as the files say, and whoever grants an aspect."""
-    needs = _said(asked, files, problems)
-    for name, others in granted.items():
-        needs.setdefault(name, []).extend(others)
+    said = _said(asked, files, problems)
+    needs = {name: [*said.get(name, ()), *granted.get(name, ())] for name in {**said, **granted}}
     if around := ring(needs):
         place = next(each.node.at("needs").place for each in asked if each.name == around[0])
-        text = f"components need each other in a ring: {' -> '.join(around)}; leave one 'needs' out"
-        problems.add(place, around[0], text)
+        avoidable = any(other in said.get(name, ()) for name, other in pairwise(around))
+        right = "leave one 'needs' out" if avoidable else "let one do without what another provides"
+        problems.add(place, around[0], f"components need each other in a ring: {' -> '.join(around)}; {right}")
     return {name: list(dict.fromkeys(others)) for name, others in needs.items()}
 
 

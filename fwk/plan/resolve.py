@@ -14,7 +14,7 @@ from fwk.plan.selection import matches, nearest
 from fwk.plan.settings import effective
 from fwk.plan.stages import stages_in
 from fwk.plan.substitution import substitute
-from fwk.plan.wiring import Wish
+from fwk.plan.wish import Wish
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,8 @@ class Resolved:
         """What wiring needs to know."""
         channels = self.asked.node.child("channels")
         said = {port: str(name) for port, name in channels.plain().items()} if channels else {}
-        return Wish(self.asked.name, self.declaration, said)
+        providers = self.asked.node.child("providers")
+        return Wish(self.asked.name, self.declaration, said, providers.plain() if providers else {})
 
     def place(self, port: str | None) -> str:
         """Where the channel of a port stands; where the component stands, if the file does not say it."""

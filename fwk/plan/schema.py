@@ -58,6 +58,8 @@ class ComponentEntry(_Entry):
     """Port to channel or pattern, where it is other than the class says."""
     stage: Words | None = None
     """Stages, where they are other than the class says."""
+    providers: dict[str, str] = {}
+    """Attribute of an aspect to the component that provides it, where several do."""
     needs: Words = []
     """Components that have to be ready before this one starts."""
     start: bool = True

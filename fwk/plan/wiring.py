@@ -1,39 +1,17 @@
 """Wires components to channels: expands patterns, finds each channel's one writer, and says what does not fit."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from fwk import messages
-from fwk.component import Declaration, Port
+from fwk.component import Port
 from fwk.plan.command_lines import CommandLines
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan
 from fwk.plan.names import mistake_in, mistake_in_pattern
-
-
-@dataclass(frozen=True)
-class Wish:
-    """A component as the launch file asks for it."""
-
-    name: str
-    declaration: Declaration
-    channels: Mapping[str, str] = field(default_factory=dict)
-    """Port attribute to channel or pattern, where the launch file says other than the class."""
-
-    @property
-    def namespace(self) -> str:
-        """Everything before the last slash of the name."""
-        return self.name.rpartition("/")[0]
-
-    def pattern(self, port: Port) -> str:
-        """The full channel name or pattern of a port."""
-        name = self.channels.get(port.attribute, port.channel)
-        return name if "/" in name or not self.namespace else f"{self.namespace}/{name}"
-
-
-Report = Callable[[str, str | None, str], None]
-"""Takes a mistake: component, port attribute or None, text."""
+from fwk.plan.providers import Granted, with_providers
+from fwk.plan.wish import Report, Wish
 
 
 @dataclass(frozen=True)
@@ -42,6 +20,7 @@ class Wiring:
 
     channels: tuple[ChannelPlan, ...]
     ports: tuple[dict[str, tuple[str, ...]], ...]
+    granted: Granted
 
 
 def wire(
@@ -55,18 +34,21 @@ def wire(
     `outside` are channels that other programs write, with their types. `may_lack_writer` says for which channels it is
     no mistake that nobody writes them; a reader of such a channel never sees a value.
     """
-    return _Wiring(wishes, report, outside or {}, may_lack_writer).done()
+    wishes, granted = with_providers(wishes, report, may_lack_writer)
+    return _Wiring(wishes, granted, report, outside or {}, may_lack_writer).done()
 
 
 class _Wiring:
     def __init__(
         self,
         wishes: Sequence[Wish],
+        granted: Granted,
         report: Report,
         outside: Mapping[str, type[messages.Message]],
         may_lack_writer: Callable[[str], bool],
     ) -> None:
         self._wishes = wishes
+        self._granted = granted
         self._report = report
         self._may_lack_writer = may_lack_writer
         self._writers = {name: (NOBODY, Port(name, "writes", kind, name)) for name, kind in outside.items()}
@@ -99,7 +81,7 @@ class _Wiring:
             )
             for number, (name, (writer, port)) in enumerate(sorted(self._writers.items()))
         )
-        return Wiring(channels, tuple(self._ports))
+        return Wiring(channels, tuple(self._ports), self._granted)
 
     def _add_commands(self, commands: CommandLines) -> None:
         for line in commands.lines.values():
@@ -109,6 +91,10 @@ class _Wiring:
             self._ports[index][attribute] = names
 
     def _well_named(self, wish: Wish, port: Port) -> bool:
+        aspect, _, own = port.attribute.partition(".")
+        if own and aspect not in self._granted[self._wishes.index(wish)]:  # told already
+            self._ports[self._wishes.index(wish)][port.attribute] = ()
+            return False
         mistake = (mistake_in_pattern if port.each else mistake_in)(wish.pattern(port))
         if mistake:
             self._report(wish.name, port.attribute, f"port '{port.attribute}': {mistake}")

@@ -29,7 +29,7 @@ class Actor:
         surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}
-        self.runner.component.init()
+        self.runner.init()
 
     def continue_at(self, channel: str, sequence: int) -> None:
         """Where a written channel goes on after a restart."""

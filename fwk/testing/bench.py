@@ -64,7 +64,7 @@ class Bench:
         surroundings = Surroundings(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
         self.runner = Runner(self.declaration, name, config, channels, surroundings)
         self.component: Any = self.runner.component
-        self.component.init()
+        self.runner.init()
 
     def _command_ports(self, port: Port, target: str, name: str) -> tuple[str, str]:
         """Makes the other side of a port for commands; returns the channels that the component's side stands for."""

@@ -8,7 +8,8 @@ from fwk.aspects.main_loop import Holding
 from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
-from fwk.plan.wiring import Wish, wire
+from fwk.plan.wiring import wire
+from fwk.plan.wish import Wish
 from fwk.runner import Runner, Surroundings
 from lcmtypes.core import log_t
 
@@ -61,7 +62,7 @@ class MemorySystem:
             if "time_source" in wish.declaration.aspects.values():
                 self._time_source = runner
         for runner in self.runners.values():
-            runner.component.init()
+            runner.init()
 
     def tick(self, times: int = 1) -> None:
         """Runs the main loop."""

@@ -7,7 +7,8 @@ from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
 from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
 from fwk.plan.needs import granted_by
-from fwk.plan.wiring import Wish, wire
+from fwk.plan.wiring import wire
+from fwk.plan.wish import Wish
 
 
 def plan_of(

@@ -9,7 +9,7 @@ from fwk.plan.model import Plan
 
 FOLDER = Path(__file__).parents[2] / "launch"
 SYSTEMS = {"soccer.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
-TOOLS = {"vision.yaml"}
+TOOLS = {"vision.yaml", "frames.yaml"}
 PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml"}
 
 
@@ -55,3 +55,11 @@ def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:
     camera, *detectors = plan.components
     assert (camera.name, camera.module) == ("cyan1/camera", "procs.camera_driver")
     assert [each.name for each in detectors] == ["cyan1/omni_ball", "cyan1/omni_field"]
+
+
+def test_frames_has_a_tree_that_those_who_ask_for_transforms_need() -> None:
+    plan = plan_of("frames.yaml")
+    (tree,) = [each for each in plan.components if each.module == "procs.frame_tree"]
+    (spot,) = [each for each in plan.components if each.module == "procs.ball_spot"]
+    assert spot.needs == (tree.index,)
+    assert spot.channels["tf.transforms"] == ("cyan1/transforms",)

@@ -4,7 +4,19 @@ from typing import Literal
 
 from pydantic import Field as Setting
 
-from fwk import Component, Config, Image, Reads, ReadsEach, TimeSource, VisionMaster, Writes, WritesEach, channel
+from fwk import (
+    Aspect,
+    Component,
+    Config,
+    Image,
+    Reads,
+    ReadsEach,
+    TimeSource,
+    VisionMaster,
+    Writes,
+    WritesEach,
+    channel,
+)
 from lcmtypes.robot import frame_t, motor_command_t, odometry_t
 
 
@@ -120,6 +132,45 @@ class Sun(Component):
 
     stage = "pre_loop"
     time_source: TimeSource
+
+
+class Way(Aspect):
+    """How far it was."""
+
+    odometry: Reads[odometry_t]
+
+
+class Wayfarer(Component):
+    """Provides its way, measured by itself."""
+
+    stage = "sensor_acquire"
+    provides = Way
+    odometry: Writes[odometry_t]
+
+
+class Guide(Component):
+    """Asks for the way."""
+
+    stage = "think"
+    way: Way
+
+
+class Lead(Aspect):
+    """Goes ahead."""
+
+
+class Leader(Component):
+    """Leads, if somebody shows it the way."""
+
+    stage = "think"
+    provides = Lead
+    way: Way
+
+
+class Led(Wayfarer):
+    """Knows the way, if somebody leads."""
+
+    lead: Lead
 
 
 class Stageless(Component):
