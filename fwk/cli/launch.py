@@ -73,6 +73,9 @@ def launch(
         Path | None,
         typer.Option(parser=video_file, metavar="FILE.mp4", help="draw the run into a video when it has ended"),
     ] = None,
+    watch: Annotated[
+        bool, typer.Option("--watch", help="reload components whose source files change, as soon as they do")
+    ] = False,
     plain: Annotated[bool, typer.Option("--plain", help="lines of text instead of the live display")] = False,
 ) -> None:
     """Runs a launch file in the foreground; Ctrl-C stops everything.
@@ -110,6 +113,7 @@ def launch(
             debug=debug,
             debugpy_port=debugpy or 0,
             profile=profile,
+            watch=watch,
             plain=plain or debug is not None,
         )
         for line in introduction(plan):

@@ -11,9 +11,9 @@ from fwk.cli.arguments import SeveralNames
 
 NAMES = (
     "check",
-    *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "kill", "config", "bb", "log", "send"),
-    "debug",
+    *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "kill", "debug"),
     *("pause", "resume", "step", "speed"),
+    *("config", "bb", "log", "note", "send"),
     *("replay", "compare", "log-info", "video", "cam", "spy", "doctor"),
 )
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""

@@ -94,6 +94,14 @@ class Common(_Request):
     name: str
 
 
+class Note(_Request):
+    """A line for the run's log, at the tick that is now."""
+
+    verb: Literal["note"]
+    text: str = Field(min_length=1, max_length=4000)
+    level: Literal["info", "warning"] = "info"
+
+
 class Channels(_Request):
     """Asked of the gateway: all channels with type, writer, readers, newest sequence number, tick and time."""
 
@@ -114,7 +122,9 @@ class Watch(_Request):
     channel: str
 
 
-SupervisorRequest = Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common
+SupervisorRequest = (
+    Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
+)
 GatewayRequest = Channels | Show | Watch
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
 to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])

@@ -3,16 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
 
 from fwk import messages
 from fwk.component import Port
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY
 from fwk.plan.names import CHANNEL_BYTES
-
-if TYPE_CHECKING:
-    from fwk.plan.wiring import Report, Wish
+from fwk.plan.wish import Report, Wish
 
 ANSWERS = "answers"
 
@@ -32,7 +29,7 @@ class _End:
     """A port for commands of a component."""
 
     index: int
-    wish: "Wish"
+    wish: Wish
     port: Port
 
     @property
@@ -53,7 +50,7 @@ class CommandLines:
     """
 
     def __init__(
-        self, asked: Sequence[tuple[int, "Wish", Port]], report: "Report", may_lack_owner: Callable[[str], bool]
+        self, asked: Sequence[tuple[int, Wish, Port]], report: Report, may_lack_owner: Callable[[str], bool]
     ) -> None:
         self.lines: dict[str, Line] = {}
         self.ports: dict[tuple[int, str], tuple[str, ...]] = {}

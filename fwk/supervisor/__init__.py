@@ -138,6 +138,8 @@ class Supervisor:
         except StartFailure as failure:
             self.log.error(f"not started:\n{failure}")
             return f"not started: {failure}", True
+        for entry in self._hosts.table:
+            entry.fresh_code = self._options.watch
         self._status = StatusReport(self._status.run, self._hosts.table, self.loop, self.pace)
         while not self._interrupted() and not self._done():
             self.loop.run_tick()

@@ -1,16 +1,18 @@
-"""The supervisor's own children beside the zygote: gateway and display."""
+"""The supervisor's own children beside the zygote: gateway, display, and who watches source files."""
 
 import os
 import signal
 import socket
+from functools import partial
 
 from fwk import messages
 from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
+from fwk.control.watcher import Watcher
 from fwk.gateway import sinks, targets
 from fwk.gateway.board import Board
 from fwk.gateway.gateway import Gateway
-from fwk.host.process import die_with_parent, run_forked, wait_for_end
+from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
@@ -42,6 +44,12 @@ class Children:
             run_forked(lambda _: _gateway(plan, run, options, gateway_control, display_feed))
         gateway_control.close()
         display_feed.close()
+        self._watcher = os.fork() if options.watch else 0
+        if options.watch and self._watcher == 0:
+            self.control.close()
+            os.setsid()
+            die_with_parent(parent, signal.SIGTERM)
+            run_forked(partial(_watch, plan))
 
     def gateway_end(self) -> str:
         """How the gateway ended, when its end of `control` was closed before ours."""
@@ -50,6 +58,9 @@ class Children:
 
     def stop(self) -> dict[str, object]:
         """Lets both finish; returns the newest messages that the gateway saw, decoded."""
+        if self._watcher:
+            os.kill(self._watcher, signal.SIGTERM)
+            os.waitpid(self._watcher, 0)
         self.control.settimeout(5.0)
         newest: dict[str, object] = {}
         try:
@@ -68,6 +79,11 @@ class Children:
 
 def _pair() -> tuple[socket.socket, socket.socket]:
     return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+
+
+def _watch(plan: Plan, stop: StopSignal) -> int:
+    Watcher(plan).run(stop)
+    return 0
 
 
 def _display(plan: Plan, connection: socket.socket, plain: bool) -> int:

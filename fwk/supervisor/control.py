@@ -132,6 +132,9 @@ class Control:
             rows = self.settings.rows(request.names)
             self._watching.append((connection, request.names))
             return {"settings": rows}
+        if isinstance(request, requests.Note):
+            (self._log.warning if request.level == "warning" else self._log.info)(request.text)
+            return {"tick": self._loop.tick}
         return self._common(request, connection)
 
     def _run(self) -> dict[str, Any]:

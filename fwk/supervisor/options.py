@@ -29,6 +29,8 @@ class RunOptions:
     """Instead of pdb, the component waits for an editor's debugger at this port of 127.0.0.1."""
     profile: str | None = None
     """Component whose iterations are profiled."""
+    watch: bool = False
+    """Components whose source files change are reloaded."""
     plain: bool = False
     """Lines of text instead of the live display, on a terminal too."""
 

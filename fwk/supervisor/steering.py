@@ -1,13 +1,11 @@
 """Finds out what a wish such as `restart cyan1/*` means for the processes of a run, and whether it can be granted."""
 
-import ast
-import sys
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 from fwk.control.requests import Action, RequestError
 from fwk.control.users import users_of, with_needs, with_users
+from fwk.plan.application import Sources, mistakes
 from fwk.plan.model import NOBODY, Plan
 from fwk.plan.selection import matches, nearest
 from fwk.supervisor.table import HostEntry
@@ -23,6 +21,7 @@ class Steering:
     def __init__(self, plan: Plan, table: Sequence[HostEntry]) -> None:
         self._plan = plan
         self._table = table
+        self._sources = Sources(plan)
 
     def components(self, patterns: Sequence[str]) -> list[int]:
         """Indices of the components that patterns mean.
@@ -128,15 +127,10 @@ class Steering:
 
     def _check_code(self, chosen: Sequence[int]) -> None:
         """A file that is no Python is found while the old code still runs."""
-        for index in chosen:
-            file = str(getattr(sys.modules.get(self._plan.components[index].module), "__file__", ""))
-            try:
-                ast.parse(Path(file).read_bytes(), file)
-            except OSError as error:
-                raise RequestError(f"{self._name(index)}: {file} cannot be read: {error.strerror}") from error
-            except (SyntaxError, ValueError) as error:
-                line = f":{error.lineno}" if isinstance(error, SyntaxError) else ""
-                raise RequestError(f"{file}{line}: {self._name(index)} runs on: {error}") from error
+        files = {file for index in chosen for file in self._sources.files(self._plan.components[index])}
+        if found := mistakes(files):
+            names = ", ".join(self._name(index) for index in chosen)
+            raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code runs on: {names}")
 
     def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostEntry]) -> None:
         """A process starts and stops as a whole."""

@@ -1,7 +1,6 @@
 """Wishes for components become wishes for processes, or are refused with who stands against them."""
 
 import re
-import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import pytest
 
 from fwk import Component, Image, VisionMaster, Writes
 from fwk.control.requests import Action, RequestError
+from fwk.plan.application import Sources
 from fwk.supervisor.steering import Steering
 from fwk.supervisor.table import HostEntry, host_table
 from fwk.testing.plans import plan_of
@@ -119,6 +119,6 @@ def test_a_namespace_means_all_in_it(steering: Steering) -> None:
 def test_reload_looks_at_the_code_first(steering: Steering, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     broken = tmp_path / "broken.py"
     broken.write_text("x = 1\ndef (:\n")
-    monkeypatch.setattr(sys.modules[Camera.__module__], "__file__", str(broken))
-    with pytest.raises(RequestError, match=r"broken\.py:2: r/camera runs on"):
+    monkeypatch.setattr(Sources, "files", lambda *_: {broken})
+    with pytest.raises(RequestError, match=r"broken\.py:2: .*; not reloaded, so the old code runs on: r/camera"):
         steering.hosts("reload", ["r/camera"])
