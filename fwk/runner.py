@@ -71,7 +71,7 @@ class Runner:
         self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
         self.component: Component = declaration.component()
         self._rings = surroundings.rings
-        self._away_after = 1  # tick
+        self._away_after = 1 if incarnation == 1 else 0  # tick
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]

@@ -1,6 +1,7 @@
 """`fwk replay`: recorded inputs to real components, and whether they do the same again."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -42,7 +43,8 @@ def replay(
         return
     first = min(found, key=lambda difference: difference.key)
     typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
-    typer.echo(f"  {_component(done, first.channel)}: {first} (A: recorded, B: replayed)")
+    named = replace(first, names=("the recording", "the replay"))
+    typer.echo(f"  {_component(done, first.channel)}: {named}")
     raise typer.Exit(DIFFERENT)
 
 

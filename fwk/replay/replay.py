@@ -73,7 +73,7 @@ class Replay:
             elif event.kind == tick_event_t.STARTED:
                 self._start(event.index, event.stage, event.tick)
             elif event.kind in (tick_event_t.LOST, tick_event_t.STOPPED):
-                self._actors.pop(event.index, None)
+                self._end(event.index)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, place, stage, record.time_us)
             elif event.kind == tick_event_t.DONE:
@@ -107,6 +107,11 @@ class Replay:
                 actor.continue_at(channel, sequence)
             self._actors[host].append(actor)
 
+    def _end(self, host: int) -> None:
+        """What it was late with it takes along."""
+        self._actors.pop(host, None)
+        self._pending = {key: made for key, made in self._pending.items() if key[0] != host}
+
     def _iterate(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
         made = []
         for actor in self._actors.get(host, []):
@@ -134,6 +139,7 @@ class Replay:
             data = self._hidden.pop((channel, tick, place), None)
             if data:
                 recorded[channel] = data
+                self._sequences[channel] = sequence_of(data[-1])
                 self._revealed.append((channel, data))
         for actor, written in self._pending.pop((host, tick, place)):
             for channel in actor.runner.writers:
@@ -156,7 +162,6 @@ class Replay:
     def _show(self) -> None:
         for channel, data in self._revealed:
             self._newest[channel] = data[-1]
-            self._sequences[channel] = sequence_of(data[-1])
             for actors in self._actors.values():
                 for actor in actors:
                     actor.see(channel, data)
