@@ -8,6 +8,10 @@ from typing import Annotated
 import typer
 
 from fwk.cli.logs import failing, find_log
+from fwk.host.debugger import LEFT, DebugRequest
+from fwk.host.debugger import debug as debug_process
+from fwk.host.host import Failure
+from fwk.plan.errors import hint
 from fwk.record.types import use_types_of
 from fwk.replay.recording import Recording, RecordingError
 from fwk.replay.replay import Replay
@@ -19,8 +23,13 @@ def replay(
     run: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="a run directory or its log")],
     verify: Annotated[bool, typer.Option("--verify", help="compare every output; exit 1 at a difference")] = False,
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
-    from_tick: Annotated[int, typer.Option(min=1, metavar="N", help="report differences from this tick on")] = 1,
+    from_tick: Annotated[
+        int, typer.Option(min=1, metavar="N", help="report differences, or stop in the debugger, from this tick on")
+    ] = 1,
     to_tick: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after this tick")] = None,
+    debug: Annotated[
+        str | None, typer.Option(metavar="NAME", help="under pdb, from this component's next iteration on")
+    ] = None,
 ) -> None:
     """Feeds recorded inputs to real components at the recorded iterations.
 
@@ -30,7 +39,7 @@ def replay(
     with failing(UNUSABLE):
         log = find_log(run)
         try:
-            done = _replay(log, only or [], to_tick)
+            done = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
         except RecordingError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(UNUSABLE) from error
@@ -48,15 +57,42 @@ def replay(
     raise typer.Exit(DIFFERENT)
 
 
-def _replay(log: Path, only: list[str], to_tick: int | None) -> Replay:
+def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None) -> Replay:
     recording = Recording(log)
     for folder in recording.plan.folders:
         use_types_of(Path(folder))
         if folder not in sys.path:
             sys.path.append(folder)
     made = Replay(recording, only)
-    made.run(lambda tick: to_tick is None or tick <= to_tick)
+    if debugged:
+        _debug(made, debugged, from_tick, to_tick)
+    else:
+        made.run(lambda tick: to_tick is None or tick <= to_tick)
     return made
+
+
+def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None:
+    """As `made.run`, under pdb; ends the command when the debugger is left."""
+    components = {component.name: component for component in made.recording.plan.components}
+    if name not in components:
+        raise RecordingError(f"--debug: no component '{name}' in this run; {hint(name, components)}")
+    reached = 0
+
+    def keep_on(tick: int) -> bool:
+        nonlocal reached
+        reached = tick
+        return to_tick is None or tick <= to_tick
+
+    def work() -> None:
+        try:
+            made.run(keep_on)
+        except RecordingError as error:
+            raise Failure(str(error)) from (error.__cause__ or error)
+
+    request = DebugRequest(components[name].host, components[name])
+    if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:
+        typer.echo(f"left in tick {reached}")
+        raise typer.Exit(0)
 
 
 def _component(done: Replay, channel: str) -> str:

@@ -56,7 +56,7 @@ class Place:
         except (NoPlace, DeclarationError) as reason:
             print(f"error: {reason}", file=sys.stderr)
             return REFUSED
-        stop.on_interrupt(ends=self.debug is None)
+        stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
         host = Host(self._assignment(told), stop, stop.wakeup)
         try:
             if self.debug:

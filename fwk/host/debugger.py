@@ -9,6 +9,8 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from types import FrameType
+from typing import Any
 
 from fwk.host.host import Failure
 from fwk.plan.model import ComponentPlan
@@ -44,26 +46,32 @@ def check(request: DebugRequest) -> None:
             raise DebuggerMissing("--debugpy: debugpy is not installed; type: pip install debugpy") from error
 
 
-def debug(request: DebugRequest, serve: Callable[[], None]) -> int:
+def debug(
+    request: DebugRequest,
+    serve: Callable[[], None],
+    ready: Callable[[], bool] = lambda: True,
+    leaving: str = "gives the component back",
+) -> int:
     """Runs `serve` under the debugger, stopped where the component's first iteration begins; returns an exit code.
 
-    What a component raises under pdb can be looked at before its process ends.
+    It is the first after `ready` has become true. What a component raises under pdb can be looked at before its
+    process ends.
     """
     if request.debugpy_port:
         return _debugpy(request, serve)
     file, line = _first_line_of_loop(request.component)
     debugger = _Pdb(nosigint=True)
-    debugger.set_break(file, line, temporary=True)
+    debugger.begin_at(file, line, lambda component: component.name == request.component.name and ready())
     signal.signal(signal.SIGINT, lambda _number, frame: debugger.set_trace(frame))
-    print(f"fwk: {request.component.name} under pdb; it stops where loop() begins, everybody waits for it", flush=True)
-    print("fwk: 'c' goes on, Ctrl-C stops again, 'q' leaves the debugger and gives the component back", flush=True)
+    print(f"fwk: {request.component.name} under pdb; it stops where loop() begins", flush=True)
+    print(f"fwk: 'c' goes on, Ctrl-C stops again, 'q' leaves the debugger and {leaving}", flush=True)
     try:
         debugger.run_quietly(serve)
     except bdb.BdbQuit:
         return LEFT
     except Failure as failure:
         print(f"fwk: {failure}", flush=True)
-        print("fwk: you are where it was raised; 'q' gives the component back", flush=True)
+        print(f"fwk: you are where it was raised; 'q' leaves the debugger and {leaving}", flush=True)
         debugger.look_back_at(failure.__cause__ or failure)
         return LEFT
     return 0
@@ -71,6 +79,20 @@ def debug(request: DebugRequest, serve: Callable[[], None]) -> int:
 
 class _Pdb(pdb.Pdb):
     """pdb that stops at breakpoints only, not in the framework's code before them."""
+
+    def begin_at(self, file: str, line: int, wanted: Callable[[Any], bool]) -> None:
+        """Stops at this line once, when the object whose method it belongs to is wanted."""
+        self._first = (self.canonic(file), line)
+        self._wanted = wanted
+        self.set_break(file, line, temporary=True)
+
+    def break_here(self, frame: FrameType) -> bool:
+        """Whether to stop at this line; called where the file has breakpoints."""
+        if (self.canonic(frame.f_code.co_filename), frame.f_lineno) == self._first:
+            if not self._wanted(frame.f_locals[frame.f_code.co_varnames[0]]):
+                return False
+            self._wanted = lambda _: True
+        return bool(super().break_here(frame))
 
     def run_quietly(self, work: Callable[[], None]) -> None:
         self.reset()
@@ -97,7 +119,9 @@ def _debugpy(request: DebugRequest, serve: Callable[[], None]) -> int:
     debugpy.listen(("127.0.0.1", request.debugpy_port))
     where = f"127.0.0.1:{request.debugpy_port}"
     print(f"fwk: {request.component.name} (pid {os.getpid()}) waits for a debugger at {where}", flush=True)
+    on_interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing else ends the waiting
     debugpy.wait_for_client()
+    signal.signal(signal.SIGINT, on_interrupt)
     serve()
     return 0
 

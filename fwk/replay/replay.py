@@ -2,6 +2,7 @@
 
 import json
 import traceback
+from bdb import BdbQuit
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -126,6 +127,8 @@ class Replay:
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
         try:
             yield
+        except BdbQuit:  # somebody left the debugger
+            raise
         except Exception as error:
             trace = "".join(traceback.format_exception(error)).rstrip()
             raise RecordingError(

@@ -109,7 +109,7 @@ class Supervisor:
         self.pace = Pace(plan, options.speed)
         self._zygote = zygote
         self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log)
-        self._debugged = self._hosts.table[debug.host] if debug else None
+        self._debugged = self._hosts.table[debug.host] if debug and not debug.debugpy_port else None
         self.loop = MainLoop(
             plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
         )

@@ -5,19 +5,49 @@ import random
 import re
 import signal
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from lcmtypes.core import tick_event_t
+from tests.system.command_system import command_system
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording
-from tests.system.system_orchestra import GROUPS, PLAYERS, orchestra
+from tests.system.system_orchestra import GROUPS, PLAYER, PLAYERS, orchestra
 from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_terminals import Terminal
 
 pytestmark = pytest.mark.system
 
+DRIVER = '''
+"""Takes the main loop over and gives it back, again and again."""
+
+from fwk import Clock, Component, MainLoop
+
+ORDER = ["pre_loop", "sensor_acquire", "think", "sensor_prepare", "worldstate", "think", "act", "act", "post_loop"]
+
+
+class Driver(Component):
+    """Has the main loop for eight ticks of twenty-four."""
+
+    stage = "think"
+    clock: Clock
+    main_loop: MainLoop
+
+    def loop(self) -> None:
+        if self.clock.tick % 24 == 8:
+            self.main_loop.take_over(ORDER)
+        if self.clock.tick % 24 == 16:
+            self.main_loop.give_back()
+'''
+TOGETHER = """
+name: together
+include: [orchestra.yaml, lift.yaml]
+components:
+  z/driver: {use: "driver:Driver"}
+"""
 WALL = """
 clock: wall
 period_s: 0.05
@@ -26,13 +56,16 @@ stage_time_s: 0.03
 
 
 @pytest.fixture(params=["lockstep", "groups", "real time", "real time, groups"])
-def orchestra_folder(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> Path:
-    """The orchestra by either clock, each player alone or in groups; players leave traces."""
-    files = orchestra(ports.public_url, GROUPS if "groups" in request.param else "")
+def together(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> Path:
+    """Orchestra and lift in one run, by either clock, each component alone or some in groups."""
+    files = orchestra(ports.public_url, GROUPS if "groups" in request.param else "") | command_system(ports.public_url)
+    files |= {"driver.py": DRIVER, "launch/together.yaml": TOGETHER}
+    for name in ("launch/orchestra.yaml", "launch/lift.yaml"):
+        files[name] = re.sub(r'use: ("[\w.:]+")', r"use: \1, restart: {limit: 100, backoff_s: 0.01}", files[name])
+        if "real" in request.param:
+            files[name] = re.sub(r"  world/conductor: .*\n|, world/conductor|speed: max\n", "", files[name])
     if "real" in request.param:
-        text = files["launch/orchestra.yaml"].replace("speed: max", WALL)
-        files["launch/orchestra.yaml"] = text.replace('  world/conductor: { use: "procs.player:Conductor" }\n', "")
-        files["launch/orchestra.yaml"] = files["launch/orchestra.yaml"].replace(", world/conductor", "")
+        files["launch/together.yaml"] += WALL
     write_files(tmp_path, files)
     (tmp_path / "traces").mkdir()
     return tmp_path
@@ -52,19 +85,14 @@ def replayed(folder: Path, *arguments: str, code: int = 0) -> str:
     return done.stdout
 
 
-def events(recording: Recording, kind: int) -> int:
-    return sum(event.kind == kind for record in recording.records for event in record.events)
-
-
 def trouble(run: Steered, luck: random.Random) -> None:
     """Something that people or fate do to a run."""
-    player = luck.choice(PLAYERS)
-    name = f"{player}/player"
     what = luck.choice(["kill", "kill", "stop and start", "restart", "set", "pause"])
-    process = next(each for each in run.ask("status")["components"] if each["name"] == name)
-    everybody = [each["name"] for each in run.ask("status")["components"] if each["process"] == process["process"]]
-    if what == "kill" and process["pid"]:
-        os.kill(process["pid"], signal.SIGKILL)
+    components = run.ask("status")["components"]
+    one = luck.choice(components)
+    everybody = [each["name"] for each in components if each["process"] == one["process"]]
+    if what == "kill" and one["pid"]:
+        os.kill(one["pid"], signal.SIGKILL)
     elif what == "stop and start":
         run.steer("stop", *everybody)
         run.ticks_pass(luck.randrange(1, 4))
@@ -72,36 +100,34 @@ def trouble(run: Steered, luck: random.Random) -> None:
     elif what == "restart":
         run.steer("restart", *everybody)
     elif what == "set":
+        name = f"{luck.choice(PLAYERS)}/player"
         run.ask("set", changes=[f"{name}.bursts={luck.randrange(6)}", f"{name}.ballast={luck.randrange(100)}"])
-    elif process["pid"]:
-        os.kill(process["pid"], signal.SIGSTOP)
+    elif one["pid"]:
+        os.kill(one["pid"], signal.SIGSTOP)
         if run.ask("run")["clock"] == "wall":
             run.ticks_pass(luck.randrange(1, 4))
-        os.kill(process["pid"], signal.SIGCONT)
+        os.kill(one["pid"], signal.SIGCONT)
 
 
 def test_what_people_and_fate_did_to_a_run_is_replayed_exactly(
-    orchestra_folder: Path, ports: PortBlock, launch: Launch
+    together: Path, ports: PortBlock, launch: Launch
 ) -> None:
-    file = orchestra_folder / "launch/orchestra.yaml"
-    restarts = "restart: {limit: 100, backoff_s: 0.01}"
-    file.write_text(re.sub(r'use: ("[\w.:]+")', rf"use: \1, {restarts}", file.read_text()))
-    run = Steered(launch("launch/orchestra.yaml", "--record", "log.lcm"), ports)
+    run = Steered(launch("launch/together.yaml", "--record", "log.lcm"), ports)
+    real_time = run.ask("run")["clock"] == "wall"
     luck = random.Random(3)
-    run_is_real_time = run.ask("run")["clock"] == "wall"
     for _ in range(30):
         trouble(run, luck)
         run.ticks_pass(luck.randrange(1, 5))
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text
-    recording = Recording(orchestra_folder / "log.lcm")
-    if run_is_real_time:
-        assert events(recording, tick_event_t.LATE)
-    assert events(recording, tick_event_t.LOST)
-    assert events(recording, tick_event_t.STOPPED)
+    recording = Recording(together / "log.lcm")
+    kinds = {event.kind for record in recording.records for event in record.events}
+    assert {tick_event_t.LOST, tick_event_t.STOPPED, tick_event_t.MAIN_LOOP} <= kinds
+    assert (tick_event_t.LATE in kinds) == real_time
     assert any(record.n_changes for record in recording.records)
-    assert "equal" in replayed(orchestra_folder)
-    assert "equal" in replayed(orchestra_folder, "--only", "c/player", "--only", "a/viewer")
+    assert recording.messages["r/lift@one/worker"]
+    assert "equal" in replayed(together)
+    assert "equal" in replayed(together, "--only", "c/player", "--only", "r/lifter")
 
 
 @pytest.fixture
@@ -130,7 +156,7 @@ def recorded(folder: Path, launch: Launch) -> Path:
         pytest.param(
             "        self.note.write()",
             "        CHANGED or self.note.write()",
-            "missing in the replay",
+            "there in the recording, missing in the replay",
             id="no message",
         ),
     ],
@@ -148,3 +174,38 @@ def test_a_changed_component_is_found_and_its_first_difference_named(
     assert "equal: " in replayed(recorded, "--to-tick", "16")
     assert "equal: " in replayed(recorded, "--only", "c/player", "--only", "e/player")
     assert "different: 4 of " in replayed(recorded, "--only", "d/*", "--from-tick", "27", code=1)
+
+
+def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: Path) -> None:
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "12"]
+    stopped = Terminal(recorded, *command, "--verify")
+    assert "loop()" in stopped.prompt()
+    assert "('e/player', 12)" in stopped.ask("p (self.name, self.clock.tick)")
+    stopped.ask(f"tbreak {recorded / 'procs/player.py'}:{line_of('self.note.write()')}")
+    stopped.ask("c")
+    assert "12" in stopped.ask("p note.iterations")
+    stopped.type("c")
+    stopped.child.expect("equal: ")
+    assert stopped.end() == 0
+    left = Terminal(recorded, *command)
+    left.prompt()
+    left.type("q")
+    left.child.expect("left in tick 12")
+    assert left.end() == 0
+
+
+def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> None:
+    file = recorded / "procs/player.py"
+    file.write_text(file.read_text().replace("        self.note.write()", "        1 / (self.clock.tick - 20)"))
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
+    failed = Terminal(recorded, *command)
+    failed.prompt()
+    assert "ZeroDivisionError" in failed.ask("c")
+    assert "20" in failed.ask("p note.iterations")
+    failed.type("q")
+    assert failed.end() == 0
+
+
+def line_of(text: str) -> int:
+    """Where it stands in the player's file."""
+    return 1 + next(number for number, line in enumerate(PLAYER.splitlines()) if text in line)
