@@ -11,6 +11,7 @@ from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel
 from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
+from fwk.aspects.plugins import PluginControl  # noqa: E402
 from fwk.aspects.provided import Aspect  # noqa: E402
 from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
 from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
@@ -35,6 +36,7 @@ __all__ = [
     "ImagesEach",
     "Logger",
     "MainLoop",
+    "PluginControl",
     "Reads",
     "ReadsEach",
     "Request",

@@ -11,6 +11,7 @@ from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, Wri
 from fwk.aspects.commands import Commands
 from fwk.aspects.logging import Logger
 from fwk.aspects.main_loop import MainLoop
+from fwk.aspects.plugins import PluginControl
 from fwk.aspects.provided import Aspect
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Sends, SendsEach
@@ -54,6 +55,7 @@ class Component:
     | `rng: np.random.Generator` | random numbers, seeded from the run's seed and the component's name |
     | `time_source: TimeSource` | says when the next tick happens; one a system |
     | `main_loop: MainLoop` | takes over the main loop, and gives it back; one at a time |
+    | `plugins: PluginControl` | starts, stops and exchanges other components |
     | `tf: Transforms`, any class derived from `Aspect` | what another component provides |
     """
 
@@ -172,7 +174,7 @@ class Declaration:
     config: type[Config]
     """With `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
-    """Attribute to aspect name: clock, log, rng, time_source, main_loop."""
+    """Attribute to aspect name: clock, log, rng, time_source, main_loop, plugins."""
     asks: dict[str, type[Aspect]] = field(default_factory=dict)
     """Attribute to an aspect that another component provides; its own attributes are `attribute.own` above."""
     provides: tuple[type[Aspect], ...] = ()
@@ -184,6 +186,7 @@ _ASPECTS: dict[Any, str] = {
     np.random.Generator: "rng",
     TimeSource: "time_source",
     MainLoop: "main_loop",
+    PluginControl: "plugins",
 }
 
 

@@ -11,6 +11,7 @@ from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
 from fwk.aspects.commands import Commands, Queue, Source
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.main_loop import MainLoop
+from fwk.aspects.plugins import PluginControl
 from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Outbox, Sends, SendsEach
@@ -38,6 +39,8 @@ class Surroundings:
     lines_per_s: int = 0
     """That each component may log; 0: as many as it likes."""
     stages: Sequence[str] = DEFAULT_STAGES
+    components: Sequence[str] = ()
+    """Names of all components of the run; none: there are no others."""
 
 
 class Runner:
@@ -65,6 +68,9 @@ class Runner:
         self.main_loop = MainLoop(name, surroundings.stages)
         self.has_main_loop = "main_loop" in declaration.aspects.values()
         """Whether the component may take over the main loop."""
+        self.plugins = PluginControl(name, surroundings.components)
+        self.has_plugins = "plugins" in declaration.aspects.values()
+        """Whether the component may start and stop others."""
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
         self._config = config or declaration.config()
         limit = RateLimit(surroundings.lines_per_s)
@@ -140,6 +146,11 @@ class Runner:
     def _log_level(self) -> int:
         return LEVELS[getattr(self._config, LOG_LEVEL)]
 
+    def wishes(self) -> dict[str, Any]:
+        """What the iteration asked of the main loop, by aspect."""
+        order, plugins = self.main_loop.take(), self.plugins.take()
+        return ({} if order is None else {"main_loop": order}) | ({"plugins": plugins} if plugins else {})
+
     def _put(self, attribute: str, value: Any) -> None:
         """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
         outer, _, own = attribute.rpartition(".")
@@ -153,6 +164,7 @@ class Runner:
             "log": self.log,
             "time_source": self.time_source,
             "main_loop": self.main_loop,
+            "plugins": self.plugins,
         }[aspect]
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:

@@ -100,6 +100,7 @@ class Host:
             self._poller.register(descriptor, select.EPOLLIN)
         self._runners: dict[str, Runner] = {}
         self._takers: list[Runner] = []  # those that may take over the main loop
+        self._wishing: list[Runner] = []  # those that may ask something of the main loop
         self._members = [
             [component.name for component in self._own if stage in component.stages]
             for stage in range(len(plan.stages))
@@ -154,6 +155,8 @@ class Host:
                 self._waiting[plan.name] = {}
                 if runner.has_main_loop:
                     self._takers.append(runner)
+                if runner.has_main_loop or runner.has_plugins:
+                    self._wishing.append(runner)
                 runner.init()
             self.figures[plan.name].state = "running"
         self._report()
@@ -168,6 +171,7 @@ class Host:
             self._assignment.rings,
             self._plan.log.lines_per_s,
             self._plan.stages,
+            [component.name for component in self._plan.components],
         )
         if {port.attribute for port in declared.ports} != set(plan.channels):
             raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
@@ -259,7 +263,7 @@ class Host:
         marks = self._outputs.publish(written)
         done = self._message
         done.tick, done.stage, done.next_time_us = tick.tick, tick.stage, next_us
-        done.wishes = self._wishes() if self._takers else ""
+        done.wishes = self._wishes() if self._wishing else ""
         done.busy_us = start_us - began_us
         done.channel, done.sequence = list(marks), list(marks.values())
         self._done = sync.encode_done(done)
@@ -273,8 +277,11 @@ class Host:
 
     def _wishes(self) -> str:
         """What the iterations asked for, in a done's words."""
-        asked = {runner.name: wish for runner in self._takers if (wish := runner.main_loop.take()) is not None}
-        return json.dumps({"main_loop": asked}) if asked else ""
+        asked: dict[str, dict[str, object]] = {}
+        for runner in self._wishing:
+            for aspect, wish in runner.wishes().items():
+                asked.setdefault(aspect, {})[runner.name] = wish
+        return json.dumps(asked) if asked else ""
 
     def _handle_own(self) -> bool:
         """Handles what was sent to this host's own port; false when it is time to stop."""

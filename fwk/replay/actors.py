@@ -26,7 +26,8 @@ class Actor:
         self._stages = plan.stages
         declared = declaration(getattr(import_module(component.module), component.class_name))
         config = declared.config.model_validate(settings)
-        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages)
+        names = [each.name for each in plan.components]
+        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}
         self.runner.init()
@@ -44,7 +45,9 @@ class Actor:
     def iterate(self, tick: int, place: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
         """One iteration with everything that became visible since the last."""
         waiting, self._waiting = self._waiting, {channel: [] for channel in self._waiting}
-        return self.runner.iterate(tick, place, self._stages[stage], time_us, waiting)
+        written = self.runner.iterate(tick, place, self._stages[stage], time_us, waiting)
+        self.runner.wishes()  # what came of them is in the recording
+        return written
 
 
 def _silent(line: log_t) -> None:

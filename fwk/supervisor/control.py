@@ -14,6 +14,7 @@ from fwk.control.server import Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
 from fwk.plan.model import Plan
 from fwk.supervisor.clock_control import ClockControl
+from fwk.supervisor.directing import Directing
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.mailbox import Mailbox
@@ -57,6 +58,8 @@ class Control:
         self._log = log
         self._places = places
         self._steering = Steering(plan, hosts.table)
+        self._directing = Directing(hosts, self._steering, log)
+        loop.on_wishes = self._directing.ask
         self._clock = ClockControl(loop, log)
         self._status = status_t()
         self._status_us = 0
@@ -239,6 +242,7 @@ class Control:
 
     def _boundary(self, tick: int) -> None:
         """Between two ticks: what was asked for since the last one happens now."""
+        self._directing.decide()
         new, self._new = self._new, []
         for each, origin in new:
             self._number += 1

@@ -47,6 +47,8 @@ class MainLoop:
         self.late = 0
         self.stands = False
         """Whether the run is paused and its newest tick has ended."""
+        self.on_wishes: Callable[[done_t], None] = lambda _: None
+        """Called with a done in which components ask for something."""
         self.on_boundary: Callable[[int], None] = lambda _: None
         """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
         self.times = LoopTimes(plan, hosts.table, log)
@@ -254,6 +256,7 @@ class MainLoop:
             self.pace.source(done.next_time_us)
         if done.wishes:
             self.turns.ask(done)
+            self.on_wishes(done)
         self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
 
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:

@@ -59,6 +59,8 @@ class MemorySystem:
             self._seen[wish.name] = dict.fromkeys(runner.readers, 0)
             for stage in wish.declaration.stages:
                 self._by_stage[stage].append(runner)
+            if runner.has_plugins:
+                raise ValueError(f"{wish.name} asks for PluginControl, and here are no processes; take Bench, or a run")
             if "time_source" in wish.declaration.aspects.values():
                 self._time_source = runner
         for runner in self.runners.values():

@@ -1,0 +1,39 @@
+"""What a component may ask of others: names are checked at once, the rest between two ticks."""
+
+import pytest
+
+from fwk import Component, PluginControl
+from fwk.testing.bench import Bench
+from fwk.testing.memory import MemorySystem
+
+
+class Director(Component):
+    stage = "think"
+    plugins: PluginControl
+
+    def loop(self) -> None:
+        self.plugins.stop("r/one", "r/two")
+        self.plugins.load("r/three")
+
+
+def test_what_was_asked_in_an_iteration_is_taken_once() -> None:
+    bench = Bench(Director)
+    bench.iterate()
+    assert bench.runner.wishes() == {"plugins": [("stop", ("r/one", "r/two")), ("load", ("r/three",))]}
+    assert bench.runner.wishes() == {}
+
+
+def test_names_that_do_not_exist_are_refused_at_once() -> None:
+    plugins = PluginControl("r/director", ["r/director", "r/one"])
+    with pytest.raises(ValueError, match=r"r/director: no component 'r/oen'; did you mean 'r/one'\?"):
+        plugins.start("r/oen")
+    with pytest.raises(ValueError, match=r"r/director: reload what\? name components"):
+        plugins.reload()
+    plugins.unload("r/*")
+    plugins.restart("r")
+    assert plugins.take() == [("unload", ("r/*",)), ("restart", ("r",))]
+
+
+def test_a_system_in_memory_has_no_processes_to_control() -> None:
+    with pytest.raises(ValueError, match="r/director asks for PluginControl, and here are no processes"):
+        MemorySystem({"r/director": Director})
