@@ -22,6 +22,7 @@ from fwk.component import DeclarationError, declaration
 from fwk.host.inputs import Inputs
 from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
+from fwk.host.progress import Progress
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
 from fwk.plan.model import NOBODY, ComponentPlan, Plan
@@ -48,6 +49,8 @@ class Assignment:
     """Settings of its components that were changed since the run began, by name, as JSON."""
     fresh_code: bool = False
     """Whether it imports the application's modules anew."""
+    progress: Progress | None = None
+    """Where it says which of its components works."""
 
 
 class Failure(Exception):  # noqa: N818 - a failure of a component, not an error of the framework
@@ -99,6 +102,8 @@ class Host:
         for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
             self._poller.register(descriptor, select.EPOLLIN)
         self._runners: dict[str, Runner] = {}
+        self._index = {component.name: component.index for component in self._own}
+        self._progress = assignment.progress if len(self._own) > 1 else None  # one alone needs no telling apart
         self._takers: list[Runner] = []  # those that may take over the main loop
         self._wishing: list[Runner] = []  # those that may ask something of the main loop
         self._members = [
@@ -149,6 +154,8 @@ class Host:
             plan = self._plan.components[index]
             self.figures[plan.name].state = "init"
             self._report()
+            if self._progress:
+                self._progress.works(self._assignment.host, index)
             with self._guard(plan.name, "init"):
                 runner = self._runner(plan)
                 self._runners[plan.name] = runner
@@ -159,6 +166,8 @@ class Host:
                     self._wishing.append(runner)
                 runner.init()
             self.figures[plan.name].state = "running"
+        if self._progress:
+            self._progress.works(self._assignment.host, NOBODY)
         self._report()
 
     def _runner(self, plan: ComponentPlan) -> Runner:
@@ -187,6 +196,8 @@ class Host:
     def _finalize(self) -> None:
         for name, runner in reversed(self._runners.items()):
             self.figures[name].state = "finalizing"
+            if self._progress:
+                self._progress.works(self._assignment.host, self._index[name])
             with self._guard(name, "finalize"):
                 runner.component.finalize()
             self.figures[name].state = "stopped"
@@ -250,6 +261,8 @@ class Host:
         began_us = start_us = monotonic_us()
         for name in self._members[stage]:
             runner, waiting = self._runners[name], self._waiting[name]
+            if self._progress:
+                self._progress.works(self._assignment.host, self._index[name])
             self._waiting[name] = {}
             try:
                 written += runner.iterate(tick.tick, tick.stage, self._plan.stages[stage], tick.time_us, waiting)
@@ -260,6 +273,8 @@ class Host:
             self.figures[name].ran(end_us - start_us)
             start_us = end_us
             next_us = max(next_us, runner.time_source.next_us)
+        if self._progress:
+            self._progress.works(self._assignment.host, NOBODY)
         marks = self._outputs.publish(written)
         done = self._message
         done.tick, done.stage, done.next_time_us = tick.tick, tick.stage, next_us

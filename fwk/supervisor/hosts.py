@@ -7,7 +7,7 @@ from functools import partial
 from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.host.debugger import LEFT
-from fwk.plan.model import Plan
+from fwk.plan.model import NOBODY, Plan
 from fwk.supervisor.hand import Hand, Start
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
@@ -244,7 +244,8 @@ class Hosts:
 
     def _ended(self, entry: HostEntry, code: int, core: bool = False) -> None:
         asked = entry.state == "stopping"
-        entry.ended(code, monotonic_us(), self._stopping, core)
+        culprit = self._culprit(entry)
+        entry.ended(code, monotonic_us(), self._stopping, core, culprit)
         self._ledger.void(entry.index, entry.incarnation + 1)
         if not asked:
             self.on_lost(entry)
@@ -253,7 +254,20 @@ class Hosts:
         if not self._stopping and not asked:
             again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
             log = self._log.info if code == LEFT else self._log.error
-            log(f"{entry.name} ended: {entry.reason}{again if entry.state == 'waiting' else ''}")
+            others = [name for name in self._members(entry) if name != culprit]
+            went = f"; with it went {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
+            log(f"{entry.name} ended: {entry.reason}{went}{again if entry.state == 'waiting' else ''}")
+
+    def _members(self, entry: HostEntry) -> list[str]:
+        return [self._plan.components[index].name for index in self._plan.hosts[entry.index].components]
+
+    def _culprit(self, entry: HostEntry) -> str:
+        """Which component of a shared process was to blame for its end; empty if nobody knows."""
+        if len(self._members(entry)) < 2:
+            return ""
+        failed = [item.name for item in entry.components if item.state == "failed"]
+        working = self._zygote.progress.at(entry.index)
+        return failed[0] if failed else self._plan.components[working].name if working != NOBODY else ""
 
     def _stand_in(self, entry: HostEntry) -> None:
         if entry.index not in self._standins:

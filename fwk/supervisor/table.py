@@ -141,8 +141,10 @@ class HostEntry:
         self._starts_us.append(now_us)
         return self.incarnation
 
-    def ended(self, code: int, now_us: int, stopping: bool, core: bool = False) -> None:
-        """Its process ended; decides whether and when it is started again."""
+    def ended(self, code: int, now_us: int, stopping: bool, core: bool = False, culprit: str = "") -> None:
+        """Its process ended, because of one of its components if it is known; decides whether and when it is started
+        again.
+        """
         self.pid, self.busy, self.held, self.since_us, self.changes = 0, None, False, now_us, []
         if self.state == "stopping":
             self.state, self.restart_us = ("waiting" if self.wanted and not stopping else "stopped"), now_us
@@ -155,6 +157,8 @@ class HostEntry:
             return
         if not self.reason:
             self.reason = next((item.reason for item in self.components if item.reason), how)
+        if culprit:
+            self.reason = f"{culprit}: {self.reason}"
         if not self.wanted:  # asked to stop, but ended before the loop came to it
             self.state = "stopped"
             return

@@ -19,6 +19,7 @@ from fwk.host.host import Assignment, Failure, Host
 from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest
+from fwk.host.progress import Progress
 from fwk.host.uncaught import log_uncaught
 from fwk.plan.model import Plan
 from fwk.runner import Runner
@@ -63,6 +64,7 @@ class Zygote:
         profile: ProfileRequest | None = None,
     ) -> None:
         self.socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self.progress = Progress(len(plan.hosts))
         parent = os.getpid()
         gc.collect()
         gc.freeze()  # what is here now stays; hosts share its memory as long as nobody touches it
@@ -71,7 +73,7 @@ class Zygote:
             self.socket.close()
             os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
             die_with_parent(parent)
-            run_forked(lambda stop: _Forker(plan, run, rings, other, debug, profile).serve(stop))
+            run_forked(lambda stop: _Forker(plan, run, rings, self.progress, other, debug, profile).serve(stop))
         other.close()
         self.socket.setblocking(False)
         self._debugged = debug.host if debug else None
@@ -139,6 +141,7 @@ class _Forker:
         plan: Plan,
         run: int,
         rings: Mapping[str, Ring],
+        progress: Progress,
         connection: socket.socket,
         debug: DebugRequest | None,
         profile: ProfileRequest | None,
@@ -148,6 +151,7 @@ class _Forker:
         self._plan = plan
         self._run = run
         self._rings = rings
+        self._progress = progress
         self._connection = connection
         self._children: dict[int, tuple[int, int]] = {}
 
@@ -203,7 +207,7 @@ class _Forker:
             for descriptor in (output, output_write, errors, errors_write):
                 os.close(descriptor)
             assignment = Assignment(
-                self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code
+                self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code, self._progress
             )
             run_forked(lambda stop: _serve_host(assignment, stop, debugged, profiled))
         os.close(output_write)

@@ -159,6 +159,32 @@ def test_who_fails_in_finalize_is_named(launch: Launch, folder: Path) -> None:
     assert "in finalize" in run.text
 
 
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("init:crash", "strings: c/player: killed by signal 11"),
+        ("init:raise", "strings: c/player: RuntimeError: a wrong note"),
+        ("loop:crash", "strings ended: c/player: killed by signal 11"),
+        ("loop:kill", "strings ended: c/player: killed by signal 9"),
+        ("loop:raise", "strings ended: c/player: RuntimeError: a wrong note"),
+        ("loop:os._exit", "strings ended: c/player: exit code 3"),
+    ],
+)
+def test_in_a_shared_process_the_guilty_one_is_named_and_who_went_with_it(
+    launch: Launch, folder: Path, what: str, says: str
+) -> None:
+    file = folder / FILE
+    file.write_text(file.read_text() + "hosts: {strings: [a/player, c/player, e/player]}\n")
+    sets = [word.replace("d/player", "c/player") for word in trouble(what)]
+    run = launch(FILE, *sets, "--ticks", "8", "--record", "log.lcm")
+    assert run.wait() == (1 if "init" in what else 0), run.text
+    assert says in run.text
+    if "loop" in what:
+        assert "; with it went a/player, e/player; starting it again" in run.text
+        assert "strings runs again, start number 2" in run.text
+        assert len(Recording(folder / "log.lcm").messages["e/note"]) == 8
+
+
 def test_what_components_print_is_in_the_log_with_their_names(launch: Launch, folder: Path) -> None:
     run = launch(FILE, *trouble("loop:print"), "--ticks", "8")
     assert run.wait() == 0, run.text

@@ -78,6 +78,13 @@ def test_who_leaves_without_having_been_asked_is_told_so() -> None:
     assert "left by itself" in host.reason
 
 
+def test_the_reason_names_the_culprit_of_a_shared_process() -> None:
+    host = entry("never")
+    host.starting(0)
+    host.ended(-11, 1, stopping=False, culprit="cyan1/base")
+    assert host.reason == "cyan1/base: killed by signal 11"
+
+
 def running(when: RestartWhen = "on-failure") -> HostEntry:
     host = entry(when)
     host.starting(0)
