@@ -43,7 +43,7 @@ class Echo(Component):
 
 LAUNCH = """
 name: outside
-period_s: 0.02
+period: 0.02
 public_url: {url}
 components:
   a/echo: {{use: procs.echo}}
