@@ -12,7 +12,6 @@ from fwk.bus.ports import Ports
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import Clock
-from fwk.gateway.foreign import Foreign
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
 from fwk.messages import Header, MessageError, sequence_of
@@ -52,7 +51,6 @@ class Gateway:
         self.log = Logger("gateway", self._clock, self._log_line)
         self._complaints = Complaints(self.log)
         self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
-        self._foreign = Foreign(plan, self._ports, self._sender, self._inputs)
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
@@ -104,7 +102,6 @@ class Gateway:
             if not self._take(record, data):
                 return
             self._next += 1
-            self._foreign.publish(record.tick, record.time_us)
             self._acknowledge()
 
     def _take(self, record: tick_record_t, recorded: bytes) -> bool:
@@ -135,7 +132,6 @@ class Gateway:
             -1,
             -1,
         )
-        done.channel, done.sequence = list(self._foreign.marks), list(self._foreign.marks.values())
         self._sender.publish(sync.DONE, sync.encode_done(done), self._ports.sync)
 
     def _ask_for_records(self) -> None:
@@ -166,18 +162,9 @@ class Gateway:
                 continue
             if heard is None:
                 return
-            channel, data, port = heard
-            if channel in self._foreign:
-                self.take_in(channel, data, f"port {port} on the public bus")
-            elif channel in self._names or channel.startswith("fwk/"):
+            channel, _, port = heard
+            if channel in self._names or channel.startswith("fwk/"):
                 self._complaints(channel, f"somebody else (port {port}) writes it on the public bus; not taken")
-
-    def take_in(self, channel: str, data: bytes, sender: str) -> None:
-        """Takes a message that somebody outside has written, if it is as it should be."""
-        try:
-            self._foreign.offer(channel, data)
-        except MessageError as error:
-            self._complaints(channel, f"{str(error).removeprefix(f'{channel}: ')}; refused (from {sender})")
 
     def _handle_own(self) -> bool:
         while True:
@@ -213,8 +200,6 @@ class Gateway:
         Here are the newest message of the recorded ticks and all since. The answer is final: the tick that the reader
         takes part in, and with it the next record, may be waiting for it.
         """
-        if self._foreign.answers(fetch):
-            return
         box = self._inputs.box(fetch.channel)
         found = box.held(fetch.first_sequence, fetch.last_sequence)
         newest = self._newest.get(fetch.channel)

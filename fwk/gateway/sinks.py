@@ -43,16 +43,14 @@ class Recorder:
 
 
 class Mirror:
-    """Publishes everything on the public bus but what comes from there."""
+    """Publishes everything on the public bus."""
 
-    def __init__(self, plan: Plan, bus: PublicBus) -> None:
+    def __init__(self, bus: PublicBus) -> None:
         self._bus = bus
-        self._outside = plan.outside
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Publishes a message."""
-        if channel not in self._outside:
-            self._bus.publish(channel, data)
+        self._bus.publish(channel, data)
 
     def tick(self) -> None:
         """Nothing to do."""

@@ -7,9 +7,6 @@ from typing import Any, Literal
 NOBODY = -1
 """As a channel's writer: no component of the plan."""
 
-OUTSIDE_STAGE = -1
-"""As the stage of a message from outside: between two ticks."""
-
 RestartWhen = Literal["never", "on-failure", "always"]
 
 

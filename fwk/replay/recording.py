@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from fwk.plan.model import NOBODY, OUTSIDE_STAGE, Plan
+from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event, LogReader
 from fwk.record.types import header_of
 from lcmtypes.core import plan_t, tick_event_t, tick_record_t
@@ -69,10 +69,7 @@ class Recording:
         plan = self.plan
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
-        if event.kind == tick_event_t.STAGE:
-            return 0 <= event.index < len(plan.stages)
-        outside = event.kind == tick_event_t.DONE and event.stage == OUTSIDE_STAGE
-        return 0 <= event.index < len(plan.hosts) + outside
+        return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 
     def _plan(self) -> Plan:
         for event in self._reader:

@@ -13,7 +13,7 @@ from typing import Any
 from fwk.aspects.vision import Ring
 from fwk.component import declaration
 from fwk.messages import sequence_of
-from fwk.plan.model import NOBODY, OUTSIDE_STAGE, ComponentPlan
+from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
@@ -77,17 +77,10 @@ class Replay:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, place, stage, record.time_us)
-            elif event.kind == tick_event_t.DONE and event.stage == OUTSIDE_STAGE:
-                self._admit()
             elif event.kind == tick_event_t.DONE:
                 if (event.index, event.tick, event.stage) not in self._pending:
                     self._iterate(event.index, event.tick, event.stage, stage, record.time_us)
                 self._done(event.index, event.tick, event.stage)
-
-    def _admit(self) -> None:
-        """What programs outside have written becomes visible."""
-        for key in [key for key in self._hidden if key[0] in self._plan.outside]:
-            self._revealed.append((key[0], self._hidden.pop(key)))
 
     def _change(self, tick: int, change: change_t) -> None:
         settings = json.loads(change.settings)

@@ -101,7 +101,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     board = Board(plan)
     gateway.watch(board.fileno(), board.handle)
     gateway.sinks += [
-        *([targets.above(sinks.Mirror(plan, public), plan.log.bus)] if public else []),
+        *([targets.above(sinks.Mirror(public), plan.log.bus)] if public else []),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         board,
         targets.above(sinks.Display(plan, display), plan.log.console),

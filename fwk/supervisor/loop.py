@@ -7,7 +7,7 @@ from fwk.bus import sync
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.plan.model import NOBODY, OUTSIDE_STAGE, Plan
+from fwk.plan.model import NOBODY, Plan
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop_times import LoopTimes
@@ -80,7 +80,6 @@ class MainLoop:
         self._again = False  # somebody joined the stage that runs: tell it at once
         self.records = Records(self._ports, run, sender, mailbox)
         self._told = b""  # the newest tick as it was sent
-        self._foreign: dict[int, int] = {}  # marks of messages from outside that the next boundary admits
         self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
         mailbox.on_done = self._on_done
         hosts.on_started = self._on_started
@@ -122,7 +121,6 @@ class MainLoop:
         self._hosts.steer()
         if stands:
             return
-        self._admit()
         self._remind()
         if self.turns.asked:
             self._decide()
@@ -214,15 +212,6 @@ class MainLoop:
         self._told = sync.encode_tick(tick)
         self._sender.publish(sync.TICK, self._told, self._ports.stage(self._stage))
 
-    def _admit(self) -> None:
-        """What the gateway has taken in from outside becomes visible to this tick."""
-        news = [channel for channel, mark in self._foreign.items() if self._ledger.publish(channel, mark)]
-        if news:
-            for channel in news:
-                self.records.mark(channel, self._foreign[channel])
-            self.records.event(tick_event_t.DONE, self._gateway, self.records.taken, OUTSIDE_STAGE)
-        self._foreign = {}
-
     def _remind(self) -> None:
         """Who is late may have lost its tick, or its done was lost: the tick is repeated until it is answered."""
         for entry in self._hosts.table:
@@ -241,9 +230,7 @@ class MainLoop:
 
     def _on_done(self, done: done_t) -> None:
         if done.host == self._gateway:
-            if done.tick > self.records.taken:
-                self.records.taken = done.tick
-                self._foreign = dict(zip(done.channel, done.sequence, strict=True))
+            self.records.taken = max(self.records.taken, done.tick)
             return
         entry = self._hosts.table[done.host]
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
