@@ -88,7 +88,10 @@ class Component:
         """
 
     def finalize(self) -> None:
-        """Called once after the last iteration."""
+        """Called once after the last iteration, when the component is stopped or the run ends.
+
+        What it writes is seen as that of an iteration if the run goes on: an actuator's driver leaves it stopped.
+        """
 
 
 class DeclarationError(Exception):

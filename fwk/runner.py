@@ -19,7 +19,7 @@ from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import DEFAULT_STAGES, Component, Declaration, Port
 from fwk.config import LOG_LEVEL, Config
-from lcmtypes.core import log_t
+from lcmtypes.core import done_t, log_t
 
 AWAY_TICKS = 16
 """Who took no part for longer is like a newcomer, because writers may no longer have everything."""
@@ -136,6 +136,17 @@ class Runner:
             for writer in self.writers.values():
                 writer.drop()
             raise
+        return self._written()
+
+    def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
+        """After the last iteration: lets the component finalize; returns what it wrote, stamped with that tick."""
+        self.clock.tick = self.stamp.tick = tick
+        self.clock.now_us = self.stamp.time_us = time_us
+        self.stamp.stage = done_t.FINAL
+        self.component.finalize()
+        return self._written()
+
+    def _written(self) -> list[tuple[str, bytes]]:
         written = []
         for channel, writer in self.writers.items():
             if writer.pending:

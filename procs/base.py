@@ -72,6 +72,11 @@ class Base(Component):
         else:
             self._report()
 
+    def finalize(self) -> None:
+        """Leaves the wheels stopped."""
+        self.wheel_command.value = wheel_command_t()
+        self.wheel_command.write()
+
     def _add(self, state: wheel_state_t) -> None:
         first, second, third = state.wheel_m_s
         if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.wheel_m_s):

@@ -50,6 +50,12 @@ class Kicker(Component):
         else:
             self._report()
 
+    def finalize(self) -> None:
+        """Leaves ball handling off and no kick waiting."""
+        self.kicker_drive.value = kicker_drive_t()
+        self.kicker_drive.value.kick_id = self.kicker_sensor.value.kick_id
+        self.kicker_drive.write()
+
     def _report(self) -> None:
         state, sensor = self.kicker_state.value, self.kicker_sensor.value
         state.ball_held, state.charged, state.kicks = sensor.ball_held, sensor.charged, self._kicks

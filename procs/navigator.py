@@ -63,6 +63,11 @@ class Navigator(Component):
             self._drive(target, model)
         self.navigator_state.write()
 
+    def finalize(self) -> None:
+        """Leaves the motors off."""
+        self.motor_command.value = motor_command_t()
+        self.motor_command.write()
+
     def _fresh(self, reader: Reads[drive_target_t] | Reads[world_model_t]) -> bool:
         return reader.has_value and self.clock.since_s(reader.header.time_us) <= self.config.target_timeout_s
 

@@ -54,6 +54,11 @@ class Skiller(Component):
         self._drive(step.drive)
         self._kick(step)
 
+    def finalize(self) -> None:
+        """Leaves the robot without a target and the ball handling off."""
+        self._drive(None)
+        self._kick(Step(status=Status.INACTIVE))
+
     def _scene(self, command: skill_command_t) -> Scene:
         kicker = self.kicker_state.value
         game = game_of(self.game_state.value, team_number(self._robot), self._frame)

@@ -194,13 +194,17 @@ class Host:
         return runner
 
     def _finalize(self) -> None:
+        """Finalizes the components and sends what they wrote, with a last done: it counts if the run goes on."""
+        tick, time_us = max((runner.stamp.tick, runner.stamp.time_us) for runner in self._runners.values())
+        written: list[tuple[str, bytes]] = []
         for name, runner in reversed(self._runners.items()):
             self.figures[name].state = "finalizing"
             if self._progress:
                 self._progress.works(self._assignment.host, self._index[name])
             with self._guard(name, "finalize"):
-                runner.component.finalize()
+                written += runner.finalize(tick, time_us)
             self.figures[name].state = "stopped"
+        self._publish(written, tick, done_t.FINAL, -1, 0, "")
 
     def _receive_tick(self, source: socket.socket) -> tick_t | None:
         try:
@@ -275,11 +279,16 @@ class Host:
             next_us = max(next_us, runner.time_source.next_us)
         if self._progress:
             self._progress.works(self._assignment.host, NOBODY)
+        wishes = self._wishes() if self._wishing else ""
+        self._publish(written, tick.tick, tick.stage, next_us, start_us - began_us, wishes)
+
+    def _publish(
+        self, written: list[tuple[str, bytes]], tick: int, stage: int, next_us: int, busy_us: int, wishes: str
+    ) -> None:
         marks = self._outputs.publish(written)
         done = self._message
-        done.tick, done.stage, done.next_time_us = tick.tick, tick.stage, next_us
-        done.wishes = self._wishes() if self._wishing else ""
-        done.busy_us = start_us - began_us
+        done.tick, done.stage, done.next_time_us, done.busy_us = tick, stage, next_us, busy_us
+        done.wishes = wishes
         done.channel, done.sequence = list(marks), list(marks.values())
         self._done = sync.encode_done(done)
         self._sender.publish(sync.DONE, self._done, self._sync_port)

@@ -49,6 +49,10 @@ class Actor:
         self.runner.wishes()  # what came of them is in the recording
         return written
 
+    def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
+        """What it writes when it is stopped."""
+        return self.runner.finalize(tick, time_us)
+
 
 def _silent(line: log_t) -> None:
     """The recorded run has logged it already."""

@@ -17,7 +17,7 @@ from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
-from lcmtypes.core import change_t, tick_event_t
+from lcmtypes.core import change_t, done_t, tick_event_t
 
 
 class Replay:
@@ -44,6 +44,8 @@ class Replay:
         ]
         self._actors: dict[int, list[Actor]] = {}
         self._holder = ""  # component that has the main loop
+        self._leaving: dict[int, list[Actor]] = {}  # were asked to stop and have not finalized yet
+        self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
         self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
         self._newest: dict[str, bytes] = {}
         self._sequences: dict[str, int] = {}
@@ -73,12 +75,16 @@ class Replay:
                 self._holder = self._plan.components[event.tick].name if event.tick != NOBODY else ""
             elif event.kind == tick_event_t.STARTED:
                 self._start(event.index, event.stage, event.tick)
-            elif event.kind in (tick_event_t.LOST, tick_event_t.STOPPED):
+            elif event.kind == tick_event_t.STOPPED:
+                self._leaving[event.index] = self._actors.pop(event.index, [])
+            elif event.kind == tick_event_t.LOST:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, place, stage, record.time_us)
             elif event.kind == tick_event_t.DONE:
-                if (event.index, event.tick, event.stage) not in self._pending:
+                if event.stage == done_t.FINAL:
+                    self._finalize(event.index, event.tick)
+                elif (event.index, event.tick, event.stage) not in self._pending:
                     self._iterate(event.index, event.tick, event.stage, stage, record.time_us)
                 self._done(event.index, event.tick, event.stage)
 
@@ -92,6 +98,7 @@ class Replay:
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings after that change, then takes over what was changed since."""
+        self._end(host)
         self._actors[host] = []
         for index in self._plan.hosts[host].components:
             if index not in self._chosen:
@@ -111,10 +118,12 @@ class Replay:
     def _end(self, host: int) -> None:
         """What it was late with it takes along."""
         self._actors.pop(host, None)
+        self._leaving.pop(host, None)
         self._pending = {key: made for key, made in self._pending.items() if key[0] != host}
 
     def _iterate(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
         made = []
+        self._time_us[host] = time_us
         for actor in self._actors.get(host, []):
             actor.runner.main_loop.holder = self._holder
             if stage in actor.plan.stages:
@@ -122,6 +131,13 @@ class Replay:
                     made.append((actor, actor.iterate(tick, place, stage, time_us)))
                 self.iterations += 1
         self._pending[host, tick, place] = made
+
+    def _finalize(self, host: int, tick: int) -> None:
+        made = []
+        for actor in reversed(self._leaving.pop(host, [])):
+            with self._failing(actor.plan, "finalize"):
+                made.append((actor, actor.finalize(tick, self._time_us.get(host, 0))))
+        self._pending[host, tick, done_t.FINAL] = made
 
     @contextmanager
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
@@ -142,7 +158,7 @@ class Replay:
             data = self._hidden.pop((channel, tick, place), None)
             if data:
                 recorded[channel] = data
-                self._sequences[channel] = sequence_of(data[-1])
+                self._sequences[channel] = sequence_of(data[-1])  # a successor counts on from here
                 self._revealed.append((channel, data))
         for actor, written in self._pending.pop((host, tick, place)):
             for channel in actor.runner.writers:

@@ -39,6 +39,8 @@ class Hosts:
         self.on_stopped: Callable[[HostEntry], None] = lambda _: None
         self.asked: set[int] = set()
         """Hosts whose desired state was changed and that do not have it yet."""
+        self.leaving: set[int] = set()
+        """Hosts that were asked to stop and have not finalized yet."""
         self.settings_of: Callable[[HostEntry], dict[str, str]] = lambda _: {}
         self._plan = plan
         self._zygote = zygote
@@ -99,6 +101,7 @@ class Hosts:
                 self.asked.discard(entry.index)
             elif entry.leaves:
                 entry.leaving(monotonic_us())
+                self.leaving.add(entry.index)
                 self.on_stopped(entry)
                 self._signal(entry, signal.SIGTERM)
             elif entry.joins:
@@ -244,6 +247,9 @@ class Hosts:
 
     def _ended(self, entry: HostEntry, code: int, core: bool = False) -> None:
         asked = entry.state == "stopping"
+        if asked:
+            self._mailbox.drain()  # its last done came before its end
+        self.leaving.discard(entry.index)
         culprit = self._culprit(entry)
         entry.ended(code, monotonic_us(), self._stopping, core, culprit)
         self._ledger.void(entry.index, entry.incarnation + 1)

@@ -121,6 +121,8 @@ class MainLoop:
         self._hosts.steer()
         if stands:
             return
+        if self._hosts.leaving and self._lockstep:
+            self._see_off()
         self._remind()
         if self.turns.asked:
             self._decide()
@@ -219,6 +221,12 @@ class MainLoop:
                 owed, stage = self._owed[entry.index]
                 self._sender.publish(sync.TICK, owed, self._ports.stage(stage))
 
+    def _see_off(self) -> None:
+        """Waits until those who leave have finalized: what they wrote then is visible in the tick that begins."""
+        while self._hosts.leaving and not self._interrupted():
+            self._mailbox.pump(LOOK_US)
+            self._hosts.maintain()
+
     def _break_off(self, now_us: int) -> None:
         """Kills what shall stop but keeps the loop from reaching the boundary at which it would."""
         for index in self._outstanding:
@@ -234,6 +242,8 @@ class MainLoop:
             return
         entry = self._hosts.table[done.host]
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
+            if done.incarnation == entry.incarnation and entry.state == "stopping":
+                self._on_last_done(entry, done)
             return
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
@@ -249,6 +259,20 @@ class MainLoop:
             return
         if entry.changes:
             entry.told()
+        self._take(done)
+
+    def _on_last_done(self, entry: HostEntry, done: done_t) -> None:
+        """Of one that leaves the loop: of the iteration that it was late with, then of what it wrote in finalize."""
+        if entry.busy == (done.tick, done.stage):
+            entry.busy = None
+        elif done.stage != done_t.FINAL or entry.index not in self._hosts.leaving:
+            return
+        else:
+            self._hosts.leaving.discard(entry.index)
+        self._take(done)
+
+    def _take(self, done: done_t) -> None:
+        """What it says becomes visible with the next stage."""
         for channel, sequence in zip(done.channel, done.sequence, strict=True):
             self._ledger.publish(channel, sequence)
             self.records.mark(channel, sequence)

@@ -40,7 +40,7 @@ class Mailbox:
         signal.set_wakeup_fd(write, warn_on_full_buffer=False)
         for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             signal.signal(number, lambda received, _frame: self.signals.append(received))
-        self.watch(self._socket.fileno(), self._receive)
+        self.watch(self._socket.fileno(), self.drain)
         self.watch(self._wakeup, self._drain_wakeup)
 
     def watch(self, descriptor: int, handler: Handler) -> None:
@@ -71,7 +71,8 @@ class Mailbox:
     def _drain_wakeup(self) -> None:
         os.read(self._wakeup, 1024)
 
-    def _receive(self) -> None:
+    def drain(self) -> None:
+        """Handles the dones and states that have arrived."""
         while True:
             try:
                 datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)

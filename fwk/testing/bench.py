@@ -118,3 +118,9 @@ class Bench:
                     port = self._ports[channel]
                     port.sent.append(messages.decode(port.message_type, data, channel))
                 fresh = {}
+
+    def finalize(self) -> None:
+        """Ends the component; what it writes is found as sent."""
+        for channel, data in self.runner.finalize(self.tick, self.time_us):
+            port = self._ports[channel]
+            port.sent.append(messages.decode(port.message_type, data, channel))

@@ -117,3 +117,10 @@ def test_after_a_long_silence_only_the_last_period_counts() -> None:
     base.iterate(100, stage="sensor_acquire")
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
+
+
+def test_it_leaves_the_wheels_stopped() -> None:
+    base = bench()
+    assert drive(base, 20, vx_m_s=1.0, enabled=True).vx_m_s == pytest.approx(1.0)
+    base.finalize()
+    assert tuple(base.port("wheel_command").sent[-1].wheel_m_s) == (0.0, 0.0, 0.0)

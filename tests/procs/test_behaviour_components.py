@@ -210,3 +210,20 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
             command = newest(bench, "motor_command")
             assert math.hypot(command.vx_m_s, command.vy_m_s) <= 3.1
             assert abs(command.omega_rad_s) <= 5.1
+
+
+def test_a_stopped_navigator_leaves_the_motors_off() -> None:
+    bench = navigate(5, x_m=5.0, heading_rad=math.pi / 2)
+    bench.finalize()
+    command = newest(bench, "motor_command")
+    assert (command.enabled, command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (False, 0.0, 0.0, 0.0)
+
+
+def test_a_stopped_skiller_leaves_no_target_no_kick_and_no_ball_handling() -> None:
+    bench = Bench(Skiller, "cyan2/skiller")
+    bench.component.kick_command.value.kick_id = 3
+    bench.component.kick_command.value.dribble = True
+    bench.finalize()
+    kick = newest(bench, "kick_command")
+    assert (kick.kick_id, kick.speed_m_s, kick.dribble) == (3, 0.0, False)
+    assert newest(bench, "drive_target").stop

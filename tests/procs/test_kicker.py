@@ -80,3 +80,10 @@ def test_the_state_is_what_the_sensor_says(kicker: Bench) -> None:
     act(kicker, sensor={"ball_held": True, "charged": False, "kick_id": 4})
     state = kicker.port("kicker_state").sent[-1]
     assert (state.ball_held, state.charged, state.kick_id) == (True, False, 4)
+
+
+def test_it_leaves_ball_handling_off_and_no_kick_waiting(kicker: Bench) -> None:
+    act(kicker, {"kick_id": 1, "speed_m_s": 8.0, "dribble": True}, {"charged": True})
+    kicker.finalize()
+    drive = kicker.port("kicker_drive").sent[-1]
+    assert (drive.kick_id, drive.speed_m_s, drive.dribble) == (0, 0.0, False)

@@ -43,8 +43,8 @@ class Played:
         self.sent: list[tuple[bytes, bytes]] = []
         self.logged: list[log_t] = []
         self._mailbox = cast(Any, SimpleNamespace(watch=lambda *_: None, pump=self._pump, pump_until=self._pump))
-        hosts = SimpleNamespace(table=self.table, unsettled=False, maintain=lambda: None, steer=lambda: None)
-        self._hosts = cast(Any, hosts)
+        self._hosts = cast(Any, SimpleNamespace(table=self.table, unsettled=False, leaving=set()))
+        self._hosts.maintain = self._hosts.steer = lambda: None
         socket = SimpleNamespace(fileno=lambda: 0)
         sender = SimpleNamespace(socket=socket, publish=lambda channel, data, _: self.sent.append((channel, data)))
         self.loop = MainLoop(
