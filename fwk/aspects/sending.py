@@ -14,6 +14,11 @@ TIMEOUT_S = 10.0
 _STATES = {**{wire: state for state, wire in WIRE.items()}, answer_t.FORGOTTEN: CommandState.FAILED}
 
 
+def state_of(answer: answer_t) -> CommandState:
+    """What an answer says has become of a command."""
+    return _STATES[answer.state]
+
+
 class Future:
     """What has become of a command as of this iteration; nothing changes while one runs."""
 
@@ -37,7 +42,7 @@ class Future:
     def take(self, message: Any) -> None:
         """For the framework: an answer has come."""
         answer: answer_t = message.answer
-        self.state, self.reason = _STATES[answer.state], answer.reason
+        self.state, self.reason = state_of(answer), answer.reason
 
     def end(self, state: CommandState, reason: str) -> None:
         """For the framework: no answer can come any more, or none is waited for."""

@@ -96,18 +96,18 @@ def _message(answer: dict[str, Any]) -> Iterator[str]:
     )
     for name, value in answer["value"].items():
         if name != "header":
-            yield from _field(name, value, "  ")
+            yield from field_lines(name, value, "  ")
 
 
-def _field(name: str, value: Any, indent: str) -> Iterator[str]:
+def field_lines(name: str, value: Any, indent: str) -> Iterator[str]:
     """A line a value; below a struct, and below each struct of a list, its own fields."""
     if isinstance(value, dict):
         yield f"{indent}{name}:"
         for key, below in value.items():
-            yield from _field(key, below, f"{indent}  ")
+            yield from field_lines(key, below, f"{indent}  ")
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         for number, item in enumerate(value):
-            yield from _field(f"{name}[{number}]", item, indent)
+            yield from field_lines(f"{name}[{number}]", item, indent)
     else:
         yield f"{indent}{name}: {_number(value)}"
 

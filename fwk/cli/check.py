@@ -85,6 +85,8 @@ def _channel_table(plan: Plan) -> Table:
 
 
 def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
+    if channel.of_tools:
+        return "fwk call", ""
     if channel.writer == NOBODY:
         return ("programs outside" if channel.name in plan.outside else "nobody"), ""
     writer = plan.components[channel.writer]

@@ -6,6 +6,7 @@ import socket
 from collections.abc import Iterator
 from typing import Any, Self
 
+from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import address
 
 TIMEOUT_S = 5.0
@@ -49,16 +50,17 @@ class Client:
         self._send(verb, fields)
         return self._answer(timeout_s or self._timeout_s)
 
-    def follow(self, verb: str, **fields: Any) -> Iterator[dict[str, Any]]:
-        """Sends a request and gives all its answers, until the run ends.
+    def follow(self, verb: str, within_s: float | None = None, **fields: Any) -> Iterator[dict[str, Any]]:
+        """Sends a request and gives all its answers, until the run ends or that much time has passed.
 
         Raises:
             ControlError: refused.
         """
         self._send(verb, fields)
+        end_us = None if within_s is None else monotonic_us() + round(within_s * US_PER_S)
         while True:
             try:
-                yield self._answer(None)
+                yield self._answer(None, end_us)
             except EOFError:
                 return
 
@@ -66,13 +68,17 @@ class Client:
         with contextlib.suppress(BrokenPipeError):  # refused: the reason can be read
             self._socket.sendall(json.dumps({"verb": verb, **fields}).encode() + b"\n")
 
-    def _answer(self, timeout_s: float | None) -> dict[str, Any]:
-        self._socket.settimeout(timeout_s)
+    def _answer(self, timeout_s: float | None, end_us: int | None = None) -> dict[str, Any]:
+        """The next answer. EOFError: there is none any more, or none before `end_us`."""
         parts = [self._rest]
         while b"\n" not in parts[-1]:
+            left_s = timeout_s if end_us is None else max(1, end_us - monotonic_us()) / US_PER_S
+            self._socket.settimeout(left_s)
             try:
                 data = self._socket.recv(_CHUNK)
             except TimeoutError as error:
+                if end_us is not None:
+                    raise EOFError from error
                 raise ControlError(f"the run has not answered within {timeout_s:g} s") from error
             except ConnectionError:
                 data = b""

@@ -122,10 +122,21 @@ class Watch(_Request):
     channel: str
 
 
+class Call(_Request):
+    """Asked of the gateway: a command for a component; an answer at once and for each answer of the component."""
+
+    verb: Literal["call"]
+    name: str
+    data: str
+    """The command's message, encoded, in hexadecimal digits; header and expiry are filled in."""
+    expires_s: float = Field(gt=0.0, allow_inf_nan=False, le=1e9)
+    """Logical time after which it is not begun any more."""
+
+
 SupervisorRequest = (
     Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
 )
-GatewayRequest = Channels | Show | Watch
+GatewayRequest = Channels | Show | Watch | Call
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
 to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])
 

@@ -1,6 +1,7 @@
 """The blackboard from outside: channels' newest messages for whoever asks, each new one for whoever watches."""
 
 import contextlib
+from collections.abc import Callable
 from typing import Any
 
 from fwk import messages
@@ -19,8 +20,9 @@ _BYTES_SHOWN = 64
 class Board:
     """A sink of the gateway that answers questions."""
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, call: Callable[[requests.Call, Connection], None]) -> None:
         self._plan = plan
+        self._call = call
         self._channels = {channel.name: channel for channel in plan.channels}
         self._newest: dict[str, bytes] = {}
         self._arrived_us: dict[str, int] = {}
@@ -62,6 +64,9 @@ class Board:
             if isinstance(request, requests.Channels):
                 connection.reply({"ok": True, "channels": [self._row(each) for each in self._plan.channels]})
                 return
+            if isinstance(request, requests.Call):
+                self._call(request, connection)
+                return
             answer = self._shown(self._known(request.channel))
             if isinstance(request, requests.Watch):
                 self._watching.setdefault(request.channel, []).append(connection)
@@ -84,7 +89,7 @@ class Board:
         return {
             "channel": channel.name,
             "type": channel.type_name,
-            "writer": names[channel.writer] if channel.writer != NOBODY else "programs outside" if outside else "",
+            "writer": names[channel.writer] if channel.writer != NOBODY else _stranger(channel, outside),
             "outside": outside,
             "readers": [names[index] for index in channel.readers],
             "messages": self._counts[channel.name],
@@ -104,6 +109,10 @@ class Board:
         except MessageError as error:
             raise RequestError(str(error)) from error
         return {**row, "value": value}
+
+
+def _stranger(channel: ChannelPlan, outside: bool) -> str:
+    return "fwk call" if channel.of_tools else "programs outside" if outside else ""
 
 
 def plain(value: Any) -> Any:

@@ -4,7 +4,7 @@ import select
 import socket
 import struct
 from collections.abc import Callable
-from typing import Protocol
+from typing import Any, Protocol
 
 from fwk.aspects.logging import Logger
 from fwk.bus import sync, wire
@@ -12,6 +12,7 @@ from fwk.bus.ports import Ports
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import Clock
+from fwk.gateway.outside import Outside
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
 from fwk.messages import Header, MessageError, sequence_of
@@ -47,10 +48,12 @@ class Gateway:
         self._names = {channel.name for channel in plan.channels}
         self._ports = Ports.of(plan)
         self._sender = Sender(self._ports.host(self._ports.gateway))
-        self._clock = Clock(plan.period_us)
-        self.log = Logger("gateway", self._clock, self._log_line)
+        self.clock = Clock(plan.period_us)
+        self.log = Logger("gateway", self.clock, self._log_line)
         self._complaints = Complaints(self.log)
         self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
+        tools = [channel for channel in plan.channels if channel.of_tools]
+        self._outside = Outside(tools, self._ports, self._sender, self._inputs, self.clock)
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
@@ -73,7 +76,8 @@ class Gateway:
     def serve(self) -> None:
         """Works until the supervisor closes the control connection."""
         while self._open:
-            self._poller.poll(100)
+            if not self._poller.poll(100) and self._outside.marks:
+                self._acknowledge()  # the main loop may have lost what it was told
             self._handle_own()
             self._hear_strangers()
             self._receive_lines()
@@ -90,6 +94,17 @@ class Gateway:
         for source in (self._records, self._lines, self._status, self._sender.socket):
             source.close()
 
+    def take_in(self, channel: str, message: Any) -> int:
+        """Makes a message from outside one of the run, visible from one of the next ticks on; returns its number.
+
+        Raises:
+            Full: too many wait for the next tick.
+            MessageError: it cannot be encoded.
+        """
+        sequence = self._outside.take_in(channel, message)
+        self._acknowledge()
+        return sequence
+
     def _receive_records(self) -> None:
         for data in self._drain(self._records, b"fwk/record"):
             record = sync.decode_record(data)
@@ -105,7 +120,7 @@ class Gateway:
             self._acknowledge()
 
     def _take(self, record: tick_record_t, recorded: bytes) -> bool:
-        self._clock.tick, self._clock.now_us = record.tick, record.time_us
+        self.clock.tick, self.clock.now_us = record.tick, record.time_us
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         if not self._inputs.wait(moved, self._handle_own):
             return False
@@ -115,6 +130,7 @@ class Gateway:
                 self._newest[box.plan.index] = data
                 header = Header.of(data)
                 collected.append((header.tick, header.stage, box.plan.index, header.sequence, box.plan.name, data))
+        self._outside.recorded(record)
         collected.sort()
         for sink in self.sinks:
             for *_, channel, data in collected:
@@ -132,6 +148,8 @@ class Gateway:
             -1,
             -1,
         )
+        marks = self._outside.marks
+        done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
         self._sender.publish(sync.DONE, sync.encode_done(done), self._ports.sync)
 
     def _ask_for_records(self) -> None:
@@ -151,7 +169,7 @@ class Gateway:
 
     def _emit(self, channel: str, data: bytes) -> None:
         for sink in self.sinks:
-            sink.message(channel, data, self._clock.now_us)
+            sink.message(channel, data, self.clock.now_us)
 
     def _hear_strangers(self) -> None:
         while self._public:
@@ -201,9 +219,10 @@ class Gateway:
         takes part in, and with it the next record, may be waiting for it.
         """
         box = self._inputs.box(fetch.channel)
-        found = box.held(fetch.first_sequence, fetch.last_sequence)
+        kept = self._outside.kept(fetch.channel, fetch.first_sequence, fetch.last_sequence)
+        found = box.held(fetch.first_sequence, fetch.last_sequence) if kept is None else kept
         newest = self._newest.get(fetch.channel)
-        if newest and fetch.first_sequence <= sequence_of(newest) <= fetch.last_sequence:
+        if kept is None and newest and fetch.first_sequence <= sequence_of(newest) <= fetch.last_sequence:
             found.insert(0, (sequence_of(newest), newest))
         expected = fetch.first_sequence
         for number, data in [*found, (fetch.last_sequence + 1, b"")]:

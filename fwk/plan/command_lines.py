@@ -12,6 +12,8 @@ from fwk.plan.names import CHANNEL_BYTES
 from fwk.plan.wish import Report, Wish
 
 ANSWERS = "answers"
+OUTSIDE = "outside"
+"""Tools, as if they were one sender; their commands come through the control socket."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +116,9 @@ class CommandLines:
         answers = f"{target}@{ANSWERS}"
         self._add(owner or senders[0], Line(answers, reply, owner.index if owner else NOBODY, _indices(senders)))
         names = []
+        if owner:
+            names.append(f"{target}@{OUTSIDE}")
+            self._add(owner, Line(names[-1], command, NOBODY, (owner.index,)))
         for sender in sorted(senders, key=lambda each: each.name):
             names.append(f"{target}@{sender.name}")
             self._add(sender, Line(names[-1], command, sender.index, (owner.index,) if owner else ()))
@@ -122,6 +127,9 @@ class CommandLines:
             self.ports[owner.index, owner.port.attribute] = (answers, *names)
 
     def _add(self, end: _End, line: Line) -> None:
+        if end.name in (ANSWERS, OUTSIDE):
+            text = f"a component that is called '{end.name}' cannot send or carry out commands; rename it"
+            self._report(end.name, end.port.attribute, text)
         size = len(line.name.encode())
         if size > CHANNEL_BYTES:
             text = f"'{line.name}' would have {size} bytes, LCM carries {CHANNEL_BYTES}; shorten a name"

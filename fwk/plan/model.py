@@ -65,6 +65,11 @@ class ChannelPlan:
     images: bool = False
     """Whether frames lie in a shared-memory ring beside it."""
 
+    @property
+    def of_tools(self) -> bool:
+        """Whether it carries commands of tools, which `fwk call` sends."""
+        return self.writer == NOBODY and self.name.endswith("@outside")
+
 
 @dataclass(frozen=True)
 class HostPlan:

@@ -69,6 +69,8 @@ class Recording:
         plan = self.plan
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
+        if event.kind == tick_event_t.DONE and event.stage < 0:
+            return event.index == len(plan.hosts)  # the gateway: messages from outside
         return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 
     def _plan(self) -> Plan:

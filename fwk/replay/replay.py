@@ -42,6 +42,7 @@ class Replay:
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
+        self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
         self._actors: dict[int, list[Actor]] = {}
         self._holder = ""  # component that has the main loop
         self._leaving: dict[int, list[Actor]] = {}  # were asked to stop and have not finalized yet
@@ -81,6 +82,8 @@ class Replay:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, place, stage, record.time_us)
+            elif event.kind == tick_event_t.DONE and event.index == len(self._plan.hosts):
+                self._come_in()
             elif event.kind == tick_event_t.DONE:
                 if event.stage == done_t.FINAL:
                     self._finalize(event.index, event.tick)
@@ -164,6 +167,11 @@ class Replay:
             for channel in actor.runner.writers:
                 ours = [data for name, data in written if name == channel]
                 self._compare(channel, recorded.get(channel, []), ours)
+
+    def _come_in(self) -> None:
+        """What came from outside is visible from the beginning of its tick on."""
+        for key in [key for key in self._hidden if key[0] in self._outside]:
+            self._revealed.append((key[0], self._hidden.pop(key)))
 
     def _compare(self, channel: str, recorded: list[bytes], ours: list[bytes]) -> None:
         for place in range(max(len(recorded), len(ours))):

@@ -11,6 +11,7 @@ from fwk.cli.display import run_display
 from fwk.control.watcher import Watcher
 from fwk.gateway import sinks, targets
 from fwk.gateway.board import Board
+from fwk.gateway.calls import Calls
 from fwk.gateway.gateway import Gateway
 from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
 from fwk.messages import MessageError
@@ -98,12 +99,14 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
     gateway = Gateway(plan, run, control, public)
-    board = Board(plan)
+    calls = Calls(plan, gateway.take_in, gateway.clock)
+    board = Board(plan, calls.call)
     gateway.watch(board.fileno(), board.handle)
     gateway.sinks += [
         *([targets.above(sinks.Mirror(public), plan.log.bus)] if public else []),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         board,
+        calls,
         targets.above(sinks.Display(plan, display), plan.log.console),
         sinks.Newest(plan, control),
     ]

@@ -51,11 +51,13 @@ class Ledger:
         self._dirty = []
         return self.step
 
-    def publish(self, channel: int, sequence: int) -> None:
-        """A writer's done makes its messages visible to the stages that begin from now on."""
-        if sequence > self._latest[channel]:
-            self._latest[channel] = sequence
-            self._dirty.append(channel)
+    def publish(self, channel: int, sequence: int) -> bool:
+        """A writer's done makes its messages visible to the stages that begin from now on; false: they are already."""
+        if sequence <= self._latest[channel]:
+            return False
+        self._latest[channel] = sequence
+        self._dirty.append(channel)
+        return True
 
     def news(self, stage: int, since: int) -> tuple[list[int], list[int]]:
         """Channels read in a stage whose marks moved after step `since`, and the marks."""

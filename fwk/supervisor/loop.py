@@ -78,6 +78,7 @@ class MainLoop:
         self._outstanding: set[int] = set()
         self._said_late: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
+        self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
         self.records = Records(self._ports, run, sender, mailbox)
         self._told = b""  # the newest tick as it was sent
         self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
@@ -127,6 +128,8 @@ class MainLoop:
         if self.turns.asked:
             self._decide()
         self.tick += 1
+        if self._came_in:
+            self._take_in()
         now_us = monotonic_us()
         time_us = self.pace.advance(now_us)
         self.times.tick_begins(now_us)
@@ -150,6 +153,15 @@ class MainLoop:
 
     def _members(self, entry: HostEntry) -> tuple[int, ...]:
         return self._plan.hosts[entry.index].components
+
+    def _take_in(self) -> None:
+        """At the beginning of a tick: what came from outside becomes visible to all its stages."""
+        came_in, self._came_in = self._came_in, {}
+        moved = {channel: number for channel, number in came_in.items() if self._ledger.publish(channel, number)}
+        if moved:
+            for channel, number in moved.items():
+                self.records.mark(channel, number)
+            self.records.event(tick_event_t.DONE, self._gateway, self.tick, -1)
 
     def _run_stage(self, stage: int, members: list[HostEntry], time_us: int) -> None:
         self._step = self._ledger.begin()
@@ -239,6 +251,7 @@ class MainLoop:
     def _on_done(self, done: done_t) -> None:
         if done.host == self._gateway:
             self.records.taken = max(self.records.taken, done.tick)
+            self._came_in.update(zip(done.channel, done.sequence, strict=True))
             return
         entry = self._hosts.table[done.host]
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
