@@ -38,7 +38,7 @@ PORT = 100_000 + os.getpid()  # names a socket, is none
 
 @pytest.fixture
 def board() -> Iterator[Board]:
-    made = Board(plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT))
+    made = Board(plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT), lambda request, connection: None)
     yield made
     made.close()
 
