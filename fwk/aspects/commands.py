@@ -143,6 +143,7 @@ class Queue(Generic[C]):
         self._answers = answers
         self._waiting: deque[C] = deque()
         self._unfinished = dict.fromkeys((source.sender for source in self._sources), 0)
+        self._newest = dict.fromkeys(self._unfinished, 0)  # sequence number of each sender's newest command
         self._fresh_start = True
 
     def __iter__(self) -> Iterator[C]:
@@ -170,6 +171,8 @@ class Queue(Generic[C]):
                 return
         if self._waiting:
             self._expire()
+        for source, header, _ in arrived:
+            self._miss(source, header.sequence)
         arrived.sort(key=lambda each: (each[1].tick, each[1].stage, each[0].sender, each[1].sequence))
         for source, header, data in arrived:
             self._take(source, header, data)
@@ -192,6 +195,13 @@ class Queue(Generic[C]):
 
     def _command(self, source: Source[Any], header: Header, data: bytes) -> C:
         raise NotImplementedError
+
+    def _miss(self, source: Source[Any], sequence: int) -> None:
+        """Tells the sender of what did not come: the owner was away for too long, or it was lost for good."""
+        newest, self._newest[source.sender] = self._newest[source.sender], sequence
+        for missing in range(max(newest + 1, sequence - QUEUE_MAX), sequence):
+            reason = f"it did not reach {self._owner}"
+            self.answer(self.empty(), answer_t.FAILED, source.sender, missing, reason)
 
     def _take(self, source: Source[Any], header: Header, data: bytes) -> None:
         if self._unfinished[source.sender] >= QUEUE_MAX:
@@ -223,7 +233,7 @@ class Queue(Generic[C]):
         """The newest of each sender stands for all before it."""
         for source in self._sources:
             if source.arrived:
-                newest = Header.of(source.arrived[-1]).sequence
+                newest = self._newest[source.sender] = Header.of(source.arrived[-1]).sequence
                 reason = f"{self._owner} was started after it had been sent"
                 self.answer(self.empty(), answer_t.FORGOTTEN, source.sender, newest, reason)
 

@@ -114,6 +114,24 @@ def test_one_that_was_started_later_does_not_begin_what_was_sent_before(parts: A
     assert [sent.height_m for sent in bench.port("lifted").sent] == [2.0]
 
 
+def test_the_sender_of_what_did_not_come_is_told(parts: Any) -> None:
+    bench = Bench(parts.Lifter)
+    lift = bench.port("lift")
+    lift.put(height_m=1.0)
+    bench.iterate()
+    lift.put()
+    lift.put()
+    lift.waiting = []
+    lift.put(height_m=2.0)
+    bench.iterate()
+    reason = "it did not reach robot/component"
+    assert answers(bench)[1:] == [
+        (2, answer_t.FAILED, reason),
+        (3, answer_t.FAILED, reason),
+        (4, answer_t.ACCEPTED, ""),
+    ]
+
+
 def sender(parts: Any, **settings: Any) -> tuple[Bench, Any]:
     """A worker that has sent one command, and its future."""
     bench = Bench(parts.Worker, name="s/worker", flood=1, **settings)
