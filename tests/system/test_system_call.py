@@ -3,11 +3,13 @@
 import os
 import signal
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from fwk.control.address import gateway_address
 from fwk.control.client import Client, RefusedError
+from fwk.messages import type_named
 from fwk.record.types import use_types_of
 from tests.system.command_system import TYPES, command_system
 from tests.system.conftest import Launch
@@ -80,9 +82,7 @@ def test_losses_change_nothing(launch: Launch, folder: Path, ports: PortBlock) -
 
 def encoded(**fields: object) -> str:
     """A lift command in hexadecimal digits."""
-    from lcmtypes.lift import lift_t  # type: ignore[import-not-found]
-
-    message = lift_t()
+    message: Any = type_named("lift.lift_t")()
     for name, value in fields.items():
         setattr(message, name, value)
     return str(message.encode().hex())
