@@ -17,6 +17,7 @@ class Config(BaseModel):
         gain: float = 0.3
         \"\"\"0 keeps the old position, 1 jumps to the newest sighting.\"\"\"
     ```
+    A setting that cannot be changed while the run goes on says so: `port: int = Field(7000, frozen=True)`.
     Unknown keys and wrong types are refused. Nested settings are fields that are `Config`s themselves.
     """
 

@@ -1,5 +1,7 @@
 """Keeps the tree of a robot's frames: where it stands in the world, and what is mounted on it where."""
 
+from pydantic import Field
+
 from fwk import Component, Config, Reads, Writes, channel
 from fwk.aspects.transforms import Transforms, message_of
 from fwk.transform_tree import Transform, TransformTree
@@ -35,11 +37,11 @@ class Mounting(Config):
 class FrameTreeConfig(Config):
     """Settings of the tree."""
 
-    world: str = "world"
+    world: str = Field("world", frozen=True)
     """Frame of the field: origin in its centre."""
-    base: str = "base"
+    base: str = Field("base", frozen=True)
     """Frame of the robot: on the ground below its centre, x forward, y left."""
-    mounted: dict[str, Mounting] = {"camera": Mounting(z_m=0.75), "kicker": Mounting(x_m=0.24)}
+    mounted: dict[str, Mounting] = Field({"camera": Mounting(z_m=0.75), "kicker": Mounting(x_m=0.24)}, frozen=True)
     """Frames that do not move on the robot."""
 
 
@@ -53,21 +55,6 @@ class FrameTree(Component):
     transforms: Writes[transforms_t] = channel("transforms")
 
     def init(self) -> None:
-        self._apply_settings()
-
-    def config_changed(self) -> None:
-        self._apply_settings()
-
-    def loop(self) -> None:
-        pose, config = self.pose, self.config
-        told = list(self._mounted)
-        if pose.has_value and pose.value.localized:
-            stands = Transform.of((pose.value.x_m, pose.value.y_m, 0.0), pose.value.heading_rad)
-            told.append(message_of(config.world, config.base, pose.header.time_us, stands))
-        self.transforms.value.transforms, self.transforms.value.n = told, len(told)
-        self.transforms.write()
-
-    def _apply_settings(self) -> None:
         """Frames in a ring or with two parents are refused here."""
         config, tree = self.config, TransformTree()
         tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
@@ -77,3 +64,12 @@ class FrameTree(Component):
             message_of(mounting.parent, name, 0, mounting.transform, fixed=True)
             for name, mounting in config.mounted.items()
         ]
+
+    def loop(self) -> None:
+        pose, config = self.pose, self.config
+        told = list(self._mounted)
+        if pose.has_value and pose.value.localized:
+            stands = Transform.of((pose.value.x_m, pose.value.y_m, 0.0), pose.value.heading_rad)
+            told.append(message_of(config.world, config.base, pose.header.time_us, stands))
+        self.transforms.value.transforms, self.transforms.value.n = told, len(told)
+        self.transforms.write()

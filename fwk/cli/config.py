@@ -38,9 +38,10 @@ def list_settings(names: SomeSettings = None, bus_port: BusPort = None, as_json:
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
         return
-    table = Table("setting", "value", "type", "origin", "meaning", box=None, pad_edge=False)
+    table = Table("setting", "value", "type", "live", "origin", "meaning", box=None, pad_edge=False)
     for row in rows:
-        table.add_row(_path(row), json.dumps(row["value"]), row["type"], row["origin"], row["meaning"])
+        live = "yes" if row["editable"] else "no"
+        table.add_row(_path(row), json.dumps(row["value"]), row["type"], live, row["origin"], row["meaning"])
     Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
 
 
@@ -94,19 +95,23 @@ def set_settings(
 def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
     """Reads the launch files again and takes over what they say otherwise of settings.
 
-    What was typed with --set when the run began stays; live changes that were not kept are undone.
+    What was typed with --set when the run began stays; live changes that were not kept are undone. Settings that
+    cannot be changed while the run goes on are named.
     """
     with asking(), client.supervisor(bus_port) as run:
         rows = run.ask("settings", names=names or [])["settings"]
         try:
-            changes = differences(rows, load_plan(run.ask("run")["file"]))
+            changes, later = differences(rows, load_plan(run.ask("run")["file"]))
         except PlanError as error:
             typer.echo(error, err=True)
             raise typer.Exit(BAD_INPUT) from error
         answer = run.ask("set", changes=changes, origin="fwk config reload") if changes else {"settings": []}
     if as_json:
-        typer.echo(json.dumps(answer))
-    elif not changes:
+        typer.echo(json.dumps({**answer, "later": later}))
+        return
+    for each in later:
+        typer.echo(f"{each}: from the next run on")
+    if not changes:
         typer.echo("the files say nothing else")
     else:
         _say(answer, "")

@@ -72,6 +72,6 @@ def _one(component: dict[str, Any]) -> Table:
             words = ", ".join(map(str, value)) if isinstance(value, list) else value
             table.add_row(key, f"{words:.3f}" if isinstance(words, float) else str(words))
     for each in component["parameters"]:
-        note = f"({each['type']}, {each['origin']})"
+        note = f"({each['type']}, {each['origin']}{'' if each['editable'] else ', fixed'})"
         table.add_row(f"config.{each['setting']}", f"{json.dumps(each['value'])}  {note}")
     return table

@@ -8,13 +8,15 @@ from fwk.plan.model import Plan
 from fwk.plan.overrides import PLACE
 
 
-def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> list[str]:
+def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], list[str]]:
     """`NAME.SETTING=VALUE` for each setting of a run that the freshly loaded plan has otherwise.
 
-    What was typed with `--set` when the run began stays.
+    First those that can be changed while the run goes on, then the others. What was typed with `--set` when the run
+    began stays.
     """
     values = {component.name: component.config for component in plan.components}
-    found = []
+    now: list[str] = []
+    later: list[str] = []
     for row in rows:
         name, setting = row["component"], row["setting"]
         if name not in values or row["origin"] == PLACE:
@@ -23,5 +25,5 @@ def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> list[str]:
         for key in setting.split("."):
             value = value.get(key) if isinstance(value, dict) else None
         if value is not None and value != row["value"]:
-            found.append(f"{name}.{setting}={flow(value)}")
-    return found
+            (now if row["editable"] else later).append(f"{name}.{setting}={flow(value)}")
+    return now, later

@@ -117,11 +117,16 @@ class RunSettings:
         texts: list[str] = []
         now = _node(self._asked.get(component.index, self._values[component.index]))
         values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
+        said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
+        texts += [
+            f"'{name}' stays as it is while the run goes on; say it in the launch file and start the run again"
+            for name, value in said.items()
+            if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
+        ]
         for text in texts:
             problems.add("", component.name, text)
         if texts:
             return None
-        said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
         return NewSettings(component.index, values, said)
 
     def _rows_of(self, component: ComponentPlan) -> list[dict[str, Any]]:
@@ -179,12 +184,13 @@ def _value(values: Any, dotted: str) -> Any:
 
 @cache
 def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
-    """Type and meaning of a setting; every setting can be edited."""
+    """Type and meaning of a setting, and whether it can be edited while the run goes on."""
     annotation: Any = kind
-    meaning = ""
+    meaning, editable = "", True
     for key in dotted.split("."):
-        annotation, meaning = _field(annotation, key)
-    return {"type": _type_name(annotation), "meaning": meaning, "editable": True}
+        annotation, meaning, fixed = _field(annotation, key)
+        editable = editable and not fixed
+    return {"type": _type_name(annotation), "meaning": meaning, "editable": editable}
 
 
 def _type_name(annotation: Any) -> str:
@@ -194,11 +200,11 @@ def _type_name(annotation: Any) -> str:
     return name.replace("typing.", "")
 
 
-def _field(kind: Any, key: str) -> tuple[Any, str]:
-    """Type and meaning of a field of settings, or of a dataclass in them."""
+def _field(kind: Any, key: str) -> tuple[Any, str, bool]:
+    """Type and meaning of a field of settings, or of a dataclass in them, and whether it is fixed for the run."""
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
-        return found.annotation, found.description or ""
+        return found.annotation, found.description or "", bool(found.frozen)
     if dataclasses.is_dataclass(kind):
-        return get_type_hints(kind).get(key), ""
-    return None, ""
+        return get_type_hints(kind).get(key), "", False
+    return None, "", False

@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 
 import pytest
+from pydantic import Field
 
 from fwk import Component, Config, Writes
 from fwk.control.requests import RequestError
@@ -22,6 +23,7 @@ class TurnerConfig(Config):
     """How fast."""
     inner: Inner = Inner()
     names: list[str] = []
+    fixed: Inner = Field(Inner(), frozen=True)
 
 
 class Turner(Component):
@@ -40,6 +42,7 @@ def settings() -> RunSettings:
     plan = plan_of({"a/turner": Turner, "b/turner": Turner, "c/plain": Plain})
     for component in plan.components[:2]:
         component.origins.update({"gain": "soccer.yaml:4", "inner.deep": "default", "names": "default"})
+        component.origins["fixed.deep"] = "default"
     return RunSettings(plan)
 
 
@@ -50,6 +53,15 @@ def apply(settings: RunSettings, *sets: str) -> None:
 
 def values(settings: RunSettings, pattern: str) -> dict[str, object]:
     return {f"{row['component']}.{row['setting']}": row["value"] for row in settings.rows([pattern])}
+
+
+def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
+    (row,) = settings.rows(["a/turner.fixed"])
+    assert (row["setting"], row["editable"]) == ("fixed.deep", False)
+    text = "a/turner: 'fixed.deep' stays as it is while the run goes on; say it in the launch file and start"
+    with pytest.raises(RequestError, match=re.escape(text)):
+        settings.check(["a/turner.fixed.deep=2", "a/turner.gain=1"])
+    assert [new.said for new in settings.check(["a/turner.fixed.deep=1"])] == [{"fixed.deep": 1}]
 
 
 def test_a_row_says_everything(settings: RunSettings) -> None:
@@ -74,7 +86,12 @@ def test_new_values_are_shown_with_their_origin_once_taken(settings: RunSettings
     assert values(settings, "*.gain") == {"a/turner.gain": 0.3, "b/turner.gain": 0.3}
     for new in found:
         settings.take(new, "test")
-    assert values(settings, "b") == {"b/turner.gain": 1.0, "b/turner.inner.deep": 7, "b/turner.names": []}
+    assert values(settings, "b") == {
+        "b/turner.gain": 1.0,
+        "b/turner.inner.deep": 7,
+        "b/turner.names": [],
+        "b/turner.fixed.deep": 1,
+    }
     origins = {f"{row['component']}.{row['setting']}": row["origin"] for row in settings.rows([])}
     assert origins["a/turner.gain"] == origins["b/turner.inner.deep"] == "test"
     assert origins["a/turner.inner.deep"] == "default"
