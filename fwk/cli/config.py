@@ -7,14 +7,20 @@ from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, Json, asking
+from fwk.cli.conditions import pattern
 from fwk.control import client
 from fwk.control.files_again import differences
 from fwk.control.keep import KeepError, Kept, keep
+from fwk.control.requests import RequestError
+from fwk.control.settings import RunSettings
+from fwk.plan.classes import UnusableError
 from fwk.plan.errors import PlanError
 from fwk.plan.files import host_file, shown
+from fwk.plan.json_schema import schema_of_component, schema_of_file, schema_of_files
 from fwk.plan.load import load_plan
 
 WIDTH_IN_A_PIPE = 200
@@ -24,6 +30,10 @@ SomeSettings = Annotated[
     typer.Argument(metavar="NAME...", help="components, patterns, or NAME.SETTING; all by default"),
 ]
 
+LaunchFile = Annotated[
+    str | None, typer.Option("--file", metavar="FILE", help="as a launch file says it, instead of a run")
+]
+
 
 @config.callback()
 def settings() -> None:
@@ -31,29 +41,64 @@ def settings() -> None:
 
 
 @config.command("list")
-def list_settings(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+def list_settings(
+    names: SomeSettings = None, file: LaunchFile = None, bus_port: BusPort = None, as_json: Json = False
+) -> None:
     """Lists every effective setting with its origin and meaning."""
-    with asking(), client.supervisor(bus_port) as run:
-        rows = run.ask("settings", names=names or [])["settings"]
-    if as_json:
-        typer.echo(json.dumps(rows, indent=2))
-        return
-    table = Table("setting", "value", "type", "live", "origin", "meaning", box=None, pad_edge=False)
-    for row in rows:
-        live = "yes" if row["editable"] else "no"
-        table.add_row(_path(row), json.dumps(row["value"]), row["type"], live, row["origin"], row["meaning"])
-    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
+    _show(_rows(names or [], file, bus_port), as_json)
+
+
+@config.command()
+def search(
+    text: Annotated[
+        str, typer.Argument(metavar="REGEXP", help="found in name, value, origin or meaning, in capitals or not")
+    ],
+    file: LaunchFile = None,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Lists the settings in which a text is found; exit code 1 if there is none."""
+    wanted = pattern(text, "REGEXP")
+    rows = [row for row in _rows([], file, bus_port) if any(map(wanted.search, _texts(row)))]
+    if not rows and not as_json:
+        typer.echo(f"error: '{text}' is found in no setting", err=True)
+        raise typer.Exit(FAILED)
+    _show(rows, as_json)
+
+
+@config.command()
+def schema(
+    of: Annotated[
+        str, typer.Argument(metavar="[FILE|MODULE]", help="a launch file, or a component's module: only its settings")
+    ] = "",
+    host: Annotated[bool, typer.Option("--host", help="of host-specific files, NAME.host.yaml")] = False,
+) -> None:
+    """Prints the JSON Schema of launch files, with all settings and ports of the components that are found from here.
+
+    With FILE it knows the names of its components, too. Editors complete and check with it; see docs/launch-file.md.
+    """
+    try:
+        if of.endswith((".yaml", ".yml")):
+            made = schema_of_file(of, host)
+        elif of:
+            made = schema_of_component(of)
+        else:
+            made = schema_of_files(host)
+    except (PlanError, UnusableError) as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    typer.echo(json.dumps(made, indent=1))
 
 
 @config.command()
 def get(
     path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
+    file: LaunchFile = None,
     bus_port: BusPort = None,
     as_json: Json = False,
 ) -> None:
     """Prints the value of a setting; of several, if the name is a pattern, one a line with its own name."""
-    with asking(), client.supervisor(bus_port) as run:
-        rows = run.ask("settings", names=[path])["settings"]
+    rows = _rows([path], file, bus_port)
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
     elif len(rows) == 1:
@@ -131,6 +176,34 @@ def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = 
                     typer.echo(json.dumps({**row, "tick": answer["tick"]}))
                 else:
                     typer.echo(f"tick {answer['tick']}: {path} = {json.dumps(row['value'])} ({row['origin']})")
+
+
+def _rows(names: list[str], file: str | None, bus_port: int | None) -> list[dict[str, Any]]:
+    with asking():
+        if file is None:
+            with client.supervisor(bus_port) as run:
+                found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
+            return found
+        try:
+            return RunSettings(load_plan(file)).rows(names)
+        except (PlanError, RequestError) as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(BAD_INPUT) from error
+
+
+def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(rows, indent=2))
+        return
+    table = Table("setting", "value", "type", "live", "origin", "meaning", box=None, pad_edge=False)
+    for row in rows:
+        path, value, kind, *others = map(escape, _texts(row))
+        table.add_row(path, value, kind, "yes" if row["editable"] else "no", *others)
+    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
+
+
+def _texts(row: dict[str, Any]) -> tuple[str, ...]:
+    return _path(row), json.dumps(row["value"]), row["type"], row["origin"], row["meaning"]
 
 
 def _say(answer: dict[str, Any], kept: str) -> None:

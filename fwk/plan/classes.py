@@ -121,7 +121,8 @@ def _public(module: ModuleType) -> list[str]:
     return [name for name in vars(module) if not name.startswith("_")]
 
 
-def _components(module: ModuleType) -> dict[str, type[Component]]:
+def components_in(module: ModuleType) -> dict[str, type[Component]]:
+    """The components that a module defines, by name."""
     return {
         name: value
         for name, value in vars(module).items()
@@ -131,7 +132,7 @@ def _components(module: ModuleType) -> dict[str, type[Component]]:
 
 
 def _only(module: ModuleType) -> type[Component]:
-    found = _components(module)
+    found = components_in(module)
     if len(found) == 1:
         return next(iter(found.values()))
     if not found:
@@ -143,7 +144,7 @@ def _only(module: ModuleType) -> type[Component]:
 def _named(module: ModuleType, wanted: str) -> type[Component]:
     found = getattr(module, wanted, None)
     if found is None:
-        known = _components(module)
+        known = components_in(module)
         raise UnusableError(f"module '{module.__name__}' has no component '{wanted}'; {hint(wanted, known)}")
     if not inspect.isclass(found) or not issubclass(found, Component):
         raise UnusableError(f"{module.__name__}:{wanted} is no component; derive it from fwk.Component")

@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
 PACE_MAX = "max"
 
@@ -25,18 +25,22 @@ def _as_scalar(value: Any) -> Any:
     return value
 
 
-Words = Annotated[list[str], BeforeValidator(_as_list)]
+_WORDS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
+_PACE = {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"const": PACE_MAX}]}
+_SCALAR = {"type": ["string", "number", "boolean"]}
+
+Words = Annotated[list[str], BeforeValidator(_as_list), WithJsonSchema(_WORDS)]
 """One word or a list of them."""
-Pace = Annotated[float, BeforeValidator(_as_pace)]
+Pace = Annotated[float, BeforeValidator(_as_pace), WithJsonSchema(_PACE)]
 """Logical seconds per wall second; `max` is 0: as fast as it goes."""
-Scalar = Annotated[Any, BeforeValidator(_as_scalar)]
+Scalar = Annotated[Any, BeforeValidator(_as_scalar), WithJsonSchema(_SCALAR)]
 TargetLevel = Literal["debug", "info", "warning", "error", "off"]
 """Lines of this level and worse; `off`: none."""
 SettingsByComponent = dict[str, dict[str, Any]]
 
 
 class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
 
 class RestartEntry(_Entry):
@@ -83,10 +87,15 @@ class LogEntry(_Entry):
     """Where lines of text go, and how many of them."""
 
     console: TargetLevel | None = None
+    """Lines on the terminal."""
     file: TargetLevel | None = None
+    """Lines in `fwk.log`, for people."""
     json_lines: TargetLevel | None = None
+    """Lines in `fwk.log.jsonl`, for programs."""
     bus: TargetLevel | None = None
+    """Lines on the public bus."""
     recording: TargetLevel | None = None
+    """Lines in the recording."""
     file_mb: float | None = Field(None, ge=0.01)
     """Size at which a file is put aside and a new one begun."""
     files: int | None = Field(None, ge=1, le=1000)
@@ -99,20 +108,29 @@ class HostFile(_Entry):
     """What differs from machine to machine; the file beside a launch file may say only this."""
 
     period_s: float | None = Field(None, ge=0.001, le=10.0)
+    """Logical time from tick to tick."""
     clock: Literal["simulated", "wall"] | None = None
+    """`wall` keeps real time and goes on without the late."""
     speed: Pace | None = None
+    """Logical seconds per second, or `max`."""
     seed: int | None = Field(None, ge=0)
     stage_time_s: float | None = Field(None, ge=0.0)
+    """With `clock: wall`: how long a stage may take; 0: the period."""
     loop_time_s: float | None = Field(None, ge=0.0)
+    """How long a tick should take; 0: the period."""
     loop_time_warnings: bool | None = None
+    """Whether it is said when ticks take longer."""
     public_url: str | None = None
+    """Where ordinary LCM programs listen and write."""
     log: LogEntry = LogEntry()
     outside: dict[str, str] = {}
     """Channels that other programs may write on the public bus: name to type."""
     hosts: dict[str, Words] = {}
     """Components that share a process: its name to patterns."""
     scoreboard: str | None = None
+    """`module:function` that makes the display's headline."""
     video: str | None = None
+    """`module:function` that draws a recording."""
     config: SettingsByComponent = {}
     """Settings by name pattern."""
 
