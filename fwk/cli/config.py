@@ -13,6 +13,7 @@ from rich.table import Table
 from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, Json, asking
 from fwk.cli.conditions import pattern
 from fwk.control import client
+from fwk.control.client import ControlError
 from fwk.control.files_again import differences
 from fwk.control.keep import KeepError, Kept, keep
 from fwk.control.requests import RequestError
@@ -129,7 +130,10 @@ def set_settings(
             file = host_file(Path(run.ask("run")["file"]))
             _keep(file, changes)
             origin = f"{origin} --save, {shown(file)}"
-        answer = run.ask("set", changes=changes, origin=origin)
+        try:
+            answer = run.ask("set", changes=changes, origin=origin)
+        except ControlError as error:
+            raise type(error)(f"{error}; for later runs it is kept in {shown(file)}" if save else str(error)) from error
     if as_json:
         typer.echo(json.dumps(answer))
         return

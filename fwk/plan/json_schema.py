@@ -188,5 +188,5 @@ def _partial(schema: Schema) -> Schema:
 def _or_mark(schema: Schema) -> Schema:
     if schema.get("type") in ("string", "object", "array") or "$ref" in schema:
         return schema
-    about = {key: schema[key] for key in ("title", "description", "default") if key in schema}
+    about: Schema = {key: schema[key] for key in ("title", "description", "default") if key in schema}
     return {**about, "anyOf": [{key: value for key, value in schema.items() if key not in about}, _MARK]}
