@@ -16,7 +16,7 @@ def ticks(text: str) -> tuple[int, int]:
     Raises:
         BadParameter: it is none of these.
     """
-    found = re.fullmatch(r"(\d*)(\.\.|-)?(\d*)", text, re.ASCII)
+    found = re.fullmatch(r"(\d{0,18})(\.\.|-)?(\d{0,18})", text, re.ASCII)
     if not found or not (found[1] or found[3]):
         raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100..200")
     first = int(found[1] or 0)

@@ -11,8 +11,9 @@ import typer
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.profile import write_profiles
-from fwk.cli.run_dir import RunDirError, make_run_dir
+from fwk.cli.run_dir import RunDirError, make_run_dir, prune
 from fwk.cli.run_files import write_run_files
+from fwk.cli.runs import GB
 from fwk.cli.summary import introduction, summary
 from fwk.plan.errors import PlanError, hint
 from fwk.plan.load import LaunchOptions, load_plan
@@ -118,6 +119,9 @@ def launch(
         )
         for line in introduction(plan):
             typer.echo(line)
+        removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
+        if removed:
+            typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' would keep one")
         outcome = run(plan, options)
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
     for line in summary(plan, options, outcome):

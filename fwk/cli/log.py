@@ -12,13 +12,12 @@ import typer
 from fwk.cli.asking import BusPort, Json, ask, asking
 from fwk.cli.conditions import moment_us, pattern, ticks, times_us
 from fwk.cli.lines import log_line
+from fwk.cli.run_dir import RUNS
 from fwk.control.address import running
 from fwk.control.client import ControlError
 from fwk.gateway.json_log import FILE
 from fwk.record.rotating import names
 from fwk.record.text_log import Filter, from_plain, read_lines
-
-RUNS = Path(".cache", "fwk", "runs")
 
 
 class Level(StrEnum):

@@ -14,7 +14,7 @@ NAMES = (
     *("status", "top", "start", "stop", "restart", "reload", "load", "unload", "kill", "debug"),
     *("pause", "resume", "step", "speed"),
     *("config", "bb", "log", "note", "send", "call"),
-    *("replay", "compare", "log-info", "video", "cam", "spy", "doctor"),
+    *("replay", "compare", "log-info", "runs", "video", "cam", "spy", "doctor"),
 )
 """As typed, in the order of the help: `log-info` is the function or typer app `log_info` of `fwk/cli/log_info.py`."""
 

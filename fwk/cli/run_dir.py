@@ -1,28 +1,119 @@
-"""Makes the folder that keeps what belongs to one run."""
+"""The folders that keep what belongs to one run: made, listed, and removed when there are too many."""
 
+import contextlib
+import fcntl
 import os
 import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from fwk.clock import US_PER_S, wall_us
+
+RUNS = Path(".cache", "fwk", "runs")
+"""Below the home folder."""
+IN_USE = "in-use"
+"""A file in a run directory that every process of the run holds locked."""
+KEEP = "keep"
+"""A file that somebody puts into a run directory that is not to be removed by itself."""
+_NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
 
 
 class RunDirError(Exception):
     """The folder of a run cannot be created; says which and why."""
 
 
+@dataclass(frozen=True)
+class RunDir:
+    """A run directory."""
+
+    path: Path
+    size_bytes: int
+    in_use: bool
+    kept: bool
+
+
 def make_run_dir(name: str, runs: Path | None = None) -> Path:
-    """Creates `<date-time>-<name>-<pid>` in `runs`, by default `~/.cache/fwk/runs`.
+    """Creates `<date-time>-<name>-<pid>` in `runs`, by default `~/.cache/fwk/runs`; in use until this process and all
+    that come from it have ended.
 
     Raises:
         RunDirError: the folder cannot be created.
     """
     when = datetime.fromtimestamp(wall_us() / US_PER_S, UTC).astimezone().strftime("%Y-%m-%dT%H-%M-%S")
     word = re.sub(r"[^\w.-]+", "_", name) or "run"
-    folder = (runs or Path.home() / ".cache" / "fwk" / "runs") / f"{when}-{word}-{os.getpid()}"
+    parent = runs or Path.home() / RUNS
+    folder = parent / f"{when}-{word}-{os.getpid()}"
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        parent.mkdir(parents=True, exist_ok=True)
+        with _alone(parent):
+            folder.mkdir(exist_ok=True)
+            lock = os.open(folder / IN_USE, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+            fcntl.flock(lock, fcntl.LOCK_SH)
     except OSError as error:
         raise RunDirError(f"{folder}: cannot create the run directory there: {error.strerror}") from error
     return folder
+
+
+def run_dirs(runs: Path) -> list[RunDir]:
+    """All run directories, the oldest first; what has another name is none."""
+    found = [path for path in runs.glob("*") if _NAME.fullmatch(path.name) and path.is_dir() and not path.is_symlink()]
+    found.sort(key=lambda path: path.name)
+    return [RunDir(path, _size(path), _in_use(path), (path / KEEP).exists()) for path in found]
+
+
+def prune(runs: Path, keep: int, max_bytes: int) -> list[RunDir]:
+    """Removes the oldest run directories until there are at most `keep`, of that size together; 0: any.
+
+    The newest, those in use and those that somebody wants to keep stay; they count.
+    """
+    removed = []
+    with _alone(runs):
+        there = run_dirs(runs)
+        number, size = len(there), sum(each.size_bytes for each in there)
+        for each in there[:-1]:
+            if not (keep and number > keep) and not (max_bytes and size > max_bytes):
+                break
+            if each.in_use or each.kept:
+                continue
+            shutil.rmtree(each.path, ignore_errors=True)
+            if not each.path.exists():
+                removed.append(each)
+                number, size = number - 1, size - each.size_bytes
+    return removed
+
+
+@contextlib.contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Nobody makes or removes run directories meanwhile."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _in_use(path: Path) -> bool:
+    try:
+        descriptor = os.open(path / IN_USE, os.O_RDWR)
+    except OSError:
+        return False
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return True
+    finally:
+        os.close(descriptor)
+    return False
+
+
+def _size(path: Path) -> int:
+    total = 0
+    for folder, _, files in os.walk(path):
+        for file in files:
+            with contextlib.suppress(OSError):
+                total += os.lstat(os.path.join(folder, file)).st_size
+    return total

@@ -15,13 +15,14 @@ LIBRARIES = ("fwk", "lcm", "numpy", "opencv-python-headless", "pymunk", "filterp
 
 
 def write_run_files(folder: Path, plan: Plan) -> None:
-    """Writes `config.yaml` (every setting with its origin), `versions.json` and the .lcm sources in `lcmtypes/`.
+    """Writes `plan.json`, `config.yaml` (settings with origins), `versions.json` and the .lcm sources in `lcmtypes/`.
 
     Raises:
         RunDirError: a file cannot be written.
     """
     types = folder / "lcmtypes"
     try:
+        (folder / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
         (folder / "config.yaml").write_text("".join(f"{line}\n" for line in _settings(plan)))
         (folder / "versions.json").write_text(json.dumps(_versions(), indent=1) + "\n")
         types.mkdir(exist_ok=True)

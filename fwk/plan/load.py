@@ -18,7 +18,7 @@ from fwk.plan.resolve import Resolved, add_settings, check_clock, resolve
 from fwk.plan.selection import chosen, groups_of
 from fwk.plan.stages import stages_of
 from fwk.plan.starting import check_groups, check_processes, check_starts
-from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of, public_url_of
+from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of, public_url_of, runs_of
 from fwk.plan.wiring import Wiring, wire
 
 _PORTS_END = 65536
@@ -138,6 +138,7 @@ class _Loading:
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": function_of(files, "video", self.folders, problems),
             "log": log_of(files),
+            "runs": runs_of(files),
             **bus_port,
         }
 

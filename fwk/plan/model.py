@@ -95,6 +95,14 @@ class LogPlan:
 
 
 @dataclass(frozen=True)
+class RunsPlan:
+    """How many run directories stay when a run begins, and how large they may be together; 0: any."""
+
+    keep: int = 100
+    size_gb: float = 20.0
+
+
+@dataclass(frozen=True)
 class Plan:
     """Everything that processes of a run have to know."""
 
@@ -126,6 +134,7 @@ class Plan:
     video: str = ""
     """`module:function` that draws the top view of a recording."""
     log: LogPlan = LogPlan()
+    runs: RunsPlan = RunsPlan()
 
     def memory_limit_mb(self, host: int) -> float | None:
         """Memory that a process may take: what its components may together; None if one of them has no limit."""
@@ -157,5 +166,6 @@ class Plan:
             "folders": tuple(data["folders"]),
             "stages": tuple(data["stages"]),
             "log": LogPlan(**data.get("log", {})),
+            "runs": RunsPlan(**data.get("runs", {})),
         }
         return cls(**{**data, **simple, "components": components, "channels": channels, "hosts": hosts})

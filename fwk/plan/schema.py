@@ -104,6 +104,15 @@ class LogEntry(_Entry):
     """Of one component, and of what one process prints; 0: any number."""
 
 
+class RunsEntry(_Entry):
+    """How many run directories stay when a run begins."""
+
+    keep: int | None = Field(None, ge=0)
+    """The newest so many; 0: any number."""
+    size_gb: float | None = Field(None, ge=0.0, le=1e6)
+    """How large they may be together; 0: any size."""
+
+
 class HostFile(_Entry):
     """What differs from machine to machine; the file beside a launch file may say only this."""
 
@@ -123,6 +132,7 @@ class HostFile(_Entry):
     public_url: str | None = None
     """Where ordinary LCM programs listen and write."""
     log: LogEntry = LogEntry()
+    runs: RunsEntry = RunsEntry()
     outside: dict[str, str] = {}
     """Channels that other programs may write on the public bus: name to type."""
     hosts: dict[str, Words] = {}

@@ -9,7 +9,7 @@ from fwk import messages
 from fwk.plan.classes import UnusableError, find_object
 from fwk.plan.errors import Problems, hint
 from fwk.plan.files import Files
-from fwk.plan.model import LogPlan, Plan
+from fwk.plan.model import LogPlan, Plan, RunsPlan
 from fwk.plan.names import mistake_in
 
 _URL = "udpm://"
@@ -86,11 +86,20 @@ def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Prob
 
 
 def log_of(files: Files) -> LogPlan:
-    """Where lines of text go; layers win key by key."""
+    """Where lines of text go."""
+    return LogPlan(**_key_by_key(files, "log"))
+
+
+def runs_of(files: Files) -> RunsPlan:
+    """How many run directories stay."""
+    return RunsPlan(**_key_by_key(files, "runs"))
+
+
+def _key_by_key(files: Files, key: str) -> dict[str, Any]:
     said: dict[str, Any] = {}
     for layer in files.layers:
-        said |= layer.content.log.model_dump(exclude_none=True)
-    return LogPlan(**said)
+        said |= getattr(layer.content, key).model_dump(exclude_none=True)
+    return said
 
 
 def _try(find: Callable[[], object], report: Callable[[str], None]) -> None:

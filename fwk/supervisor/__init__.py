@@ -1,6 +1,5 @@
 """The supervisor: owns plan, clock, marks and main loop, and every process of the run."""
 
-import json
 import secrets
 import signal
 from collections.abc import Mapping
@@ -45,7 +44,6 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     profile = _profile_request(plan, options)
     lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
-    (options.run_dir / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
     number = secrets.randbits(62)
     rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
     zygote = Zygote(plan, number, rings, debug, profile)

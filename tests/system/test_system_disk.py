@@ -101,7 +101,15 @@ def test_kill_9_while_settings_are_set_loses_nothing_that_was_acknowledged(
     Steered(launched, ports)
     dice, acknowledged, killed = random.Random(7), 0, 0
     for number in range(1, 25):
-        command = [BIN / "fwk", "config", "set", f"r/counter.step={number}", "--save", "--bus-port", str(ports.bus)]
+        command = [
+            str(BIN / "fwk"),
+            "config",
+            "set",
+            f"r/counter.step={number}",
+            "--save",
+            "--bus-port",
+            str(ports.bus),
+        ]
         with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as setting:
             with_mercy = number % 4 == 0
             if not with_mercy:

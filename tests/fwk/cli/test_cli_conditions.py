@@ -47,6 +47,7 @@ def test_moments() -> None:
         (ticks, "soon", "--tick: 'soon' is no tick; say 120, or 100..200"),
         (ticks, "..", "is no tick"),
         (ticks, "1..x", "is no tick"),
+        (ticks, "9" * 5000, "is no tick"),
         (times_us, "5", "--time: '5' is no range of seconds; say 1.5..2"),
         (times_us, "..", "is no range"),
         (times_us, "inf..", "is no range"),

@@ -1,0 +1,143 @@
+"""Old run directories go, never the newest, one in use, one that is kept, or what is no run directory."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from fwk.cli.run_dir import IN_USE, RUNS, RunDirError, make_run_dir, prune, run_dirs
+from fwk.cli.runs import runs
+from tests.fwk.cli.cli_processes import PROCS, launch, write_files
+
+
+def make(folder: Path, *days: int, size: int = 1000) -> list[str]:
+    names = [f"2026-01-{day:02}T10-00-00-match-{day}" for day in days]
+    for name in names:
+        (folder / name / "lcmtypes").mkdir(parents=True)
+        (folder / name / "log.lcm").write_bytes(bytes(size))
+        (folder / name / IN_USE).touch()
+    return names
+
+
+def there(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_the_oldest_go_until_few_are_left(tmp_path: Path) -> None:
+    names = make(tmp_path, 3, 1, 2, 4)
+    assert [each.path.name[8:10] for each in prune(tmp_path, 2, 0)] == ["01", "02"]
+    assert there(tmp_path) == sorted(names)[2:]
+    assert prune(tmp_path, 2, 0) == []
+
+
+def test_the_oldest_go_until_they_are_small(tmp_path: Path) -> None:
+    names = make(tmp_path, 1, 2, 3, 4)
+    prune(tmp_path, 0, 2500)
+    assert there(tmp_path) == names[2:]
+    prune(tmp_path, 0, 1)
+    assert there(tmp_path) == names[3:]
+
+
+def test_any_number_of_any_size_may_stay(tmp_path: Path) -> None:
+    make(tmp_path, 1, 2, 3)
+    assert prune(tmp_path, 0, 0) == []
+
+
+def test_what_is_kept_or_no_run_directory_stays(tmp_path: Path) -> None:
+    names = make(tmp_path, 1, 2, 3)
+    (tmp_path / names[0] / "keep").touch()
+    (tmp_path / "my notes").mkdir()
+    (tmp_path / "2026-01-01T09-00-00-other-9").symlink_to(tmp_path / names[1])
+    prune(tmp_path, 1, 0)
+    assert there(tmp_path) == ["2026-01-01T09-00-00-other-9", names[0], names[2], "my notes"]
+
+
+MAKER = """
+import os, sys
+from pathlib import Path
+from fwk.cli.run_dir import make_run_dir
+print(make_run_dir("used", Path(sys.argv[1])).name, flush=True)
+if os.fork() == 0:
+    sys.stdin.read()
+    os._exit(0)
+os._exit(0)
+"""
+
+
+def test_what_is_in_use_by_any_process_of_the_run_stays(tmp_path: Path) -> None:
+    (tmp_path / "2026-01-01T10-00-00-first-1").mkdir()
+    with subprocess.Popen(
+        [sys.executable, "-c", MAKER, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    ) as maker:
+        assert maker.stdout
+        assert maker.stdin
+        used = maker.stdout.readline().strip()
+        newest = "9999-01-01T10-00-00-last-1"
+        (tmp_path / newest).mkdir()
+        assert maker.wait() == 0  # its child lives on
+        assert [each.in_use for each in run_dirs(tmp_path)] == [False, True, False]
+        prune(tmp_path, 1, 0)
+        assert there(tmp_path) == [used, newest]
+        maker.stdin.close()
+        assert maker.stdout.read() == ""  # the child has ended
+    while [each.in_use for each in run_dirs(tmp_path)] == [True, False]:
+        os.sched_yield()
+    prune(tmp_path, 1, 0)
+    assert there(tmp_path) == [newest]
+
+
+def test_a_new_one_is_in_use(tmp_path: Path) -> None:
+    made = make_run_dir("match", tmp_path / "runs")
+    (found,) = run_dirs(tmp_path / "runs")
+    assert (found.path, found.in_use, found.kept) == (made, True, False)
+    (tmp_path / "file").touch()
+    with pytest.raises(RunDirError, match="cannot create the run directory there: "):
+        make_run_dir("match", tmp_path / "file")
+
+
+@pytest.fixture
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / RUNS).mkdir(parents=True)
+    return tmp_path / RUNS
+
+
+def said(*arguments: str, code: int = 0) -> str:
+    result = CliRunner().invoke(runs, arguments)
+    assert result.exit_code == code, result.output
+    return result.output
+
+
+def test_the_commands(home: Path) -> None:
+    names = make(home, 1, 2, 3, size=3_000_000)
+    assert "together" in said("list")
+    said("keep", names[0])
+    rows = json.loads(said("list", "--json"))
+    assert [(row["kept"], row["in_use"], row["size_bytes"]) for row in rows] == [
+        (True, False, 3_000_000),
+        (False, False, 3_000_000),
+        (False, False, 3_000_000),
+    ]
+    assert said("prune", "--keep", "2") == f"removed {names[1]}, 3.0 MB\n"
+    said("release", names[0])
+    said("prune", "--size-gb", "0.004")
+    assert there(home) == names[2:]
+    assert "'nan' is no size; say gigabytes" in said("prune", "--size-gb", "nan", code=2)
+    assert f"did you mean '{names[2]}'?" in said("keep", names[2] + "1", code=2)
+
+
+@pytest.mark.system
+def test_a_run_removes_what_is_too_much_and_says_so(tmp_path: Path) -> None:
+    folder = tmp_path
+    write_files(folder, PROCS)
+    names = make(folder / RUNS, 1, 2, 3)
+    (folder / "launch" / "cards.host.yaml").write_text("runs: {keep: 2}\n")
+    done = launch(folder, "cards.yaml", "--ticks", "3", "--speed", "max")
+    assert done.returncode == 0, done.stdout
+    assert "removed the 2 oldest run directories" in done.stdout
+    assert there(folder / RUNS)[:-1] == names[2:]
+    assert not any(each.in_use for each in run_dirs(folder / RUNS))
