@@ -122,9 +122,7 @@ class _Wiring:
             if pattern not in self._writers and self._may_lack_writer(pattern):
                 self._writers[pattern] = (NOBODY, port)
             elif pattern not in self._writers:
-                right = hint(pattern, self._alike(port), "add a component that writes it, or name another channel")
-                text = f"nobody writes '{pattern}', which {wish.name} reads as '{port.attribute}'; {right}"
-                self._report(wish.name, port.attribute, text)
+                self._report(wish.name, port.attribute, self._missing(wish, port, pattern))
                 names = ()
         self._ports[index][port.attribute] = names
         for name in names:
@@ -133,10 +131,19 @@ class _Wiring:
             if index not in readers:
                 readers.append(index)
 
-    def _alike(self, port: Port) -> list[str]:
-        """Written channels that a port could read."""
+    def _missing(self, wish: Wish, port: Port, channel: str) -> str:
+        """That a channel has no writer, or an image no camera, and which other a port could read."""
         wanted = messages.fingerprint(port.message_type)
-        return [name for name, (_, each) in self._writers.items() if messages.fingerprint(each.message_type) == wanted]
+        alike = [
+            name
+            for name, (_, each) in self._writers.items()
+            if messages.fingerprint(each.message_type) == wanted and (each.images or not port.images)
+        ]
+        if port.images:
+            right = hint(channel, alike, "add a camera that writes it, or name another channel")
+            return f"'{channel}' has no vision master, and {wish.name} looks at it as '{port.attribute}'; {right}"
+        right = hint(channel, alike, "add a component that writes it, or name another channel")
+        return f"nobody writes '{channel}', which {wish.name} reads as '{port.attribute}'; {right}"
 
     def _fits(self, wish: Wish, port: Port, name: str) -> None:
         index, written = self._writers[name]
