@@ -144,6 +144,8 @@ class Runner:
         self.clock.now_us = self.stamp.time_us = time_us
         self.stamp.stage = done_t.FINAL
         self.component.finalize()
+        for port in self._command_ports:
+            port.end()
         return self._written()
 
     def _written(self) -> list[tuple[str, bytes]]:

@@ -177,6 +177,12 @@ class Queue(Generic[C]):
         for source, header, data in arrived:
             self._take(source, header, data)
 
+    def end(self) -> None:
+        """For the framework: the owner was stopped; whatever it has not finished has failed."""
+        waiting, self._waiting = self._waiting, deque()
+        for command in [*self.open, *waiting]:
+            command.fail(f"{self._owner} was stopped")
+
     def answer(self, message: Any, state: int, sender: str, sequence: int, reason: str) -> None:
         """For the framework: sends an answer at the end of the iteration."""
         said: answer_t = message.answer

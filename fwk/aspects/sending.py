@@ -82,6 +82,9 @@ class Outbox(Generic[T, F]):
                 heard = "was accepted and not finished" if future.state is CommandState.ACCEPTED else "was not answered"
                 future.end(CommandState.TIMED_OUT, f"{self.name}: {heard} in time")
 
+    def end(self) -> None:
+        """For the framework: the sender was stopped; what it has sent goes on without it."""
+
     def empty(self) -> Any:
         """For the framework: an answer without content."""
         return self._answers.message_type()

@@ -112,6 +112,21 @@ def test_what_was_sent_to_one_who_did_not_run_is_not_begun_later(
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
 
 
+def test_who_is_stopped_over_it_fails(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    file = folder / "launch/lift.yaml"
+    file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))
+    run = started(launch, ports)
+    with Client(gateway_address(ports.bus), TIMEOUT_S) as client:
+        answers = client.follow("call", TIMEOUT_S, name="r/lift", data=encoded(height_m=1.0), expires_s=100.0)
+        assert [next(answers)["state"] for _ in range(2)] == ["sent", "accepted"]
+        run.steer("stop", "r/lifter")
+        last = next(answers)
+    assert (last["state"], last["reason"]) == ("failed", "r/lifter was stopped")
+    run.steer("start", "r/lifter")
+    run.ticks_pass()
+    assert "byte for byte" in run.fwk("replay", str(run.end()), "--verify")
+
+
 def test_who_dies_over_it_fails(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))

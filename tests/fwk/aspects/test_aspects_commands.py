@@ -132,6 +132,17 @@ def test_the_sender_of_what_did_not_come_is_told(parts: Any) -> None:
     ]
 
 
+def test_one_that_is_stopped_fails_what_it_has_not_finished(parts: Any) -> None:
+    bench = Bench(parts.Lifter, at_once=1)
+    bench.port("lift").put(height_m=1.0)
+    bench.port("lift").put(height_m=2.0)
+    bench.iterate()
+    bench.finalize()
+    stopped = "robot/component was stopped"
+    assert answers(bench)[1:] == [(1, answer_t.FAILED, stopped), (2, answer_t.FAILED, stopped)]
+    assert bench.component.lift.open == []
+
+
 def sender(parts: Any, **settings: Any) -> tuple[Bench, Any]:
     """A worker that has sent one command, and its future."""
     bench = Bench(parts.Worker, name="s/worker", flood=1, **settings)
