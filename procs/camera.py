@@ -81,15 +81,16 @@ class Camera(Component):
     def loop(self) -> None:
         if not self.ground_truth.refreshed or (self.clock.tick + self._turn) % self.config.every_ticks:
             return
-        if self.config != self._settings:
-            self._apply_settings()
         own = self._own_robot(self.ground_truth.value)
         if own is not None:
             frame = self._renderer.render(self._scene(own, self.ground_truth.value), self._shake_px(own))
             self.image.publish(self._noise.apply(frame, self.rng))
 
+    def config_changed(self) -> None:
+        self._apply_settings()
+
     def _apply_settings(self) -> None:
-        config = self._settings = self.config.model_copy(deep=True)
+        config = self.config
         mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
         self._renderer = Renderer(mirror, config.field, _bodies(config))
         self._noise = SensorNoise(
@@ -110,12 +111,12 @@ class Camera(Component):
             for robot in truth.robots
             if robot.name != self._robot and _is_here(robot)
         ]
-        ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self._settings.ball_radius_m)
+        ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self.config.ball_radius_m)
         return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if _near(*ball_m) else None)
 
     def _shake_px(self, own: true_robot_t) -> tuple[float, float]:
         speed_m_s = math.hypot(own.vx_m_s, own.vy_m_s)
-        deviation_px = self._settings.shake_px + self._settings.shake_px_per_m_s * speed_m_s
+        deviation_px = self.config.shake_px + self.config.shake_px_per_m_s * speed_m_s
         right_px, down_px = deviation_px * self.rng.standard_normal(2)
         return float(right_px), float(down_px)
 

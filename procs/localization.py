@@ -78,8 +78,6 @@ class Localization(Component):
         self._apply_settings(np.array(given) if given else None)
 
     def loop(self) -> None:
-        if self.config != self._settings:
-            self._apply_settings(self._localizer.pose if self._localizer.localized else None)
         knew = self._localizer.localized
         points = self.line_points.value if self.line_points.refreshed else line_points_t()
         self._localizer.update(self._motion(), self._compass_rad(), np.array(points.x_m), np.array(points.y_m))
@@ -92,8 +90,11 @@ class Localization(Component):
         pose.localized = self._localizer.localized
         self.pose.write()
 
+    def config_changed(self) -> None:
+        self._apply_settings(self._localizer.pose if self._localizer.localized else None)
+
     def _apply_settings(self, start: Floats | None) -> None:
-        config = self._settings = self.config.model_copy(deep=True)
+        config = self.config
         settings = LocalizerSettings(
             reach_m=config.reach_m,
             points=config.points,

@@ -3,20 +3,15 @@
 from pydantic import Field as Setting
 
 from fwk.aspects.blackboard import Writes
-from fwk.aspects.vision import Image
-from fwk.component import Component
-from fwk.config import Config
 from lcmtypes.soccer import ball_percept_t
+from procs.detector import Detector, DetectorConfig
 from procs.vision.ball import BallFinder, BallSighting
-from procs.vision.colours import ColourRange, Hsv
-from procs.vision.settings import MirrorConfig
+from procs.vision.colours import ColourRange, Hsv, Picture
 
 
-class OmniBallConfig(Config):
+class OmniBallConfig(DetectorConfig):
     """Settings of the ball detector."""
 
-    mirror: MirrorConfig = MirrorConfig()
-    """Calibration of the camera."""
     ball_low: Hsv = (4, 120, 80)
     """Least hue (0..179), saturation and value (0..255) of the ball's colour."""
     ball_high: Hsv = (20, 255, 255)
@@ -31,36 +26,25 @@ class OmniBallConfig(Config):
     """Beyond that nothing is taken for a ball."""
 
 
-class OmniBall(Component):
-    """Looks at every frame of its robot's camera and says where the ball is, or that it sees none."""
+class OmniBall(Detector):
+    """Says where the ball is, or that it sees none."""
 
-    stage = "sensor_prepare"
-    image: Image
     ball_percept: Writes[ball_percept_t]
     config: OmniBallConfig
 
-    def init(self) -> None:
-        self._apply_settings()
-
-    def loop(self) -> None:
-        if not self.image.changed:
-            return
-        if self.config != self._settings:
-            self._apply_settings()
-        pixels = self.image.pixels
-        if pixels is None:
-            self._write(None)
-            return
-        self._settings.mirror.check_frame(pixels, self.name)
-        self._write(self._finder.find(pixels))
-
-    def _apply_settings(self) -> None:
-        config = self._settings = self.config.model_copy(deep=True)
+    def apply_settings(self) -> None:
+        config = self.config
         colour = ColourRange(config.ball_low, config.ball_high)
         mirror = config.mirror.mirror()
         self._finder = BallFinder(
             mirror, colour, config.ball_radius_m, config.deviation_px, config.least_fit, config.farthest_m
         )
+
+    def detect(self, pixels: Picture) -> None:
+        self._write(self._finder.find(pixels))
+
+    def report_nothing(self) -> None:
+        self._write(None)
 
     def _write(self, ball: BallSighting | None) -> None:
         percept = self.ball_percept.value = ball_percept_t()

@@ -4,23 +4,18 @@ import numpy as np
 from pydantic import Field as Setting
 
 from fwk.aspects.blackboard import Writes
-from fwk.aspects.vision import Image
-from fwk.component import Component
-from fwk.config import Config
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
+from procs.detector import Detector, DetectorConfig
 from procs.vision.algebra import Floats
 from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
 from procs.vision.lines import LineFinder
 from procs.vision.obstacles import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
-from procs.vision.settings import MirrorConfig
 
 
-class OmniFieldConfig(Config):
+class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
-    mirror: MirrorConfig = MirrorConfig()
-    """Calibration of the camera."""
     rays: int = Setting(default=180, ge=16, le=720)
     """Scan lines around the robot."""
     nearest_m: float = Setting(default=0.28, gt=0.0)
@@ -49,32 +44,21 @@ class OmniFieldConfig(Config):
     """Greatest hue, saturation and value of the robots' bodies."""
 
 
-class OmniField(Component):
-    """Scans every frame of its robot's camera along rays and rings."""
+class OmniField(Detector):
+    """Scans along rays and rings."""
 
-    stage = "sensor_prepare"
-    image: Image
     line_points: Writes[line_points_t]
     obstacle_percepts: Writes[obstacle_percepts_t]
     config: OmniFieldConfig
 
-    def init(self) -> None:
-        self._apply_settings()
-
-    def loop(self) -> None:
-        if not self.image.changed:
-            return
-        if self.config != self._settings:
-            self._apply_settings()
-        pixels = self.image.pixels
-        if pixels is None:
-            self._write(np.empty((0, 2)), [])
-            return
-        self._settings.mirror.check_frame(pixels, self.name)
+    def detect(self, pixels: Picture) -> None:
         self._write(*self._find(pixels))
 
-    def _apply_settings(self) -> None:
-        config = self._settings = self.config.model_copy(deep=True)
+    def report_nothing(self) -> None:
+        self._write(np.empty((0, 2)), [])
+
+    def apply_settings(self) -> None:
+        config = self.config
         mirror = config.mirror.mirror()
         green = ColourRange(config.green_low, config.green_high)
         white = ColourRange(config.white_low, config.white_high)
@@ -89,8 +73,8 @@ class OmniField(Component):
     def _find(self, pixels: Picture) -> tuple[Floats, list[Obstacle]]:
         star, rings = to_hsv(self._star.look_up(pixels)), to_hsv(self._rings.look_up(pixels))
         points_m = np.vstack([self._lines.find(star, self._star), self._lines.find(rings, self._rings)])
-        if len(points_m) > self._settings.most_points:
-            points_m = points_m[np.linspace(0, len(points_m) - 1, self._settings.most_points).astype(int)]
+        if len(points_m) > self.config.most_points:
+            points_m = points_m[np.linspace(0, len(points_m) - 1, self.config.most_points).astype(int)]
         return points_m, self._obstacles.find(star)
 
     def _write(self, points_m: Floats, obstacles: list[Obstacle]) -> None:
@@ -103,6 +87,6 @@ class OmniField(Component):
     def _message(self, obstacle: Obstacle) -> obstacle_t:
         message = obstacle_t()
         message.x_m, message.y_m = obstacle.x_m, obstacle.y_m
-        message.radius_m = self._settings.robot_radius_m
+        message.radius_m = self.config.robot_radius_m
         message.covariance_m2 = obstacle.covariance_m2.tolist()
         return message

@@ -29,23 +29,32 @@ _PACKAGES = {
 
 
 @pytest.fixture
-def needs(request: pytest.FixtureRequest) -> Callable[..., None]:
+def leave_out(request: pytest.FixtureRequest) -> Callable[[str], None]:
+    """`leave_out("needs root")` skips the test; the reason is said at the end."""
+
+    def skip(reason: str) -> None:
+        request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
+        pytest.skip(reason)
+
+    return skip
+
+
+@pytest.fixture
+def needs(leave_out: Callable[[str], None]) -> Callable[..., None]:
     """`needs("Xvfb", "java")` skips the test if one of these programs is not on the path."""
 
     def check(*programs: str) -> None:
         missing = [program for program in programs if not shutil.which(program)]
         if missing:
             packages = " ".join(dict.fromkeys(_PACKAGES.get(program, program) for program in missing))
-            reason = f"needs {', '.join(missing)}: apt install {packages}"
-            request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
-            pytest.skip(reason)
+            leave_out(f"needs {', '.join(missing)}: apt install {packages}")
 
     return check
 
 
 @pytest.fixture
 def small_disk(
-    tmp_path: Path, needs: Callable[..., None], request: pytest.FixtureRequest
+    tmp_path: Path, needs: Callable[..., None], leave_out: Callable[[str], None]
 ) -> Iterator[Callable[[int], Path]]:
     """`small_disk(8)` is a folder on a disk of its own of 8 MiB; only root can make one."""
     needs("mount", "umount")
@@ -57,9 +66,7 @@ def small_disk(
         command = ["mount", "-t", "tmpfs", "-o", f"size={size_mib}m", "tmpfs", str(folder)]
         mounted = subprocess.run(command, capture_output=True, text=True, check=False)
         if mounted.returncode:
-            reason = "needs the right to mount a small disk: run the tests as root"
-            request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
-            pytest.skip(reason)
+            leave_out("needs the right to mount a small disk: run the tests as root")
         made.append(folder)
         return folder
 

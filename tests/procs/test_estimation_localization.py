@@ -351,7 +351,7 @@ def test_settings_changed_while_it_runs_count_from_the_next_frame() -> None:
     robot.pose = np.array((3.0, 2.0, 0.0))
     bench = Bench(Localization)
     assert until_localized(bench, robot, 5.0) < math.inf
-    bench.component.config.good_score = 0.99
+    bench.runner.configure({**bench.component.config.model_dump(), "good_score": 0.99})
     assert all(frames(bench, robot, 5)), "the pose is kept"
     robot.pose = np.array((-6.0, -2.0, 0.0))
     frames(bench, robot, 40)

@@ -118,8 +118,7 @@ def test_settings_changed_between_iterations_are_used() -> None:
     frame = frame_of(system())
     bench.show("image", frame)
     bench.iterate()
-    bench.component.config.ball_low = (90, 120, 80)
-    bench.component.config.ball_high = (100, 255, 255)
+    bench.runner.configure({"ball_low": (90, 120, 80), "ball_high": (100, 255, 255)})
     bench.show("image", frame)
     bench.iterate()
     assert [percept.visible for percept in bench.port("ball_percept").sent] == [True, False]

@@ -1,6 +1,7 @@
 """Skills that win the ball: get_ball drives to it, intercept waits on its way."""
 
 import math
+from abc import abstractmethod
 
 from procs.behaviour import ballistics
 from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
@@ -33,8 +34,9 @@ class _Capture(Skill):
     def _near(self, scene: Scene) -> bool:
         return scene.holds_ball or math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M
 
+    @abstractmethod
     def _approach(self, scene: Scene) -> Drive:
-        raise NotImplementedError
+        """How to get to the ball."""
 
 
 class GetBall(_Capture):

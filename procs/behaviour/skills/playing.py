@@ -1,6 +1,7 @@
 """Skills with the ball in the mouth: dribble, shoot, pass."""
 
 import math
+from abc import abstractmethod
 
 from procs.behaviour import ballistics
 from procs.behaviour.geometry import ahead, bearing_rad, clamp, wrap_rad
@@ -26,8 +27,9 @@ class _WithBall(Skill):
             return failed("lost the ball")
         return self._play(scene)
 
+    @abstractmethod
     def _play(self, scene: Scene) -> Step:
-        raise NotImplementedError
+        """What to do with the ball."""
 
 
 class Dribble(_WithBall):
@@ -63,11 +65,13 @@ class _Kick(_WithBall):
             return self._await(scene)
         return super().step(scene)
 
+    @abstractmethod
     def _speed_m_s(self, distance_m: float) -> float:
-        raise NotImplementedError
+        """Of the ball, to get so far."""
 
+    @abstractmethod
     def _tolerance_rad(self, distance_m: float) -> float:
-        raise NotImplementedError
+        """How well the robot has to point there."""
 
     def _await(self, scene: Scene) -> Step:
         self._asked_s += scene.duration_s
