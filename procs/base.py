@@ -78,8 +78,8 @@ class Base(Component):
         self.wheel_command.write()
 
     def _add(self, state: wheel_state_t) -> None:
-        first, second, third = state.wheel_m_s
-        if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.wheel_m_s):
+        first, second, third = state.measured_m_s
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.measured_m_s):
             self.log.warning(f"wheels say {first}, {second}, {third} m/s, which cannot be; ignored")
             return
         passed_s = (state.header.time_us - self._measured_us) / US_PER_S

@@ -67,7 +67,7 @@ class Kicker(Component):
         wanted = fresh and command.kick_id != sensor.kick_id and command.speed_m_s > 0
         fire = wanted and sensor.ball_held and sensor.charged
         drive.kick_id = command.kick_id if fire else sensor.kick_id
-        drive.speed_m_s = min(command.speed_m_s, self.config.speed_limit_m_s) if fire else 0.0
+        drive.kick_m_s = min(command.speed_m_s, self.config.speed_limit_m_s) if fire else 0.0
         drive.dribble = fresh and command.dribble
         self.kicker_drive.write()
 

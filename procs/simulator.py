@@ -117,7 +117,7 @@ class Simulator(Component):
             if robot not in self.kicker_drive:
                 continue
             drives = self.kicker_drive[robot]
-            wishes = [KickerCommand(drive.kick_id, drive.speed_m_s, drive.dribble) for drive in drives.fresh]
+            wishes = [KickerCommand(drive.kick_id, drive.kick_m_s, drive.dribble) for drive in drives.fresh]
             for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:
                 world.kickers[robot].command(wish, world.time_us)
 
@@ -131,7 +131,7 @@ class Simulator(Component):
             wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s())
             heading_rad, yaw_rate_rad_s = self._imus[name].read(robot.body.angle, robot.body.angular_velocity, passed_s)
             if name in self.wheel_state:
-                self.wheel_state[name].value.wheel_m_s = wheels_m_s
+                self.wheel_state[name].value.measured_m_s = wheels_m_s
                 self.wheel_state[name].write()
             if name in self.imu:
                 imu = self.imu[name].value

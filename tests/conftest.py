@@ -4,6 +4,7 @@ import shutil
 import subprocess
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
 from hypothesis import settings
@@ -29,10 +30,10 @@ _PACKAGES = {
 
 
 @pytest.fixture
-def leave_out(request: pytest.FixtureRequest) -> Callable[[str], None]:
+def leave_out(request: pytest.FixtureRequest) -> Callable[[str], NoReturn]:
     """`leave_out("needs root")` skips the test; the reason is said at the end."""
 
-    def skip(reason: str) -> None:
+    def skip(reason: str) -> NoReturn:
         request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
         pytest.skip(reason)
 
@@ -40,7 +41,7 @@ def leave_out(request: pytest.FixtureRequest) -> Callable[[str], None]:
 
 
 @pytest.fixture
-def needs(leave_out: Callable[[str], None]) -> Callable[..., None]:
+def needs(leave_out: Callable[[str], NoReturn]) -> Callable[..., None]:
     """`needs("Xvfb", "java")` skips the test if one of these programs is not on the path."""
 
     def check(*programs: str) -> None:
@@ -54,7 +55,7 @@ def needs(leave_out: Callable[[str], None]) -> Callable[..., None]:
 
 @pytest.fixture
 def small_disk(
-    tmp_path: Path, needs: Callable[..., None], leave_out: Callable[[str], None]
+    tmp_path: Path, needs: Callable[..., None], leave_out: Callable[[str], NoReturn]
 ) -> Iterator[Callable[[int], Path]]:
     """`small_disk(8)` is a folder on a disk of its own of 8 MiB; only root can make one."""
     needs("mount", "umount")

@@ -25,7 +25,7 @@ def roll(base: Bench, velocity: Velocity, ticks: int) -> None:
     for _ in range(ticks):
         state = wheel_state_t()
         state.header.time_us = base.time_us + 50_000
-        state.wheel_m_s = list(wheels_of(velocity, 0.2))
+        state.measured_m_s = list(wheels_of(velocity, 0.2))
         port.put(state)
         base.iterate(stage="sensor_acquire")
 
@@ -87,7 +87,7 @@ def test_a_measurement_that_comes_late_counts_all_the_same() -> None:
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     state = wheel_state_t()
     state.header.time_us = base.time_us + 50_000
-    state.wheel_m_s = list(wheels_of(Velocity(1.0, 0.0, 0.0), 0.2))
+    state.measured_m_s = list(wheels_of(Velocity(1.0, 0.0, 0.0), 0.2))
     base.port("wheel_state").put(state)
     base.iterate(stage="act_exec")
     base.iterate(stage="sensor_acquire")
@@ -105,7 +105,7 @@ def test_a_lost_measurement_is_bridged() -> None:
 @pytest.mark.parametrize("speed_m_s", [math.nan, math.inf, 1e300])
 def test_impossible_wheel_speeds_are_refused_aloud(speed_m_s: float) -> None:
     base = bench()
-    base.port("wheel_state").put(wheel_m_s=[0.0, speed_m_s, 0.0])
+    base.port("wheel_state").put(measured_m_s=[0.0, speed_m_s, 0.0])
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
     assert base.logged[0].text == f"wheels say 0.0, {speed_m_s}, 0.0 m/s, which cannot be; ignored"

@@ -85,7 +85,7 @@ def test_wheels_turn_and_are_measured() -> None:
     truth = tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
     assert truth.robots[0].vx_m_s == pytest.approx(1.0, abs=0.01)
     assert truth.robots[1].vx_m_s == 0.0
-    assert world.port("wheel_state", "cyan1").sent[-1].wheel_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
+    assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
 
 
 def test_a_robot_that_hears_nothing_more_stops() -> None:
@@ -119,7 +119,7 @@ def test_the_imu_tells_heading_and_yaw_rate() -> None:
 def test_a_kick_moves_the_ball_and_is_reported() -> None:
     world = bench(starts={"magenta1": (0.33, 0.0, math.pi)})
     drive = kicker_drive_t()
-    drive.kick_id, drive.speed_m_s = 1, 6.0
+    drive.kick_id, drive.kick_m_s = 1, 6.0
     world.iterate()
     assert world.port("kicker_sensor", "magenta1").sent[-1].ball_held
     world.port("kicker_drive", "magenta1").put(drive)
@@ -134,7 +134,7 @@ def test_a_kick_moves_the_ball_and_is_reported() -> None:
 def test_a_goal_counts_for_the_team_that_attacks_it() -> None:
     world = bench(starts={"cyan1": (-0.33, 0.0, 0.0), "magenta1": (5.0, 5.0, 0.0)})
     drive = kicker_drive_t()
-    drive.kick_id, drive.speed_m_s = 1, 10.0
+    drive.kick_id, drive.kick_m_s = 1, 10.0
     world.port("kicker_drive", "cyan1").put(drive)
     world.iterate(40)
     goals = [event for event in events(world) if event.kind == match_event_t.GOAL]
@@ -165,8 +165,8 @@ def test_realism_makes_odometry_drift_from_the_truth() -> None:
     ideal, real = bench(), bench(realism="realistic")
     for world in (ideal, real):
         tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
-    assert np.std([state.wheel_m_s[2] for state in ideal.port("wheel_state", "cyan1").sent[-5:]]) < 1e-3
-    assert np.std([state.wheel_m_s[2] for state in real.port("wheel_state", "cyan1").sent[-5:]]) > 1e-3
+    assert np.std([state.measured_m_s[2] for state in ideal.port("wheel_state", "cyan1").sent[-5:]]) < 1e-3
+    assert np.std([state.measured_m_s[2] for state in real.port("wheel_state", "cyan1").sent[-5:]]) > 1e-3
 
 
 class Wanderer(Component):

@@ -6,7 +6,7 @@ import struct
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from socket import AF_INET
-from typing import Any
+from typing import Any, NoReturn
 
 import lcm
 import psutil
@@ -188,7 +188,7 @@ def test_strangers_on_the_public_bus_are_named_and_change_nothing(
     assert run.text.count("not taken") < 100
 
 
-def test_the_network_is_not_heard_on_inner_ports(ports: PortBlock, leave_out: Callable[[str], None]) -> None:
+def test_the_network_is_not_heard_on_inner_ports(ports: PortBlock, leave_out: Callable[[str], NoReturn]) -> None:
     addresses = [each.address for found in psutil.net_if_addrs().values() for each in found if each.family == AF_INET]
     outside = next((address for address in addresses if not address.startswith("127.")), None)
     if not outside:

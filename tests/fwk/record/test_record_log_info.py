@@ -2,15 +2,17 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
 from typer.testing import CliRunner
 
 from fwk.cli.log_info import log_info as command
+from fwk.messages import type_named
 from fwk.record.log import LogError, LogReader, LogWriter
 from fwk.record.log_info import ChannelInfo, log_info
-from lcmtypes.robot import wheel_command_t
+from fwk.record.types import use_types_of
 from tests.fwk.record.record_made import entries, entry, odometry, write
 
 
@@ -72,8 +74,13 @@ def test_what_does_not_decode_is_counted(tmp_path: Path) -> None:
 
 
 def test_types_that_lcm_cannot_tell_apart_are_both_named(tmp_path: Path) -> None:
-    log = write(tmp_path / "log", [("a/wheel_command", wheel_command_t().encode(), 1)])
-    assert log_info(log).channels["a/wheel_command"].types == ["robot.wheel_command_t or robot.wheel_state_t"]
+    (tmp_path / "lcmtypes").mkdir()
+    structs = "".join(f"struct {name}_t {{ double apart_m; }}\n" for name in ("one", "other"))
+    (tmp_path / "lcmtypes" / "twins.lcm").write_text(f"package twins;\n{structs}")
+    use_types_of(tmp_path)
+    twin: Any = type_named("twins.one_t")()
+    log = write(tmp_path / "log", [("a/twin", twin.encode(), 1)])
+    assert log_info(log).channels["a/twin"].types == ["twins.one_t or twins.other_t"]
 
 
 def test_dropped_events_and_damage_are_told(tmp_path: Path) -> None:

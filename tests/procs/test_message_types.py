@@ -1,0 +1,14 @@
+"""Message types of robot and match: none can be taken for another."""
+
+from fwk import messages
+from fwk.record.types import by_fingerprint
+
+PACKAGES = ("core.", "robot.", "soccer.")
+
+
+def test_each_type_has_a_fingerprint_of_its_own() -> None:
+    """LCM leaves a struct's name out of it: with equal members a swapped channel would decode without an error."""
+    names = [[messages.type_name(each) for each in found] for found in by_fingerprint().values()]
+    ours = [[name for name in found if name.startswith(PACKAGES)] for found in names]
+    assert any(ours)
+    assert [found for found in ours if len(found) > 1] == []
