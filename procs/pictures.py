@@ -21,8 +21,7 @@ class PicturesConfig(Config):
     rate_hz: float = Setting(default=2.0, ge=0.0)
     """Most pictures a second of each camera, by logical time; 0: every frame."""
     format: Literal["jpeg", "png"] = "jpeg"
-    """jpeg is small and lossy. png is lossless and large: with every frame recorded as png, what looks at frames is
-    replayed without its camera."""
+    """jpeg is small and lossy; png is lossless and large."""
     quality: int = Setting(default=80, ge=1, le=100)
     """Of jpeg; 100 is best."""
     longest_px: int = Setting(default=0, ge=0)
