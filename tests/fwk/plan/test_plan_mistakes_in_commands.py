@@ -136,6 +136,14 @@ def garden(broken: Broken) -> Broken:
         """,
     ),
     Broken(
+        "it.yaml:3: outside: a component that is called 'outside' cannot send or carry out commands; rename it",
+        """
+        components:
+          a/digger: {use: garden_parts:Digger}
+          outside: {use: garden_parts:Boss, channels: {dig: a/dig}}
+        """,
+    ),
+    Broken(
         "it.yaml:2: a/digger: port 'dig': 'fwk/dig': names that begin with 'fwk/' are the framework's own; "
         "take another namespace",
         """
