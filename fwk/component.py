@@ -41,6 +41,7 @@ class Component:
     | annotation | gives |
     | --- | --- |
     | `ball: Reads[ball_t]` | newest value and all since the last iteration of `<namespace>/ball` |
+    | `ball: Reads[ball_t] = channel(history=20)` | besides, the newest 20 in `self.ball.history` |
     | `pose: Writes[pose_t]` | the one writer of `<namespace>/pose` |
     | `ReadsEach[...]`, `WritesEach[...]` | many instances of an interface, by namespace |
     | `kick: Commands[kick_t]` | the commands `<namespace>/kick`, to carry out; one such component each |
@@ -140,6 +141,8 @@ class Port:
     message_type: type[messages.Message]
     channel: str
     reply_type: type[messages.Message] | None = None
+    history: int = 0
+    """How many of the newest messages a reader keeps; 0: the newest only."""
 
     @property
     def writes(self) -> bool:
@@ -296,14 +299,17 @@ def _port(where: str, attribute: str, kind: PortKind, types: tuple[Any, ...], de
         if not messages.has_header(message_type):
             name = messages.type_name(message_type)
             raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
-    channel = default.name if isinstance(default, ChannelDefault) else attribute
-    made = Port(attribute, kind, types[0], channel)
+    given = default if isinstance(default, ChannelDefault) else ChannelDefault("")
+    made = Port(attribute, kind, types[0], given.name or attribute, history=given.history)
+    if given.history < 0 or (given.history and kind not in ("reads", "reads_each")):
+        wrong = "a history has at least 1 message" if given.history < 0 else "only Reads and ReadsEach keep a history"
+        raise DeclarationError(f"{where}.{attribute}: history={given.history}: {wrong}")
     if made.owns or made.sends:
         made = replace(made, reply_type=types[1] if len(types) > 1 else acknowledgement_t)
         _check_second(where, attribute, types[0], "command", "command")
         _check_second(where, attribute, made.reply_type, "answer", "reply")
-    if made.each and "*" not in channel:
-        made = replace(made, channel=f"*/{channel}")
+    if made.each and "*" not in made.channel:
+        made = replace(made, channel=f"*/{made.channel}")
     return made
 
 

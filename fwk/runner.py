@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fwk.aspects.blackboard import Reads, ReadsEach, Stamp, Writes, WritesEach
+from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach
 from fwk.aspects.commands import Commands, Queue, Source
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.main_loop import MainLoop
@@ -19,6 +19,7 @@ from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import DEFAULT_STAGES, Component, Declaration, Port
 from fwk.config import LOG_LEVEL, Config
+from fwk.messages import Message
 from lcmtypes.core import done_t, log_t
 
 AWAY_TICKS = 16
@@ -78,6 +79,11 @@ class Runner:
         self.component: Component = declaration.component()
         self._rings = surroundings.rings
         self._away_after = 1 if incarnation == 1 else 0  # tick
+        self._histories: dict[str, int] = {}
+        for port in declaration.ports:
+            if port.history:
+                longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
+                self._histories |= longest
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]
@@ -196,12 +202,20 @@ class Runner:
             if port.kind == "vision_master":
                 return VisionMaster(made[channels[0]], self._rings[channels[0]])
             return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
-        read = {channel: self.readers.setdefault(channel, Reads(channel, port.message_type)) for channel in channels}
+        read = {channel: self._reader(channel, port.message_type) for channel in channels}
         if port.images:
             images = {channel: Image(read[channel], self._rings[channel], self.log) for channel in channels}
             self.images += images.values()
             return ImagesEach(_by_namespace(images)) if port.each else images[channels[0]]
         return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+
+    def _reader(self, channel: str, message_type: type[Message]) -> Reads[Any]:
+        """The one reader of a channel, whichever ports stand for it."""
+        if channel not in self.readers:
+            length = self._histories.get(channel, 0)
+            made = ReadsHistory(channel, message_type, length) if length else Reads(channel, message_type)
+            self.readers[channel] = made
+        return self.readers[channel]
 
     def _queue(self, port: Port, answers: str, *sources: str) -> Queue[Any]:
         assert port.reply_type

@@ -1,7 +1,8 @@
 """The blackboard aspect: typed channels with one writer and many readers, frozen for the time of an iteration."""
 
-from collections.abc import Callable, ItemsView, Iterator, Mapping
-from typing import Any, Generic, TypeVar, cast
+from collections import deque
+from collections.abc import Callable, ItemsView, Iterator, Mapping, Sequence
+from typing import Any, Generic, TypeVar, cast, overload
 
 from fwk import messages
 from fwk.messages import Header
@@ -77,11 +78,68 @@ class Reads(Generic[T]):
         return [*map(self._decode, self._fresh[:-1]), self.value] if self._fresh else []
 
     @property
+    def history(self) -> Sequence[T]:
+        """The newest messages, oldest first: as many as `channel(history=...)` keeps, without it the newest only."""
+        return [self.value] if self.has_value else []
+
+    @property
     def header(self) -> Header:
         """Tick, stage, sequence, writer and logical time of the newest message; zeros before the first."""
         if self._header is None:
             self._header = Header(0, 0, 0, 0, "", 0) if self._raw is None else Header.of(self._raw)
         return self._header
+
+
+class ReadsHistory(Reads[T]):
+    """A reader that keeps the newest messages, `length` of them."""
+
+    def __init__(self, channel: str, message_type: type[T], length: int) -> None:
+        super().__init__(channel, message_type)
+        self._history = History(length, self._decode)
+
+    def freeze(self, fresh: list[bytes]) -> None:
+        """For the framework: begins an iteration; `fresh` became visible since the last one, oldest first."""
+        super().freeze(fresh)
+        self._history.add(fresh)
+
+    @property
+    def value(self) -> T:
+        """The newest message. It is this reader's own copy, and the last of the history."""
+        return self._history[-1] if self._history else super().value
+
+    @property
+    def history(self) -> Sequence[T]:
+        """The newest messages, oldest first; after a restart it begins anew."""
+        return self._history
+
+
+class History(Sequence[T]):
+    """The newest messages of a channel, each decoded when it is looked at first."""
+
+    def __init__(self, length: int, decode: Callable[[bytes], T]) -> None:
+        self._decode = decode
+        self._raw: deque[bytes] = deque(maxlen=length)
+        self._values: deque[T | None] = deque(maxlen=length)
+
+    def add(self, fresh: Sequence[bytes]) -> None:
+        """Newer ones push the oldest out."""
+        self._raw.extend(fresh)
+        self._values.extend([None] * len(fresh))
+
+    def __len__(self) -> int:
+        return len(self._raw)
+
+    @overload
+    def __getitem__(self, index: int) -> T: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[T]: ...
+    def __getitem__(self, index: int | slice) -> T | list[T]:
+        if isinstance(index, slice):
+            return [self[place] for place in range(*index.indices(len(self)))]
+        value = self._values[index]
+        if value is None:
+            value = self._values[index] = self._decode(self._raw[index])
+        return value
 
 
 class Writes(Generic[T]):
@@ -173,18 +231,19 @@ class WritesEach(Mapping[str, Writes[T]], Generic[T]):
         return self._channels.items()
 
 
-def channel(name: str) -> Any:
+def channel(name: str = "", *, history: int = 0) -> Any:
     """Names the channel of a reader or writer in the class, where it is not `<namespace>/<attribute>`.
 
     A name with a slash is used as it is (`world/game_state`), one without belongs to the component's namespace.
     For `ReadsEach` and `WritesEach` it is a pattern with `*` for the namespace (`*/motor`).
-    The launch file can say otherwise.
+    The launch file can say otherwise. A reader keeps as many of the newest messages as `history` says.
     """
-    return ChannelDefault(name)
+    return ChannelDefault(name, history)
 
 
 class ChannelDefault:
     """What `channel()` puts into the class until the framework replaces it by the reader or writer."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, history: int = 0) -> None:
         self.name = name
+        self.history = history
