@@ -10,6 +10,7 @@ from fwk.bus import wire
 from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
 
 _SO_ATTACH_FILTER = 26
+_DATAGRAMS_AT_ONCE = 5000  # more than the largest message has
 
 
 class UrlError(Exception):
@@ -78,10 +79,12 @@ class PublicBus:
     def receive(self) -> tuple[str, bytes, int] | None:
         """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.
 
+        A crowd of fragments that complete no message gives None, too: who waits comes back.
+
         Raises:
             MessageError: a datagram that is not of LCM's format.
         """
-        while True:
+        for _ in range(_DATAGRAMS_AT_ONCE):
             try:
                 datagram, address = self._receiver.recvfrom(wire.DATAGRAM_MAX)
             except BlockingIOError:
@@ -91,6 +94,7 @@ class PublicBus:
             message = self._assembler.feed(datagram, address[1])
             if message is not None:
                 return message[0].decode("utf-8", "replace"), message[1], address[1]
+        return None
 
     def _join(self, group: str, interface: str) -> None:
         membership = socket.inet_aton(group) + socket.inet_aton(interface)

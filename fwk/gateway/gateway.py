@@ -13,6 +13,7 @@ from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import Clock
 from fwk.gateway.outside import Outside
+from fwk.gateway.strangers import Strangers
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
 from fwk.messages import Header, MessageError, sequence_of
@@ -21,6 +22,7 @@ from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
 
 SUPERVISOR_CHANNEL = -1
 """In a fetch: the tick records themselves, numbered by tick."""
+HEARD_AT_ONCE = 256  # messages of other programs, before the run's own have their turn again
 
 
 class Sink(Protocol):
@@ -45,15 +47,15 @@ class Gateway:
         self._run = run
         self._control = control
         self._public = public
-        self._names = {channel.name for channel in plan.channels}
         self._ports = Ports.of(plan)
         self._sender = Sender(self._ports.host(self._ports.gateway))
         self.clock = Clock(plan.period_us)
         self.log = Logger("gateway", self.clock, self._log_line)
         self._complaints = Complaints(self.log)
         self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
-        tools = [channel for channel in plan.channels if channel.of_tools]
-        self._outside = Outside(tools, self._ports, self._sender, self._inputs, self.clock)
+        opened = [channel for channel in plan.channels if channel.of_tools or channel.name in plan.outside]
+        self._outside = Outside(opened, self._ports, self._sender, self._inputs, self.clock)
+        self._strangers = Strangers(plan, self.take_in, self._complaints)
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
@@ -171,18 +173,18 @@ class Gateway:
         for sink in self.sinks:
             sink.message(channel, data, self.clock.now_us)
 
-    def _hear_strangers(self) -> None:
-        while self._public:
+    def _hear_strangers(self) -> bool:
+        """Takes what waits on the public bus, but no more than a little at once; says whether there was something."""
+        for number in range(HEARD_AT_ONCE if self._public else 0):
             try:
-                heard = self._public.receive()
+                heard = self._public.receive() if self._public else None
             except MessageError as error:
                 self._complaints("public bus", f"{error}; refused")
                 continue
             if heard is None:
-                return
-            channel, _, port = heard
-            if channel in self._names or channel.startswith("fwk/"):
-                self._complaints(channel, f"somebody else (port {port}) writes it on the public bus; not taken")
+                return number > 0
+            self._strangers.hear(*heard)
+        return self._public is not None
 
     def _handle_own(self) -> bool:
         while True:

@@ -43,14 +43,16 @@ class Recorder:
 
 
 class Mirror:
-    """Publishes everything on the public bus."""
+    """Publishes everything on the public bus, except what came from there."""
 
-    def __init__(self, bus: PublicBus) -> None:
+    def __init__(self, plan: Plan, bus: PublicBus) -> None:
         self._bus = bus
+        self._came_from_there = frozenset(plan.outside)
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Publishes a message."""
-        self._bus.publish(channel, data)
+        if channel not in self._came_from_there:
+            self._bus.publish(channel, data)
 
     def tick(self) -> None:
         """Nothing to do."""

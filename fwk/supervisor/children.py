@@ -103,7 +103,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     board = Board(plan, calls.call)
     gateway.watch(board.fileno(), board.handle)
     gateway.sinks += [
-        *([targets.above(sinks.Mirror(public), plan.log.bus)] if public else []),
+        *([targets.above(sinks.Mirror(plan, public), plan.log.bus)] if public else []),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         board,
         calls,

@@ -8,6 +8,7 @@ from fwk.aspects.main_loop import Holding
 from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.gateway.outside import STAGE, WRITER
 from fwk.plan.wiring import wire
 from fwk.plan.wish import Wish
 from fwk.runner import Runner, Surroundings
@@ -17,7 +18,8 @@ from lcmtypes.core import log_t
 class MemorySystem:
     """Components in lockstep: `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`.
 
-    Gives the same messages as the same components in processes of their own.
+    Gives the same messages as the same components in processes of their own. The channels of `outside`, given with
+    their types, are the test's to write, with `come_in`.
     """
 
     def __init__(
@@ -28,12 +30,13 @@ class MemorySystem:
         seed: int = 1,
         period_s: float = 0.05,
         stages: tuple[str, ...] = DEFAULT_STAGES,
+        outside: Mapping[str, type[messages.Message]] | None = None,
     ) -> None:
         mistakes: list[str] = []
         wishes = [
             Wish(name, declaration(component), (channels or {}).get(name, {})) for name, component in components.items()
         ]
-        wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"))
+        wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
         if mistakes:
             raise ValueError("\n".join(mistakes))
         self.now_us = 0
@@ -79,6 +82,13 @@ class MemorySystem:
                 visible = {channel: len(sent) for channel, sent in self.sent.items()}
                 for runner in self._by_stage[stage]:
                     self._iterate(runner, number, stage, visible)
+
+    def come_in(self, channel: str, message: Any) -> None:
+        """Between two ticks: a program outside writes a message, visible from the next tick on."""
+        header = message.header
+        header.tick, header.stage, header.time_us, header.writer = self.ticks + 1, STAGE, self.now_us, WRITER
+        header.sequence = len(self.sent[channel]) + 1
+        self.sent[channel].append(messages.encode(message, channel))
 
     def newest(self, channel: str) -> Any:
         """The newest message of a channel, decoded; the type's zero before the first."""

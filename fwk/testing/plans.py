@@ -5,6 +5,7 @@ from typing import Any
 
 from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.messages import type_named
 from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
 from fwk.plan.needs import granted_by
 from fwk.plan.wiring import wire
@@ -28,7 +29,8 @@ def plan_of(
     """
     mistakes: list[str] = []
     wishes = [Wish(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()]
-    wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"))
+    outside = {channel: type_named(kind) for channel, kind in fields.get("outside", {}).items()}
+    wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
     if mistakes:
         raise ValueError("\n".join(mistakes))
     names, granted = list(components), granted_by(wishes, wiring)
