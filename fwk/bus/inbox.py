@@ -64,6 +64,8 @@ class Box:
         lost = [number for number in self.missing() if first <= number <= last]
         for number in lost:
             self._held[number] = b""
+        if lost:
+            self._newest = max(self._newest, lost[-1])  # nothing up to there is waited for any more
         return len(lost)
 
     def held(self, first: int, last: int) -> list[tuple[int, bytes]]:

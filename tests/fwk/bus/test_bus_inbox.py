@@ -79,6 +79,15 @@ def test_what_cannot_be_had_is_given_up(wired: Wired) -> None:
     assert wired.taken() == [3]
 
 
+def test_when_the_newest_cannot_be_had_nothing_waits_for_it(wired: Wired) -> None:
+    wired.send(1)
+    wired.inbox.mark = 2
+    assert not wired.inbox.collect()
+    assert wired.inbox.give_up(2, 2) == 1
+    assert wired.inbox.collect()
+    assert wired.taken() == [1]
+
+
 def test_a_late_joiner_takes_the_newest_only(wired: Wired) -> None:
     wired.send(56, 57)
     wired.inbox.mark = 57
