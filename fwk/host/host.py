@@ -22,6 +22,7 @@ from fwk.component import DeclarationError, declaration
 from fwk.host.inputs import Inputs
 from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
+from fwk.host.process import give_memory_back
 from fwk.host.progress import Progress
 from fwk.host.report import Complaints, Figures
 from fwk.messages import MessageError
@@ -168,6 +169,7 @@ class Host:
             self.figures[plan.name].state = "running"
         if self._progress:
             self._progress.works(self._assignment.host, NOBODY)
+        give_memory_back()
         self._report()
 
     def _runner(self, plan: ComponentPlan) -> Runner:

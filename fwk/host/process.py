@@ -47,6 +47,11 @@ def keep_memory() -> None:
     mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
 
 
+def give_memory_back() -> None:
+    """Returns to the system what was freed so far: making tables in `init` leaves more than iterations ever need."""
+    ctypes.CDLL(None).malloc_trim(0)
+
+
 class StopSignal:
     """Becomes true when the process is asked to stop; `wakeup` is readable from then on."""
 
