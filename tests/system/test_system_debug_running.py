@@ -8,6 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from fwk.control.client import ControlError
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
 from tests.system.system_runs import Launched, PortBlock, write_files
@@ -147,6 +148,29 @@ def test_in_real_time_the_loop_goes_on_and_says_who_is_held(start: Callable[...,
     assert terminal.end() == 0
     until_starts(run, 3)
     run.ticks_pass()
+    assert "equal" in run.fwk("replay", str(run.end()), "--verify")
+
+
+def test_also_while_the_run_is_paused_and_then_step_by_step(start: Callable[..., Steered], debug: Debug) -> None:
+    run = start()
+    run.fwk("pause")
+    tick = run.tick
+    terminal = debug(NAME)
+    terminal.child.expect("under pdb")
+    with pytest.raises(ControlError, match="not answered within"):  # it is done when the breakpoint has been left
+        run.ask("step", timeout_s=0.5, ticks=1)
+    terminal.prompt()
+    assert str(tick + 1) in terminal.ask("p self.imu.value.header.tick")
+    terminal.type("c")
+    run.launched.until_true(lambda: run.component(NAME)["iterations"] == 1, "the iteration")
+    assert run.tick == tick + 1
+    run.fwk("resume")
+    run.ticks_pass()
+    terminal.child.sendintr()
+    terminal.prompt()
+    terminal.type("q")
+    assert terminal.end() == 0
+    until_starts(run, 3)
     assert "equal" in run.fwk("replay", str(run.end()), "--verify")
 
 

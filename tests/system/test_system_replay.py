@@ -22,9 +22,9 @@ from tests.system.system_terminals import Terminal
 pytestmark = pytest.mark.system
 
 DRIVER = '''
-"""Takes the main loop over and gives it back, again and again."""
+"""Takes the main loop over and gives it back, again and again, and starts another component anew."""
 
-from fwk import Clock, Component, MainLoop
+from fwk import Clock, Component, MainLoop, PluginControl
 
 ORDER = ["pre_loop", "sensor_acquire", "think", "sensor_prepare", "worldstate", "think", "act", "act", "post_loop"]
 
@@ -35,8 +35,11 @@ class Driver(Component):
     stage = "think"
     clock: Clock
     main_loop: MainLoop
+    plugins: PluginControl
 
     def loop(self) -> None:
+        if self.clock.tick % 24 == 4:
+            self.plugins.restart("d/player")
         if self.clock.tick % 24 == 8:
             self.main_loop.take_over(ORDER)
         if self.clock.tick % 24 == 16:
@@ -63,7 +66,9 @@ def together(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -
     for name in ("launch/orchestra.yaml", "launch/lift.yaml"):
         files[name] = re.sub(r'use: ("[\w.:]+")', r"use: \1, restart: {limit: 100, backoff_s: 0.01}", files[name])
         if "real" in request.param:
-            files[name] = re.sub(r"  world/conductor: .*\n|, world/conductor|speed: max\n", "", files[name])
+            files[name] = re.sub(
+                r"  world/conductor: .*\n|, world/conductor|  a/viewer: .*\n|speed: max\n", "", files[name]
+            )
     if "real" in request.param:
         files["launch/together.yaml"] += WALL
     write_files(tmp_path, files)
@@ -209,3 +214,17 @@ def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> 
 def line_of(text: str) -> int:
     """Where it stands in the player's file."""
     return 1 + next(number for number, line in enumerate(PLAYER.splitlines()) if text in line)
+
+
+@pytest.mark.parametrize("tick", [1, 9])
+@pytest.mark.parametrize("what", ["kill after publish", "raise"])
+@pytest.mark.parametrize("hosting", ["process", "single"])
+def test_who_dies_in_an_iteration_is_replayed_from_its_new_start_on(
+    folder: Path, launch: Launch, what: str, tick: int, hosting: str
+) -> None:
+    settings = {"trouble": f"loop:{what}", "trouble_tick": tick, "trouble_stage": "act"}
+    sets = [f"--set=a/player.{key}={value}" for key, value in settings.items()]
+    run = launch("launch/orchestra.yaml", "--record", "log.lcm", "--ticks", "20", "--hosting", hosting, *sets)
+    assert run.wait() == 0, run.text
+    assert "a/player#2" in {header.writer for header in Recording(folder / "log.lcm").headers("a/note")}
+    assert "equal: " in replayed(folder)
