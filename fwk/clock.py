@@ -43,6 +43,11 @@ class TimeSource:
         self.next_us = -1
 
 
+def rate_word(rate_hz: float) -> str:
+    """Where others have stages: how often a continuous component iterates."""
+    return f"{rate_hz:g} Hz" if rate_hz else "continuous"
+
+
 def speed_word(speed: float) -> str:
     """A speed as it is typed; 0 is as fast as it goes."""
     return f"{speed:g}" if speed else "max"

@@ -34,6 +34,8 @@ DEFAULT_STAGES = (
     "post_loop",
 )
 
+RATE_MAX_HZ = 10_000
+
 
 class Component:
     """A unit of deployment. What it wants stands in annotated lines and is there before `init`.
@@ -63,6 +65,8 @@ class Component:
     stage: ClassVar[str | tuple[str, ...]]
     provides: ClassVar[type[Aspect] | tuple[type[Aspect], ...]] = ()
     """Aspects that others get from this component."""
+    rate_hz: ClassVar[float | None] = None
+    """Instead of a stage: iterations a second of a continuous component; 0: again when there is something newer."""
     name: str
     """Full name: `cyan1/omni_ball`."""
     changed_settings: frozenset[str] = frozenset()
@@ -184,6 +188,8 @@ class Declaration:
     asks: dict[str, type[Aspect]] = field(default_factory=dict)
     """Attribute to an aspect that another component provides; its own attributes are `attribute.own` above."""
     provides: tuple[type[Aspect], ...] = ()
+    rate_hz: float | None = None
+    """Of a continuous component; None: it takes part in stages."""
 
 
 _ASPECTS: dict[Any, str] = {
@@ -203,13 +209,16 @@ def declaration(component: type[Component]) -> Declaration:
         DeclarationError: no stage, or an annotation that is no aspect.
     """
     where = f"{component.__module__}.{component.__qualname__}"
-    stages = getattr(component, "stage", None)
-    if not stages:
+    stages, rate_hz = getattr(component, "stage", None) or (), component.rate_hz
+    if stages and rate_hz is not None:
+        raise DeclarationError(f"{where}: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous")
+    if not stages and rate_hz is None:
         raise DeclarationError(f'{where}: no stage; say for example: stage = "think"')
     hints = _hints(component, where)
-    ports, aspects, asks, config = [], {}, {}, Config
+    ports: list[Port] = []
+    aspects, asks, config = {}, {}, Config
     for attribute, wish in hints.items():
-        if attribute in ("stage", "name", "changed_settings", "provides") or attribute.startswith("_"):
+        if attribute in ("stage", "rate_hz", "name", "changed_settings", "provides") or attribute.startswith("_"):
             continue
         default = getattr(component, attribute, None)
         if get_origin(wish) in _PORT_KINDS:
@@ -234,8 +243,10 @@ def declaration(component: type[Component]) -> Declaration:
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
                 f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
                 "CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
-                "numpy.random.Generator, TimeSource or an Aspect, and set plain attributes in init()"
+                "numpy.random.Generator, TimeSource, MainLoop or an Aspect, and set plain attributes in init()"
             )
+    if rate_hz is not None:
+        _check_continuous(where, rate_hz, ports, aspects)
     return Declaration(
         component,
         (stages,) if isinstance(stages, str) else tuple(stages),
@@ -244,6 +255,7 @@ def declaration(component: type[Component]) -> Declaration:
         aspects,
         asks,
         _provided(component, where, ports),
+        rate_hz,
     )
 
 
@@ -290,6 +302,20 @@ def _provided(component: type[Component], where: str, ports: list[Port]) -> tupl
                     f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {wish}"
                 )
     return said
+
+
+def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict[str, str]) -> None:
+    if isinstance(rate_hz, bool) or not isinstance(rate_hz, int | float) or not 0 <= rate_hz <= RATE_MAX_HZ:
+        raise DeclarationError(f"{where}: rate_hz is {rate_hz!r}; it should be a number from 0 to {RATE_MAX_HZ}")
+    for port in ports:
+        if port.images:
+            raise DeclarationError(
+                f"{where}.{port.attribute}: a continuous component has no frames: their ring goes on without it; "
+                "give it a stage, or let a component with a stage look"
+            )
+    for attribute, aspect in aspects.items():
+        if aspect == "time_source":
+            raise DeclarationError(f"{where}.{attribute}: a continuous component is no time source; give it a stage")
 
 
 def _port(where: str, attribute: str, kind: PortKind, types: tuple[Any, ...], default: Any) -> Port:

@@ -1,6 +1,7 @@
 """One component with its aspects, taken through its iterations: the same for host process, test bench and replay."""
 
 import hashlib
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -84,6 +85,8 @@ class Runner:
             if port.history:
                 longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
                 self._histories |= longest
+        collects = declaration.rate_hz is not None  # a continuous one's process takes in what comes meanwhile
+        self._away_ticks = sys.maxsize if collects else AWAY_TICKS
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]
@@ -125,7 +128,7 @@ class Runner:
         clock.stage, stamp.stage = stage_name, stage
         if tick > self._away_after:
             fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
-        self._away_after = tick + AWAY_TICKS
+        self._away_after = tick + self._away_ticks
         for reader in self._refreshed:
             reader.freeze(NOTHING)
         self._refreshed = [self.readers[channel] for channel in fresh]

@@ -29,7 +29,8 @@ class MainLoop:
     def take_over(self, order: Sequence[str]) -> None:
         """From the next tick on these stages run, in this order; one that stands here twice runs twice a tick.
 
-        A stage of the component itself has to be among them, or it could never give the main loop back.
+        A stage of the component itself has to be among them, unless it is continuous, or it could never give the main
+        loop back.
 
         Raises:
             ValueError: the plan has no such stage, or the order is empty or too long.
@@ -54,7 +55,7 @@ class MainLoop:
 class Holding:
     """Who has the main loop, and the order of its ticks; wishes are granted between two ticks.
 
-    `stages` are the stages of each component that may ask.
+    `stages` are the stages of each component that may ask; a continuous one has none.
     """
 
     def __init__(self, stages: Mapping[str, Sequence[str]]) -> None:
@@ -100,7 +101,7 @@ class Holding:
             self.refused.append(
                 f"{name} wants the main loop, but {self.holder} has it; refused until that gives it back"
             )
-        elif not set(order) & set(self._stages[name]):
+        elif self._stages[name] and not set(order) & set(self._stages[name]):
             own = ", ".join(self._stages[name])
             self.refused.append(
                 f"{name} wants the main loop for {', '.join(order)}; refused: without a stage of its own ({own}) "

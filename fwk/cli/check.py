@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 
 from fwk.cli.arguments import Hosting
-from fwk.clock import US_PER_S
+from fwk.clock import US_PER_S, rate_word
 from fwk.plan.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
@@ -90,6 +90,8 @@ def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
     if channel.writer == NOBODY:
         return ("programs outside" if channel.name in plan.outside else "nobody"), ""
     writer = plan.components[channel.writer]
+    if writer.rate_hz is not None:
+        return writer.name, rate_word(writer.rate_hz)
     return writer.name, ", ".join(plan.stages[index] for index in writer.stages)
 
 

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table
 
 from fwk.cli.asking import BusPort, Json, SomeNames, ask, asking
-from fwk.clock import US_PER_S
+from fwk.clock import US_PER_S, rate_word
 
 WIDTH_IN_A_PIPE = 220
 _STYLES = {"running": "green", "failed": "bold red", "late": "yellow", "held": "yellow", "stopped": "dim"}
@@ -61,8 +61,13 @@ def component_table(components: list[dict[str, Any]]) -> Table:
         numbers = [str(each["pid"] or ""), str(each["starts"]), str(each["iterations"])]
         times = [f"{each['mean_ms']:.2f}", f"{each['worst_ms']:.1f}"]
         losses = [str(each[key] or "") for key in ("fetched", "lost", "strangers")]
-        table.add_row(each["name"], state, ", ".join(each["stages"]), *numbers, *times, *losses, each["reason"])
+        table.add_row(each["name"], state, _when(each), *numbers, *times, *losses, each["reason"])
     return table
+
+
+def _when(component: dict[str, Any]) -> str:
+    """In which stages a component runs, or how often."""
+    return ", ".join(component["stages"]) if component["rate_hz"] is None else rate_word(component["rate_hz"])
 
 
 def _one(component: dict[str, Any]) -> Table:

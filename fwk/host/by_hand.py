@@ -11,8 +11,9 @@ from typing import Any
 
 from fwk.aspects.vision import Ring
 from fwk.component import DeclarationError
+from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
-from fwk.host.host import Assignment, Failure, Host
+from fwk.host.host import Assignment, Failure
 from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, raise_file_limit
 from fwk.plan.model import ComponentPlan, Plan
@@ -57,7 +58,7 @@ class Place:
             print(f"error: {reason}", file=sys.stderr)
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
-        host = Host(self._assignment(told), stop, stop.wakeup)
+        host = host_of(self._assignment(told), stop, stop.wakeup)
         try:
             if self.debug:
                 return debug(self.debug, host.serve)

@@ -107,6 +107,7 @@ class Host:
         self._progress = assignment.progress if len(self._own) > 1 else None  # one alone needs no telling apart
         self._takers: list[Runner] = []  # those that may take over the main loop
         self._wishing: list[Runner] = []  # those that may ask something of the main loop
+        self._stage_names = plan.stages
         self._members = [
             [component.name for component in self._own if stage in component.stages]
             for stage in range(len(plan.stages))
@@ -243,7 +244,7 @@ class Host:
             self._configure(tick.changes)
         if self._takers:
             self._tell_holder(tick.main_loop)
-        self._iterate(tick, stage)
+        self._finish(tick, *self._run_members(tick, stage))
         self._answered = this
 
     def _deliver(self, moved: list[Box]) -> None:
@@ -261,7 +262,8 @@ class Host:
                     self._runners[plan.name].configure(json.loads(change.settings))
         self._configured = max(self._configured, *(change.number for change in changes))
 
-    def _iterate(self, tick: tick_t, stage: int) -> None:
+    def _run_members(self, tick: tick_t, stage: int) -> tuple[list[tuple[str, bytes]], int, int]:
+        """One iteration of each component of a stage: what they wrote, when the next tick is, how long it took."""
         written: list[tuple[str, bytes]] = []
         next_us = -1
         began_us = start_us = monotonic_us()
@@ -271,7 +273,7 @@ class Host:
                 self._progress.works(self._assignment.host, self._index[name])
             self._waiting[name] = {}
             try:
-                written += runner.iterate(tick.tick, tick.stage, self._plan.stages[stage], tick.time_us, waiting)
+                written += runner.iterate(tick.tick, tick.stage, self._stage_names[stage], tick.time_us, waiting)
             except BaseException as error:
                 self._blame(name, f"loop, tick {tick.tick}", error)
                 raise
@@ -281,8 +283,12 @@ class Host:
             next_us = max(next_us, runner.time_source.next_us)
         if self._progress:
             self._progress.works(self._assignment.host, NOBODY)
+        return written, next_us, start_us - began_us
+
+    def _finish(self, tick: tick_t, written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
+        """Sends what was written, and the done."""
         wishes = self._wishes() if self._wishing else ""
-        self._publish(written, tick.tick, tick.stage, next_us, start_us - began_us, wishes)
+        self._publish(written, tick.tick, tick.stage, next_us, busy_us, wishes)
 
     def _publish(
         self, written: list[tuple[str, bytes]], tick: int, stage: int, next_us: int, busy_us: int, wishes: str
@@ -316,19 +322,21 @@ class Host:
                 message = self._sender.receive(self._ports.members)
                 if message is None:
                     return not self._stopping()
-                channel, data = message
-                if channel == b"fwk/fetch":
-                    fetch = fetch_t.decode(data)
-                    if fetch.run == self._assignment.run:
-                        self._outputs.answer(fetch)
-                elif channel == b"fwk/gone":
-                    gone = gone_t.decode(data)
-                    if gone.run == self._assignment.run:
-                        self._give_up(gone)
-                else:
-                    raise MessageError("neither fetch nor gone")
+                self._handle_message(*message)
             except (MessageError, ValueError, struct.error) as error:
                 self._complaints("fwk/fetch", f"{error}; refused")
+
+    def _handle_message(self, channel: bytes, data: bytes) -> None:
+        if channel == b"fwk/fetch":
+            fetch = fetch_t.decode(data)
+            if fetch.run == self._assignment.run:
+                self._outputs.answer(fetch)
+        elif channel == b"fwk/gone":
+            gone = gone_t.decode(data)
+            if gone.run == self._assignment.run:
+                self._give_up(gone)
+        else:
+            raise MessageError("neither fetch nor gone")
 
     def _give_up(self, gone: gone_t) -> None:
         lost = self.inputs.gone(gone)

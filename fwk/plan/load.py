@@ -96,7 +96,8 @@ class _Loading:
             components = [each for each in components if each.asked.name in kept]
             whole = self._wire(components, outside, lambda _: True)
         later = {each.name for each in asked if not each.entry.start}
-        hosts = share_out([each.asked.name for each in components], options.hosting, groups, later)
+        alone = {each.asked.name for each in components if each.rate_hz is not None}
+        hosts = share_out([each.asked.name for each in components], options.hosting, groups, later, alone)
         host_of = {member: host.index for host in hosts for member in host.components}
         made = Plan(
             stages=stages,
@@ -167,6 +168,7 @@ def _component_plans(
             host=host_of[index],
             restart=RestartPolicy(**each.asked.entry.restart.model_dump()),
             ready_timeout_s=each.asked.entry.ready_timeout_s,
+            rate_hz=each.rate_hz,
             memory_limit_mb=each.asked.entry.memory_limit_mb,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
             start=each.asked.entry.start,

@@ -40,6 +40,8 @@ class ComponentPlan:
     ready_timeout_s: float = 20.0
     needs: tuple[int, ...] = ()
     """Indices of components that have to be ready before this one starts, whoever grants it an aspect among them."""
+    rate_hz: float | None = None
+    """Of a continuous component, which takes part in no stage; 0: as often as there is something newer."""
     start: bool = True
     """Whether it starts with the run; otherwise it waits until somebody asks for it."""
     memory_limit_mb: float | None = None

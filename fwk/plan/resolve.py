@@ -28,6 +28,12 @@ class Resolved:
     origins: dict[str, str]
 
     @property
+    def rate_hz(self) -> float | None:
+        """Of a continuous component."""
+        said = self.asked.entry.rate_hz
+        return self.declaration.rate_hz if said is None or self.declaration.rate_hz is None else said
+
+    @property
     def wish(self) -> Wish:
         """What wiring needs to know."""
         channels = self.asked.node.child("channels")
@@ -80,7 +86,7 @@ def resolve(
         report = partial(_report, problems, asked.name)
         config, origins = effective(declared.config, asked.settings(), asked.node.place, report)
         _check_ports(asked, declared, problems)
-        found.append(Resolved(asked, declared, stages_in(asked, declared.stages, stages, problems), config, origins))
+        found.append(Resolved(asked, declared, stages_in(asked, declared, stages, problems), config, origins))
     _check_time_sources(found, problems)
     return found
 

@@ -4,6 +4,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+from fwk.component import RATE_MAX_HZ
+
 PACE_MAX = "max"
 
 
@@ -64,6 +66,8 @@ class ComponentEntry(_Entry):
     """Stages, where they are other than the class says."""
     providers: dict[str, str] = {}
     """Attribute of an aspect to the component that provides it, where several do."""
+    rate_hz: float | None = Field(None, ge=0.0, le=RATE_MAX_HZ)
+    """Iterations a second of a continuous component, where it is other than the class says."""
     needs: Words = []
     """Components that have to be ready before this one starts."""
     start: bool = True

@@ -4,7 +4,7 @@ import re
 from collections.abc import Sequence
 
 from fwk.bus.ports import STAGES_MAX
-from fwk.component import DEFAULT_STAGES
+from fwk.component import DEFAULT_STAGES, Declaration
 from fwk.plan.errors import Problems, hint
 from fwk.plan.expand import Asked
 from fwk.plan.files import Files
@@ -28,9 +28,17 @@ def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
     return tuple(names)
 
 
-def stages_in(asked: Asked, declared: Sequence[str], stages: Sequence[str], problems: Problems) -> tuple[int, ...]:
-    """Indices of a component's stages, in the order of the main loop."""
-    wanted = asked.entry.stage if asked.entry.stage is not None else declared
+def stages_in(asked: Asked, declared: Declaration, stages: Sequence[str], problems: Problems) -> tuple[int, ...]:
+    """Indices of a component's stages, in the order of the main loop; a continuous one has none."""
+    if declared.rate_hz is not None:
+        if asked.entry.stage is not None:
+            text = "it is continuous and takes part in no stage; leave 'stage' out"
+            problems.add(asked.node.at("stage").place, asked.name, text)
+        return ()
+    if asked.entry.rate_hz is not None:
+        text = "it takes part in stages; leave 'rate_hz' out, or give its class a rate_hz instead of a stage"
+        problems.add(asked.node.at("rate_hz").place, asked.name, text)
+    wanted = asked.entry.stage if asked.entry.stage is not None else declared.stages
     place = asked.node.at("stage").place
     for name in wanted:
         if name not in stages:

@@ -1,6 +1,8 @@
 """A component in a replay: built as in its host process, fed from the recording."""
 
+from collections import deque
 from collections.abc import Mapping
+from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
@@ -29,7 +31,7 @@ class Actor:
         names = [each.name for each in plan.components]
         surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
-        self._waiting: dict[str, list[bytes]] = {channel: [] for channel in self.runner.readers}
+        self._waiting: dict[str, list[bytes]] = {}
         self.runner.init()
 
     def continue_at(self, channel: str, sequence: int) -> None:
@@ -37,14 +39,18 @@ class Actor:
         if channel in self.runner.writers:
             self.runner.writers[channel].sequence = sequence
 
+    def configure(self, settings: Mapping[str, Any]) -> None:
+        """New settings, which it has from now on."""
+        self.runner.configure(settings)
+
     def see(self, channel: str, data: list[bytes]) -> None:
         """Messages became visible; the next iteration has them."""
-        if channel in self._waiting:
-            self._waiting[channel] += data
+        if channel in self.runner.readers:
+            self._waiting.setdefault(channel, []).extend(data)
 
     def iterate(self, tick: int, place: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
         """One iteration with everything that became visible since the last."""
-        waiting, self._waiting = self._waiting, {channel: [] for channel in self._waiting}
+        waiting, self._waiting = self._waiting, {}
         written = self.runner.iterate(tick, place, self._stages[stage], time_us, waiting)
         self.runner.wishes()  # what came of them is in the recording
         return written
@@ -56,3 +62,52 @@ class Actor:
 
 def _silent(line: log_t) -> None:
     """The recorded run has logged it already."""
+
+
+@dataclass(frozen=True)
+class _Told:
+    """What a tick told a continuous component."""
+
+    tick: int
+    time_us: int
+    holder: str
+    arrived: dict[str, list[bytes]]
+    changes: list[Mapping[str, Any]]
+
+
+class ContinuousActor(Actor):
+    """One life of a continuous component: it iterates on what it was told up to a tick, whenever its done comes."""
+
+    def __init__(self, *arguments: Any) -> None:
+        super().__init__(*arguments)
+        self._told: deque[_Told] = deque()
+        self._changes: list[Mapping[str, Any]] = []
+
+    def configure(self, settings: Mapping[str, Any]) -> None:
+        """New settings, which it has with the next tick that it is told."""
+        self._changes.append(settings)
+
+    def tell(self, tick: int, time_us: int, holder: str) -> None:
+        """A tick says that everything seen so far is visible."""
+        arrived, self._waiting = self._waiting, {}
+        changes, self._changes = self._changes, []
+        self._told.append(_Told(tick, time_us, holder, arrived, changes))
+
+    def iterate_on(self, tick: int, number: int) -> list[tuple[str, bytes]]:
+        """Its iteration of that number on the marks of a tick."""
+        fresh: dict[str, list[bytes]] = {}
+        while len(self._told) > 1 and self._told[0].tick < tick:
+            self._take(self._told.popleft(), fresh)
+        newest = self._told[0]
+        self._take(newest, fresh)
+        self._told[0] = _Told(newest.tick, newest.time_us, newest.holder, {}, [])
+        self.runner.main_loop.holder = newest.holder
+        written = self.runner.iterate(tick, number, "", newest.time_us, fresh)
+        self.runner.wishes()
+        return written
+
+    def _take(self, told: _Told, fresh: dict[str, list[bytes]]) -> None:
+        for channel, data in told.arrived.items():
+            fresh.setdefault(channel, []).extend(data)
+        for settings in told.changes:
+            self.runner.configure(settings)

@@ -15,7 +15,7 @@ from fwk.component import declaration
 from fwk.messages import sequence_of
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
-from fwk.replay.actors import Actor
+from fwk.replay.actors import Actor, ContinuousActor
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
 from lcmtypes.core import change_t, done_t, tick_event_t
 
@@ -82,11 +82,17 @@ class Replay:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
                 self._iterate(event.index, record.tick, place, stage, record.time_us)
+            elif event.kind == tick_event_t.TOLD:
+                self._show()
+                for actor in self._continuous():
+                    actor.tell(record.tick, record.time_us, self._holder)
             elif event.kind == tick_event_t.DONE and event.index == len(self._plan.hosts):
                 self._come_in()
             elif event.kind == tick_event_t.DONE:
                 if event.stage == done_t.FINAL:
                     self._finalize(event.index, event.tick)
+                elif self._plan.components[self._plan.hosts[event.index].components[0]].rate_hz is not None:
+                    self._iterate_on(event.index, event.tick, event.stage)
                 elif (event.index, event.tick, event.stage) not in self._pending:
                     self._iterate(event.index, event.tick, event.stage, stage, record.time_us)
                 self._done(event.index, event.tick, event.stage)
@@ -97,7 +103,7 @@ class Replay:
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
                 with self._failing(actor.plan, f"the change of its settings in tick {tick}"):
-                    actor.runner.configure(settings)
+                    actor.configure(settings)
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings after that change, then takes over what was changed since."""
@@ -109,9 +115,10 @@ class Replay:
             component, changes = self._plan.components[index], self._changes.get(index, [])
             before = [settings for number, settings in changes if number <= started_with]
             with self._failing(component, "its start"):
-                actor = Actor(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
+                kind = Actor if component.rate_hz is None else ContinuousActor
+                actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
                 for _, settings in changes[len(before) :]:
-                    actor.runner.configure(settings)
+                    actor.configure(settings)
             for channel, data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():
@@ -141,6 +148,20 @@ class Replay:
             with self._failing(actor.plan, "finalize"):
                 made.append((actor, actor.finalize(tick, self._time_us.get(host, 0))))
         self._pending[host, tick, done_t.FINAL] = made
+
+    def _continuous(self) -> list[ContinuousActor]:
+        return [actor for actors in self._actors.values() for actor in actors if isinstance(actor, ContinuousActor)]
+
+    def _iterate_on(self, host: int, tick: int, number: int) -> None:
+        """A continuous component has run on the marks of a tick, perhaps long ago."""
+        made: list[tuple[Actor, list[tuple[str, bytes]]]] = []
+        for actor in self._actors.get(host) or self._leaving.get(host, []):
+            if isinstance(actor, ContinuousActor):
+                with self._failing(actor.plan, f"iteration {number} on tick {tick}"):
+                    made.append((actor, actor.iterate_on(tick, number)))
+                self._time_us[host] = actor.runner.stamp.time_us
+                self.iterations += 1
+        self._pending[host, tick, number] = made
 
     @contextmanager
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:

@@ -38,6 +38,10 @@ class Ledger:
             # All components of these hosts, not only those of the stage: what a host was told last is one step for all.
             members = {component.index for component in plan.components if component.host in hosts}
             self._interest.append([channel.index for channel in plan.channels if members & set(channel.readers)])
+        self._read: list[list[int]] = [
+            [channel.index for channel in plan.channels if set(host.components) & set(channel.readers)]
+            for host in plan.hosts
+        ]
         self._written: list[list[int]] = [
             [channel.index for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
@@ -64,6 +68,11 @@ class Ledger:
         changed, marks = self._changed, self.marks
         channels = [channel for channel in self._interest[stage] if changed[channel] > since]
         return channels, [marks[channel] for channel in channels]
+
+    def news_of(self, host: int, since: int) -> tuple[list[int], list[int]]:
+        """Channels that the components of a host read whose marks moved after step `since`, and the marks."""
+        channels = [channel for channel in self._read[host] if self._changed[channel] > since]
+        return channels, [self.marks[channel] for channel in channels]
 
     def void(self, host: int, incarnation: int) -> None:
         """A host died; its next start is `incarnation`."""

@@ -8,6 +8,7 @@ from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
 from fwk.plan.model import NOBODY, Plan
+from fwk.supervisor.continuous import Continuous
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop_times import LoopTimes
@@ -76,10 +77,11 @@ class MainLoop:
         self._step = 0
         self._began_us = 0  # wall time at which the stage began
         self._outstanding: set[int] = set()
-        self._said_late: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
         self.records = Records(self._ports, run, sender, mailbox)
+        continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
+        self._continuous = continuous if continuous.entries else None
         self._told = b""  # the newest tick as it was sent
         self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
         mailbox.on_done = self._on_done
@@ -133,6 +135,8 @@ class MainLoop:
         now_us = monotonic_us()
         time_us = self.pace.advance(now_us)
         self.times.tick_begins(now_us)
+        if self._continuous:
+            self._continuous.tell(self.tick, time_us, self.turns.holder)
         for place, stage, members in self.turns.now:
             if not self._interrupted():
                 self._place = place
@@ -234,8 +238,12 @@ class MainLoop:
                 self._sender.publish(sync.TICK, owed, self._ports.stage(stage))
 
     def _see_off(self) -> None:
-        """Waits until those who leave have finalized: what they wrote then is visible in the tick that begins."""
-        while self._hosts.leaving and not self._interrupted():
+        """Waits until those who leave have finalized: what they wrote then is visible in the tick that begins.
+
+        Nobody waits for continuous ones.
+        """
+        continuous = self._continuous.hosts if self._continuous else set()
+        while self._hosts.leaving - continuous and not self._interrupted():
             self._mailbox.pump(LOOK_US)
             self._hosts.maintain()
 
@@ -260,15 +268,12 @@ class MainLoop:
             return
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
-            if entry.held or entry.index in self._said_late:
-                self._said_late.discard(entry.index)
-                log = self._log.info if entry.held else self._log.warning
-                log(f"{entry.name} is on time again; its tick {done.tick} took {done.busy_us / 1000:.1f} ms")
+            self.times.on_time_again(entry, done.tick, done.busy_us)
         elif (done.tick, done.stage) == (self.tick, self._place) and done.host in self._outstanding:
             self._outstanding.discard(done.host)
             entry.seen = self._step
             self.times.answered(done.host, self._stage, done.busy_us, self.tick)
-        else:
+        elif not self._continuous or not self._continuous.take(entry, done):
             return
         if entry.changes:
             entry.told()
@@ -278,10 +283,10 @@ class MainLoop:
         """Of one that leaves the loop: of the iteration that it was late with, then of what it wrote in finalize."""
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
-        elif done.stage != done_t.FINAL or entry.index not in self._hosts.leaving:
-            return
-        else:
+        elif done.stage == done_t.FINAL and entry.index in self._hosts.leaving:
             self._hosts.leaving.discard(entry.index)
+        elif not self._continuous or done.stage == done_t.FINAL or not self._continuous.take(entry, done):
+            return
         self._take(done)
 
     def _take(self, done: done_t) -> None:
@@ -302,17 +307,8 @@ class MainLoop:
                 entry.busy, self._owed[entry.index] = (self.tick, self._place), (self._told, stage)
                 entry.seen = self._step
                 self.records.event(tick_event_t.LATE, entry.index)
-                if entry.held:
-                    self._log.info(f"{entry.name} is held by its debugger in tick {self.tick}; the loop goes on")
-                    continue
-                self.late += 1
-                if self.times.may_say_overrun(entry.index):
-                    self._said_late.add(entry.index)
-                    self._log.warning(
-                        f"{entry.name} is late: {self._plan.stages[stage]} of tick {self.tick} took longer than "
-                        f"{self._stage_time_us / 1000:g} ms; the loop goes on without it"
-                        f"{self.times.overruns_between(entry.index)}"
-                    )
+                self.late += not entry.held
+                self.times.late(entry, stage, self.tick, self._stage_time_us)
         self._outstanding = set()
 
     def _on_started(self, entry: HostEntry) -> None:

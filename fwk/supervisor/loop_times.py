@@ -63,6 +63,7 @@ class LoopTimes:
         self._warns = warns
         self._missed = Limited(1)
         self._overrun = [Limited(_OVERRUNS_SAID) for _ in table]
+        self._said_late: set[int] = set()
 
     def tick_begins(self, now_us: int) -> None:
         """A tick begins at this wall time."""
@@ -76,7 +77,7 @@ class LoopTimes:
         """A host took so long for its iterations of a stage."""
         if busy_us > self._slowest_host[0]:
             self._slowest_host = (busy_us, host, stage)
-        if busy_us > self._allowed_us and self.may_say_overrun(host):
+        if busy_us > self._allowed_us and self._overrun[host].lets_through(self._began_us):
             self._log.warning(
                 f"{self.name_of(host, stage)} overran its stage: {self._plan.stages[stage]} of tick {tick} took it "
                 f"{busy_us / 1000:.1f} ms, allowed are {self._allowed_us / 1000:g} ms{self._overrun[host].between()}"
@@ -103,13 +104,23 @@ class LoopTimes:
                 f"slowest component {self.name_of(host, its_stage)} ({busy_us / 1000:.1f} ms){self._missed.between()}"
             )
 
-    def may_say_overrun(self, host: int) -> bool:
-        """Whether it may be said now that a host is late or takes too long."""
-        return self._overrun[host].lets_through(self._began_us)
+    def late(self, entry: HostEntry, stage: int, tick: int, allowed_us: int) -> None:
+        """In real time the loop goes on without a host."""
+        if entry.held:
+            self._log.info(f"{entry.name} is held by its debugger in tick {tick}; the loop goes on")
+        elif self._overrun[entry.index].lets_through(self._began_us):
+            self._said_late.add(entry.index)
+            self._log.warning(
+                f"{entry.name} is late: {self._plan.stages[stage]} of tick {tick} took longer than "
+                f"{allowed_us / 1000:g} ms; the loop goes on without it{self._overrun[entry.index].between()}"
+            )
 
-    def overruns_between(self, host: int) -> str:
-        """Words for those that were not said."""
-        return self._overrun[host].between()
+    def on_time_again(self, entry: HostEntry, tick: int, busy_us: int) -> None:
+        """A late host has answered; said if its being late was."""
+        if entry.held or entry.index in self._said_late:
+            self._said_late.discard(entry.index)
+            log = self._log.info if entry.held else self._log.warning
+            log(f"{entry.name} is on time again; its tick {tick} took {busy_us / 1000:.1f} ms")
 
     def name_of(self, host: int, stage: int) -> str:
         """The component of a host that takes longest in a stage, and its process if that has another name."""

@@ -20,6 +20,7 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
         "wanted": "running" if entry.wanted else "stopped",
         "period_s": plan.period_us / US_PER_S,
         "stages": [plan.stages[stage] for stage in component.stages],
+        "rate_hz": component.rate_hz,
         "process": entry.name,
         "pid": entry.pid,
         "starts": entry.incarnation,

@@ -13,9 +13,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.aspects.vision import Ring
+from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
-from fwk.host.host import Assignment, Failure, Host
+from fwk.host.host import Assignment, Failure
 from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest
@@ -240,7 +241,7 @@ def _serve_host(
     if limit:
         limit_memory(limit)
     profile = Profile(profiled, assignment.incarnation) if profiled else None
-    host = Host(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
+    host = host_of(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
     log_uncaught(host.log)
     try:
         if debugged:

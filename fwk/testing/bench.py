@@ -112,7 +112,7 @@ class Bench:
             fresh = {name: port.waiting for name, port in self._ports.items() if port.waiting}
             for name in fresh:
                 self._ports[name].waiting = []
-            stages = [stage] if stage else self.declaration.stages
+            stages = [stage] if stage else self.declaration.stages or ("",)
             for step in stages:
                 for channel, data in self.runner.iterate(self.tick, 0, step, self.time_us, fresh):
                     port = self._ports[channel]

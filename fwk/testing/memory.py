@@ -1,6 +1,6 @@
 """A whole system in one process and one thread: the iteration contract without buses, for tests of many components."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fwk import messages
@@ -53,6 +53,8 @@ class MemorySystem:
         self._holding = Holding({wish.name: wish.declaration.stages for wish in wishes})
         self.runners: dict[str, Runner] = {}
         self._seen: dict[str, dict[str, int]] = {}
+        self._continuous: list[tuple[Runner, int]] = []  # with the time from iteration to iteration
+        self._due_us: dict[str, int] = {}
         self._by_stage: dict[str, list[Runner]] = {stage: [] for stage in stages}
         for wish, ports in zip(wishes, wiring.ports, strict=True):
             config_type = wish.declaration.config
@@ -64,6 +66,10 @@ class MemorySystem:
                 self._by_stage[stage].append(runner)
             if runner.has_plugins:
                 raise ValueError(f"{wish.name} asks for PluginControl, and here are no processes; take Bench, or a run")
+            if wish.declaration.rate_hz is not None:
+                rate_hz = wish.declaration.rate_hz
+                self._continuous.append((runner, round(US_PER_S / rate_hz) if rate_hz else 0))
+                self._due_us[wish.name] = 0
             if "time_source" in wish.declaration.aspects.values():
                 self._time_source = runner
         for runner in self.runners.values():
@@ -78,10 +84,13 @@ class MemorySystem:
             else:
                 self.now_us += self._period_us
             self._holding.decide()
+            visible = {channel: len(sent) for channel, sent in self.sent.items()}
+            done = [made for runner in self._due() for made in self._run(runner, 1, "", visible)]
             for number, stage in enumerate(self._holding.order or self._stages):
                 visible = {channel: len(sent) for channel, sent in self.sent.items()}
                 for runner in self._by_stage[stage]:
-                    self._iterate(runner, number, stage, visible)
+                    self._publish(self._run(runner, number, stage, visible))
+            self._publish(done)
 
     def come_in(self, channel: str, message: Any) -> None:
         """Between two ticks: a program outside writes a message, visible from the next tick on."""
@@ -95,14 +104,27 @@ class MemorySystem:
         sent = self.sent[channel]
         return messages.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
 
-    def _iterate(self, runner: Runner, number: int, stage: str, visible: Mapping[str, int]) -> None:
+    def _due(self) -> list[Runner]:
+        """Continuous components whose time has come: here it is logical time, and they are done at the tick's end."""
+        found = []
+        for runner, period_us in self._continuous:
+            if self.now_us >= self._due_us[runner.name]:
+                self._due_us[runner.name] = max(self.now_us, self._due_us[runner.name]) + period_us
+                found.append(runner)
+        return found
+
+    def _publish(self, written: Sequence[tuple[str, bytes]]) -> None:
+        for channel, data in written:
+            self.sent[channel].append(data)
+
+    def _run(self, runner: Runner, number: int, stage: str, visible: Mapping[str, int]) -> list[tuple[str, bytes]]:
         seen = self._seen[runner.name]
         fresh = {channel: self.sent[channel][seen[channel] : visible[channel]] for channel in seen}
         for channel in seen:
             seen[channel] = visible[channel]
         runner.main_loop.holder = self._holding.holder
-        for channel, data in runner.iterate(self.ticks, number, stage, self.now_us, fresh):
-            self.sent[channel].append(data)
+        written = runner.iterate(self.ticks, number, stage, self.now_us, fresh)
         wish = runner.main_loop.take()
         if wish is not None:
             self._holding.ask(self.ticks, number, runner.name, wish)
+        return written

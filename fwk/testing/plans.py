@@ -54,6 +54,7 @@ def plan_of(
                 channels=ports,
                 host=host_of[wish.name],
                 restart=restart or RestartPolicy(),
+                rate_hz=wish.declaration.rate_hz,
                 needs=tuple(sorted(map(names.index, granted.get(wish.name, ())))),
             )
         )

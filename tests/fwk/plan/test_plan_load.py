@@ -276,3 +276,28 @@ def test_a_plan_survives_being_written_down(load: Load) -> None:
 
 def test_the_same_file_gives_the_same_plan(load: Load) -> None:
     assert load(ROBOTS) == load(ROBOTS)
+
+
+RESTLESS = """
+components:
+  it/a: {use: "restless:Restless"}
+  it/b: {use: "restless:Restless", rate_hz: 0.5}
+  it/c: {use: "restless:Calm"}
+hosts: {all: it}
+"""
+RESTLESS_PARTS = """
+from fwk import Component
+class Restless(Component):
+    rate_hz = 20
+class Calm(Component):
+    stage = "think"
+"""
+
+
+@pytest.mark.parametrize("hosting", ["process", "robot", "single"])
+def test_a_continuous_component_has_a_rate_and_a_process_of_its_own(load: Load, folder: Path, hosting: str) -> None:
+    (folder / "restless.py").write_text(RESTLESS_PARTS)
+    plan = load(RESTLESS, hosting=hosting)
+    assert [(each.rate_hz, each.stages) for each in plan.components] == [(20, ()), (0.5, ()), (None, (5,))]
+    assert [host.components for host in plan.hosts] == [(0,), (1,), (2,)]
+    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan

@@ -64,6 +64,43 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         'it.yaml:1: it/a: plan_parts.Stageless: no stage; say for example: stage = "think"',
         "components: {it/a: {use: plan_parts:Stageless}}",
     ),
+    Broken(
+        """
+        it.yaml:2: it/a: restless.Both: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous
+        it.yaml:3: it/b: restless.Wrong: rate_hz is 'often'; it should be a number from 0 to 10000
+        it.yaml:4: it/c: restless.Looks.image: a continuous component has no frames: their ring goes on without it; \
+give it a stage, or let a component with a stage look
+        it.yaml:5: it/d: restless.Times.sun: a continuous component is no time source; give it a stage
+        it.yaml:6: it/e: it is continuous and takes part in no stage; leave 'stage' out
+        it.yaml:7: it/f: it takes part in stages; leave 'rate_hz' out, or give its class a rate_hz instead of a stage
+        """,
+        """
+        components:
+          it/a: {use: restless:Both}
+          it/b: {use: restless:Wrong}
+          it/c: {use: restless:Looks}
+          it/d: {use: restless:Times}
+          it/e: {use: restless:Right, stage: think}
+          it/f: {use: restless:Staged, rate_hz: 5}
+        --- restless.py
+        from fwk import Component, Image, TimeSource
+        class Both(Component):
+            stage = "think"
+            rate_hz = 5
+        class Wrong(Component):
+            rate_hz = "often"
+        class Looks(Component):
+            rate_hz = 5
+            image: Image
+        class Times(Component):
+            rate_hz = 5
+            sun: TimeSource
+        class Right(Component):
+            rate_hz = 0
+        class Staged(Component):
+            stage = "think"
+        """,
+    ),
 )
 def test_modules_and_classes(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)

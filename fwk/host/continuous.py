@@ -1,0 +1,169 @@
+"""The host of a continuous component: it iterates at its own pace on the newest marks that it was told."""
+
+import math
+from collections.abc import Callable
+
+from fwk.bus import sync
+from fwk.bus.inbox import Box
+from fwk.clock import US_PER_S, monotonic_us, sleep_s
+from fwk.host.attendant import Attendant
+from fwk.host.host import Assignment, Host
+from fwk.runner import Runner
+from lcmtypes.core import change_t, done_t, tick_t
+
+REPEAT_US = 2_000  # a done that was not taken is sent again after so long, later less and less often
+REPEAT_LONGEST_US = 100_000
+PATIENCE_US = US_PER_S  # how long one that is stopped waits until its last iteration was taken
+_MOST = done_t.FINAL - 1  # iterations on the same marks
+
+
+class ContinuousHost(Host):
+    """Runs one continuous component.
+
+    In simulated time it runs no more iterations on the marks of a tick than its rate gives in the time of one, so it
+    stands still when time does.
+    """
+
+    def __init__(
+        self,
+        assignment: Assignment,
+        stopping: Callable[[], bool],
+        wakeup: int,
+        make_runner: Callable[..., Runner] = Runner,
+    ) -> None:
+        super().__init__(assignment, stopping, wakeup, make_runner)
+        rate_hz = self._own[0].rate_hz or 0.0
+        self._period_us = round(US_PER_S / rate_hz) if rate_hz else 0
+        a_tick = max(1, math.ceil(rate_hz * self._plan.period_us / US_PER_S))
+        self._most = _MOST if self._plan.clock == "wall" and rate_hz else a_tick
+        self._members = [[self._own[0].name]]
+        self._stage_names = ("",)
+        self._attendant = Attendant(self._sender.socket.fileno(), self._attend)
+        self._told: list[tick_t] = []  # not taken over yet
+        self._tick: tick_t | None = None  # the newest one that was taken over
+        self._moved: dict[int, Box] = {}  # in which something became visible since the last iteration
+        self._changes: dict[int, change_t] = {}  # of settings by number, for the next iteration
+        self._runs = 0  # iterations on the marks of that tick
+        self._due_us = 0  # wall time of the next iteration; who is late catches up one period at the most
+        self._repeat_us = REPEAT_US
+        self._sent_us = 0
+        self._taken = True  # whether the supervisor has the last done
+
+    def serve(self) -> None:
+        """Initialises the component, lets it iterate until it is told to stop, finalizes it.
+
+        Raises:
+            Failure: the component raised.
+        """
+        try:
+            self._init()
+            while not self._stopping():
+                self._handle_own()
+                self._take_over()
+                if self._ready and monotonic_us() >= self._due_us:
+                    self._run()
+                else:
+                    self._poller.poll(self._idle_s)
+                self._repeat_if_due()
+                if monotonic_us() >= self._report_us:
+                    self._report()
+            self._see_taken()
+            self._finalize()
+        finally:
+            self._report()
+
+    @property
+    def _ready(self) -> bool:
+        return self._tick is not None and self._taken and self._runs < self._most
+
+    @property
+    def _idle_s(self) -> float:
+        """How long there is nothing to do unless something comes."""
+        until_us = self._report_us
+        if self._ready:
+            until_us = min(until_us, self._due_us)
+        if not self._taken:
+            until_us = min(until_us, self._sent_us + self._repeat_us)
+        return max(0.0, (until_us - monotonic_us()) / US_PER_S)
+
+    def _handle_message(self, channel: bytes, data: bytes) -> None:
+        if channel == sync.TICK:
+            tick: tick_t = sync.decode_tick(data)
+            if tick.run == self._assignment.run:
+                self._told.append(tick)
+        elif channel == sync.DONE:
+            done: done_t = sync.decode_done(data)
+            self._taken = self._taken or (done.tick, done.stage) == self._answered
+        else:
+            super()._handle_message(channel, data)
+
+    def _attend(self) -> None:
+        """While an iteration runs: the inputs of the next one are collected, and who lacks something gets it."""
+        self._handle_own()
+        self._take_over()
+
+    def _take_over(self) -> None:
+        """Takes over what ticks say, in their order."""
+        told, self._told = self._told, []
+        for tick in told:
+            if self._tick and tick.tick <= self._tick.tick:
+                continue
+            for box in self.inputs.advance(tick.channel, tick.sequence, tick.voids):
+                self._moved[box.plan.index] = box
+            if not self._tick and tick.tick > 1:
+                self.inputs.newest_only()
+            for box in self._moved.values():
+                box.collect()
+            self._changes |= {change.number: change for change in tick.changes}  # told again until they are taken over
+            self._tick, self._runs = tick, 0
+
+    def _run(self) -> None:
+        tick, moved = self._tick, list(self._moved.values())
+        assert tick
+        if not self.inputs.wait(moved, self._handle_own):
+            return
+        if self._answered[0] == 0:
+            self.inputs.forget_predecessor()
+        self._moved = {}
+        self._deliver(moved)
+        changes, self._changes = self._changes, {}
+        if changes:
+            self._configure(list(changes.values()))
+        if self._takers:
+            self._tell_holder(tick.main_loop)
+        self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
+        self._runs += 1
+        tick.stage = self._runs
+        self._due_us = self._period_us + max(self._due_us, monotonic_us() - self._period_us)
+        with self._attendant.serving():
+            ran = self._run_members(tick, 0)
+        self._answered, self._taken = (tick.tick, tick.stage), False
+        self._sent_us, self._repeat_us = monotonic_us(), REPEAT_US
+        self._finish(tick, *ran)
+
+    def _see_taken(self) -> None:
+        """Before the last done: the one before it has to be taken, or its messages would be seen without it."""
+        until_us = monotonic_us() + PATIENCE_US
+        while not self._taken and monotonic_us() < until_us:
+            sleep_s(0.001)
+            self._handle_own()
+            self._repeat_if_due()
+
+    def _repeat_if_due(self) -> None:
+        if self._taken or monotonic_us() < self._sent_us + self._repeat_us:
+            return
+        self._sender.publish(sync.DONE, self._done, self._sync_port)
+        self._sent_us, self._repeat_us = monotonic_us(), min(2 * self._repeat_us, REPEAT_LONGEST_US)
+
+
+def host_of(
+    assignment: Assignment,
+    stopping: Callable[[], bool],
+    wakeup: int,
+    make_runner: Callable[..., Runner] = Runner,
+) -> Host:
+    """The host that suits the components of an assignment."""
+    plan = assignment.plan
+    components = [plan.components[index] for index in plan.hosts[assignment.host].components]
+    kind = Host if components[0].rate_hz is None else ContinuousHost
+    return kind(assignment, stopping, wakeup, make_runner)

@@ -1,0 +1,72 @@
+"""Continuous components: each tick tells them what is visible, and what they have done is taken whenever it comes."""
+
+from collections import deque
+
+from fwk.bus import sync
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.plan.model import Plan
+from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.records import Records, change_message, void_messages
+from fwk.supervisor.table import HostEntry
+from lcmtypes.core import done_t, tick_event_t, tick_t
+
+_TICKS_KEPT = 4096
+
+
+class Continuous:
+    """The hosts of continuous components. The main loop never waits for one.
+
+    A host has one done under way: it repeats it until it gets it back, and only then runs again. So each iteration is
+    taken once and in order, whatever is lost.
+    """
+
+    def __init__(
+        self, plan: Plan, run: int, table: list[HostEntry], ledger: Ledger, sender: Sender, records: Records
+    ) -> None:
+        self.hosts = {component.host for component in plan.components if component.rate_hz is not None}
+        self.entries = [entry for entry in table if entry.index in self.hosts]
+        self._run = run
+        self._ledger = ledger
+        self._sender = sender
+        self._ports = Ports.of(plan)
+        self._records = records
+        self._steps: deque[tuple[int, int]] = deque(
+            maxlen=_TICKS_KEPT
+        )  # of the newest ticks: number, step of the ledger
+        self._taken: dict[int, tuple[int, int, int]] = {}  # by host: incarnation, tick and number of the newest done
+
+    def tell(self, tick: int, time_us: int, main_loop: int) -> None:
+        """A tick begins: from now on these marks count."""
+        step = self._ledger.begin()
+        self._steps.append((tick, step))
+        self._records.event(tick_event_t.TOLD, 0)
+        for entry in self.entries:
+            if entry.state == "running":
+                self._sender.send(sync.TICK, self._message(entry, tick, time_us, main_loop), self._port(entry))
+
+    def take(self, entry: HostEntry, done: done_t) -> bool:
+        """An iteration has ended; false if it is known already, or no continuous one's."""
+        if entry.index not in self.hosts:
+            return False
+        self._sender.send(sync.DONE, sync.encode_done(done), self._port(entry))
+        this = (done.incarnation, done.tick, done.stage)
+        if this <= self._taken.get(entry.index, (0, 0, 0)):
+            return False
+        self._taken[entry.index] = this
+        entry.seen = next((step for tick, step in reversed(self._steps) if tick == done.tick), 0)
+        return True
+
+    def _port(self, entry: HostEntry) -> int:
+        return self._ports.host(entry.index)
+
+    def _message(self, entry: HostEntry, tick: int, time_us: int, main_loop: int) -> bytes:
+        made = tick_t()
+        made.run, made.tick, made.time_us, made.main_loop = self._run, tick, time_us, main_loop
+        made.channel, made.sequence = self._ledger.news_of(entry.index, entry.seen)
+        made.n_marks = len(made.channel)
+        made.voids = void_messages(self._ledger, entry.seen)
+        made.n_voids = len(made.voids)
+        made.changes = [change_message(change) for change in entry.changes]
+        made.n_changes = len(made.changes)
+        return sync.encode_tick(made)
