@@ -126,8 +126,9 @@ def test_a_recording_replays_byte_for_byte(reference: Path) -> None:
     verified(reference.parent)
 
 
-def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: Launch, folder: Path) -> None:
-    run = launch(FILE, "--record", "log.lcm")
+@pytest.mark.parametrize("loss", ["0", "0.05"])
+def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: Launch, folder: Path, loss: str) -> None:
+    run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
     run.until_ticks("r/lifter", 10)
     for _ in range(2):
         restart(run, "r/lifter")
@@ -144,12 +145,14 @@ def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: La
         tally = recording.decoded(f"{worker}/tally")[-1]
         assert "failed: r/lifter was started after it had been sent" in tally.reasons
         assert tally.sent - tally.ended < 64 + 10
-    assert recording.gaps() == {}
-    verified(folder)
+    if loss == "0":  # otherwise the dead take along what was lost on its way
+        assert recording.gaps() == {}
+        verified(folder)
 
 
-def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder: Path) -> None:
-    run = launch(FILE, "--record", "log.lcm")
+@pytest.mark.parametrize("loss", ["0", "0.05"])
+def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder: Path, loss: str) -> None:
+    run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
     run.until_ticks("one/worker", 10)
     for _ in range(2):
         restart(run, "one/worker")
@@ -162,8 +165,9 @@ def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder:
     writers = {header.writer for header in recording.headers("r/lift@one/worker")}
     assert writers == {"one/worker", "one/worker#2", "one/worker#3"}, run.text
     assert recording.decoded("one/tally")[-1].done > 0
-    assert recording.gaps() == {}
-    verified(folder)
+    if loss == "0":  # otherwise the dead take along what was lost on its way
+        assert recording.gaps() == {}
+        verified(folder)
 
 
 def test_an_owner_that_does_not_come_back_lets_futures_end(launch: Launch, folder: Path) -> None:
