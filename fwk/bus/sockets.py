@@ -1,6 +1,7 @@
 """Sockets of the inner buses: multicast on the loopback interface, never further."""
 
 import itertools
+import secrets
 import socket
 
 from fwk.bus import wire
@@ -39,7 +40,8 @@ class Sender:
         self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
         self.socket.bind((LOOPBACK, port))
         self.socket.setblocking(False)
-        self._number = itertools.count()
+        # Not from 0: whoever sends from this port next must not seem to go on with a message that this one left undone.
+        self._number = itertools.count(secrets.randbits(32))
         self.refused = 0  # datagrams that the system would not take; receivers fetch them again
 
     def publish(self, channel: bytes, data: bytes, port: int) -> None:

@@ -16,7 +16,7 @@ from fwk.gateway.outside import Outside
 from fwk.gateway.strangers import Strangers
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
-from fwk.messages import Header, MessageError, sequence_of
+from fwk.messages import Header, MessageError
 from fwk.plan.model import Plan
 from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
 
@@ -59,7 +59,8 @@ class Gateway:
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
-        self._newest: dict[int, bytes] = {}  # newest message of each channel
+        # Of each channel the newest message and all of the last two ticks: tick, sequence number, message.
+        self._recent: dict[int, list[tuple[int, int, bytes]]] = {}
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
         self._open = True
@@ -128,9 +129,13 @@ class Gateway:
             return False
         collected = []
         for box in moved:
-            for data in box.take():
-                self._newest[box.plan.index] = data
+            arrived = box.take()
+            if arrived:
+                recent = self._recent.get(box.plan.index, [])
+                self._recent[box.plan.index] = [each for each in recent if each[0] >= record.tick - 1]
+            for data in arrived:
                 header = Header.of(data)
+                self._recent[box.plan.index].append((header.tick, header.sequence, data))
                 collected.append((header.tick, header.stage, box.plan.index, header.sequence, box.plan.name, data))
         self._outside.recorded(record)
         collected.sort()
@@ -217,15 +222,16 @@ class Gateway:
     def _answer_for(self, fetch: fetch_t) -> None:
         """Answers in place of a writer that has left the run, or was started again and asked for what was before.
 
-        Here are the newest message of the recorded ticks and all since. The answer is final: the tick that the reader
+        Here are the newest message of each channel, all of the last two recorded ticks, which nobody in lockstep is
+        further behind than, and all since. The answer is final: the tick that the reader
         takes part in, and with it the next record, may be waiting for it.
         """
         box = self._inputs.box(fetch.channel)
-        kept = self._outside.kept(fetch.channel, fetch.first_sequence, fetch.last_sequence)
-        found = box.held(fetch.first_sequence, fetch.last_sequence) if kept is None else kept
-        newest = self._newest.get(fetch.channel)
-        if kept is None and newest and fetch.first_sequence <= sequence_of(newest) <= fetch.last_sequence:
-            found.insert(0, (sequence_of(newest), newest))
+        found = self._outside.kept(fetch.channel, fetch.first_sequence, fetch.last_sequence)
+        if found is None:
+            recent = [(number, data) for _, number, data in self._recent.get(fetch.channel, [])]
+            found = [each for each in recent if fetch.first_sequence <= each[0] <= fetch.last_sequence]
+            found += box.held(fetch.first_sequence, fetch.last_sequence)
         expected = fetch.first_sequence
         for number, data in [*found, (fetch.last_sequence + 1, b"")]:
             if number > expected:

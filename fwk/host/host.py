@@ -24,7 +24,7 @@ from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
 from fwk.host.progress import Progress
-from fwk.host.report import Complaints, Figures
+from fwk.host.report import Complaints, Figures, told
 from fwk.messages import MessageError
 from fwk.plan.model import NOBODY, ComponentPlan, Plan
 from fwk.plan.starting import start_order
@@ -373,7 +373,7 @@ class Host:
     def _what(self, error: BaseException) -> str:
         limit = self._plan.memory_limit_mb(self._assignment.host)
         over = f"more memory than its memory_limit_mb of {limit:g}" if limit and isinstance(error, MemoryError) else ""
-        return f"{type(error).__name__}: {over or error}"
+        return f"{type(error).__name__}: {over}" if over else told(error)
 
     def _report(self) -> None:
         self._report_us = monotonic_us() + (READY_REPORT_MS * 1000 if self._answered[0] == 0 else REPORT_US)

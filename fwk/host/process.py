@@ -4,6 +4,7 @@ import ctypes
 import faulthandler
 import os
 import resource
+import select
 import signal
 import sys
 from collections.abc import Callable
@@ -26,6 +27,23 @@ def wait_for_end(pid: int) -> str:
     """Waits for a child that is ending; says how it ended."""
     code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
     return f"killed by signal {-code}" if code < 0 else f"exit code {code}"
+
+
+def end_child(pid: int, patience_s: float) -> bool:
+    """Waits for a child that should end by itself, also if somebody has stopped it (SIGSTOP); kills it if it does not.
+
+    Says whether it had to be killed.
+    """
+    os.kill(pid, signal.SIGCONT)
+    descriptor = os.pidfd_open(pid)
+    poller = select.poll()
+    poller.register(descriptor, select.POLLIN)
+    late = not poller.poll(patience_s * 1000)
+    os.close(descriptor)
+    if late:
+        os.kill(pid, signal.SIGKILL)
+    os.waitpid(pid, 0)
+    return late
 
 
 def raise_file_limit() -> None:

@@ -7,6 +7,8 @@ from fwk.clock import monotonic_us
 from fwk.histogram import Histogram
 from lcmtypes.core import component_state_t, histogram_t
 
+TEXT_CHARACTERS = 1000  # of an exception in a reason; all of it is in the log
+
 
 @dataclass
 class Figures:
@@ -63,3 +65,15 @@ class Complaints:
             self._log.warning(f"{channel}: {text}")
         elif str(count).strip("0") == "1":
             self._log.warning(f"{channel}: {text} ({count} times)")
+
+
+def told(error: BaseException) -> str:
+    """An exception in a line, whatever its text is and whether it can be made at all."""
+    try:
+        text = str(error)
+    except Exception as worse:
+        text = f"its text cannot be made ({type(worse).__name__})"
+    if len(text) > TEXT_CHARACTERS:
+        text = f"{text[:TEXT_CHARACTERS]} ... ({len(text) - TEXT_CHARACTERS} characters more)"
+    plain = text.encode(errors="backslashreplace").decode().replace("\0", "\\0")  # what can travel
+    return f"{type(error).__name__}: {plain}"

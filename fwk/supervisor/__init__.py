@@ -54,6 +54,8 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     if failures and not failed:
         reason, failed = f"failed: {'; '.join(failures)}", True
     newest = decoded(plan, children.stop())
+    if children.gave_up and not failed:
+        reason, failed = f"broken: {children.gave_up}", True
     zygote.close()
     lock.release()
     return Outcome(
@@ -114,6 +116,7 @@ class Supervisor:
         places = Places(plan, number, self._hosts, self._mailbox, rings)
         self._control = Control(plan, options, self._hosts, self.loop, self._mailbox, self.log, places)
         self._status = StatusReport(number, self._hosts.table, self.loop, self.pace)
+        self.loop.on_wait = self._publish_status_in_time
         self.wall_s = 0.0
 
     def work(self, children: Children) -> tuple[str, bool]:
@@ -142,8 +145,7 @@ class Supervisor:
         while not self._interrupted() and not self._done():
             self.loop.run_tick()
             self._clock.tick, self._clock.now_us = self.loop.tick, self.pace.time_us
-            if self._status.due:
-                self._publish_status()
+            self._publish_status_in_time()
         self.wall_s = self._status.wall_s
         self.loop.finish()
         broken = [f"{entry.name}: {entry.reason}" for entry in self._hosts.table if entry.state == "failed"]
@@ -178,6 +180,10 @@ class Supervisor:
                 self._mailbox.signals.remove(signal.SIGINT)
                 self._zygote.signal(self._debugged.pid, signal.SIGINT)
         return bool(self._mailbox.signals)
+
+    def _publish_status_in_time(self) -> None:
+        if self._status.due:
+            self._publish_status()
 
     def _publish_status(self) -> status_t:
         status = self._status.message()

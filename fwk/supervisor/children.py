@@ -13,19 +13,22 @@ from fwk.gateway import sinks, targets
 from fwk.gateway.board import Board
 from fwk.gateway.calls import Calls
 from fwk.gateway.gateway import Gateway
-from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
+from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
 from fwk.supervisor.options import RunOptions
 
 _PACKET_MAX = 1 << 20
+_PATIENCE_S = 5.0
 
 
 class Children:
     """Forks gateway and display, before the supervisor has sockets of its own."""
 
     def __init__(self, plan: Plan, run: int, options: RunOptions) -> None:
+        self.gave_up = ""
+        """What could not be waited for at the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -61,17 +64,22 @@ class Children:
         """Lets both finish; returns the newest messages that the gateway saw, decoded."""
         if self._watcher:
             os.kill(self._watcher, signal.SIGTERM)
-            os.waitpid(self._watcher, 0)
-        self.control.settimeout(5.0)
+            end_child(self._watcher, 1.0)
+        self.control.settimeout(_PATIENCE_S)
         newest: dict[str, object] = {}
+        for pid in filter(None, (self._gateway, self._display)):
+            os.kill(pid, signal.SIGCONT)  # somebody may have stopped it
         try:
             self.control.shutdown(socket.SHUT_WR)
             while packet := self.control.recv(_PACKET_MAX):
                 channel, _, data = packet.partition(b"\0")
                 newest[channel.decode()] = data
-        except OSError:
+        except OSError as error:
             if self._gateway:
                 os.kill(self._gateway, signal.SIGKILL)
+            if self._gateway and isinstance(error, TimeoutError):
+                when = f"{_PATIENCE_S:g} s after the end"
+                self.gave_up = f"the gateway was not done {when}; killed: the recording may lack its end"
         if self._gateway:
             os.waitpid(self._gateway, 0)
         os.waitpid(self._display, 0)

@@ -138,12 +138,14 @@ class Hosts:
         return {component.name: component.reason for component in components if component.state == "failed"}
 
     def stop_all(self) -> list[str]:
-        """Asks all hosts to stop, kills those that do not; returns the names of those killed."""
+        """Asks all hosts to stop, also those that stand still; kills those that do not and returns their names."""
         self._stopping = True
         killed = []
+        self._zygote.wake()
         for entry in self.table:
             if entry.alive and entry.pid:
                 self._signal(entry, signal.SIGTERM)
+                self._signal(entry, signal.SIGCONT)  # somebody may have stopped it
             elif entry.state == "waiting":
                 entry.state = "failed"
         deadline_us = monotonic_us() + STOP_GRACE_US

@@ -52,6 +52,8 @@ class MainLoop:
         """Called with a done in which components ask for something."""
         self.on_boundary: Callable[[int], None] = lambda _: None
         """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
+        self.on_wait: Callable[[], None] = lambda: None
+        """Called again and again while a stage takes longer than a moment."""
         self.times = LoopTimes(plan, hosts.table, log)
         self._plan = plan
         self._run = run
@@ -183,6 +185,8 @@ class MainLoop:
         while self._outstanding and not self._interrupted():
             if now_us >= look_us:
                 self._look_after(members)
+                if now_us > began_us:
+                    self.on_wait()
                 look_us = now_us + LOOK_US
             due_us = min(sent_us + repeat_us, look_us)
             if not self._lockstep:

@@ -18,7 +18,7 @@ from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.host import Assignment, Failure
 from fwk.host.memory import limit_memory
-from fwk.host.process import StopSignal, die_with_parent, run_forked, wait_for_end
+from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest
 from fwk.host.progress import Progress
 from fwk.host.uncaught import log_uncaught
@@ -28,6 +28,7 @@ from fwk.supervisor.options import RunBroken
 from fwk.supervisor.preload import preload
 
 _PACKET_MAX = 1 << 20
+_PATIENCE_S = 1.0
 
 
 @dataclass(frozen=True)
@@ -125,7 +126,12 @@ class Zygote:
         """Ends the zygote; hosts that still run are killed."""
         self.socket.close()
         if self.pid:
-            os.waitpid(self.pid, 0)
+            end_child(self.pid, _PATIENCE_S)
+
+    def wake(self) -> None:
+        """Lets it go on if somebody has stopped it."""
+        if self.pid:
+            os.kill(self.pid, signal.SIGCONT)
 
     def _send(self, request: dict[str, Any]) -> None:
         self.socket.setblocking(True)
@@ -225,6 +231,8 @@ class _Forker:
             if pid == 0:
                 return
             host, incarnation = self._children.pop(pid)
+            with contextlib.suppress(OSError):  # it had started none, or they have ended, too
+                os.killpg(pid, signal.SIGKILL)  # programs that its components had started
             code = os.waitstatus_to_exitcode(status)
             event = {"event": "ended", "host": host, "incarnation": incarnation, "pid": pid, "code": code}
             event["core"] = os.WCOREDUMP(status)

@@ -13,8 +13,8 @@ from tests.system.system_runs import Launched, pause
 pytestmark = pytest.mark.system
 
 FILE = "launch/orchestra.yaml"
-STOP_S = 15.0  # idle it takes less than five
-ORPHAN_S = 10.0  # idle it takes less than two
+STOP_S = 5.0
+ORPHAN_S = 2.0
 
 
 @pytest.fixture

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 
 import pytest
 
+from fwk.bus import wire
 from fwk.bus.ports import Ports
-from fwk.bus.sockets import Sender
+from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.gateway.gateway import Gateway
 from fwk.messages import sequence_of
 from lcmtypes.core import fetch_t, gone_t, log_t, tick_record_t, void_t
@@ -151,15 +152,30 @@ def test_what_a_dead_writer_had_sent_beyond_the_marks_is_not_recorded(followed: 
     assert writers == [imu(1), imu(2, "r/senses#2")]
 
 
-def test_it_answers_for_a_writer_that_is_gone_with_the_newest_and_all_since(followed: Followed) -> None:
-    followed.publish(1, 2, 3)
-    followed.record(1, mark=3)
+def test_it_answers_for_a_writer_that_is_gone_with_all_of_two_ticks_and_all_since(followed: Followed) -> None:
+    followed.publish(1, 2, 3, 4)  # in the ticks of these numbers
+    for tick in range(1, 5):
+        followed.record(tick, mark=tick)
     followed.gateway._receive_records()
-    followed.publish(4)
-    followed.ask(host=1, first=1, last=5)
+    followed.publish(5)
+    ears = multicast_receiver(followed.ports.channel(0))
+    followed.ask(host=1, first=1, last=6)
     followed.serve()
     gone = [gone_of(followed.reader.receive(followed.ports.members)) for _ in range(2)]
-    assert gone == [(1, 2), (5, 5)]
+    assert gone == [(1, 2), (6, 6)]
+    sent = [sequence_of(wire.short(ears.recv(wire.DATAGRAM_MAX))[1]) for _ in range(3)]
+    assert sent == [3, 4, 5]
+    ears.close()
+
+
+def test_it_keeps_the_newest_of_who_has_not_written_for_long(followed: Followed) -> None:
+    followed.publish(1)
+    for tick in range(1, 9):
+        followed.record(tick, mark=1)
+    followed.gateway._receive_records()
+    followed.ask(host=1, first=1, last=1)
+    followed.serve()
+    assert followed.reader.receive(followed.ports.members) is None
 
 
 def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) -> None:

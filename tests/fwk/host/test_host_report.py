@@ -1,8 +1,10 @@
 """What was refused: each kind named once, all counted."""
 
+import pytest
+
 from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.host.report import Complaints, Figures
+from fwk.host.report import Complaints, Figures, told
 from lcmtypes.core import log_t
 
 
@@ -52,3 +54,27 @@ def test_figures_sum_up_iterations() -> None:
     assert (message.name, message.state, message.iterations) == ("r/base", "running", 3)
     assert (message.busy_us, message.worst_us) == (60, 30)
     assert message.awake_us >= 0
+
+
+class NoWordsError(Exception):
+    def __str__(self) -> str:
+        raise ValueError
+
+
+@pytest.mark.parametrize(
+    ("error", "text"),
+    [
+        (KeyError("x"), "KeyError: 'x'"),
+        (NoWordsError(), "NoWordsError: its text cannot be made (ValueError)"),
+        (OSError("file \udcff"), "OSError: file \\udcff"),
+        (OSError("a\0b"), "OSError: a\\0b"),
+    ],
+)
+def test_whatever_is_raised_can_be_told(error: BaseException, text: str) -> None:
+    assert told(error) == text
+    assert told(error).encode()
+
+
+def test_what_is_told_is_not_endless() -> None:
+    assert len(told(ValueError("x" * 100_000))) < 1100
+    assert "characters more" in told(ValueError("x" * 100_000))

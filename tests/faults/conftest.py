@@ -1,0 +1,51 @@
+"""What the tests of faults share: the orchestra, a launcher that cleans up, and the log of an undisturbed run."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.faults.faults_after import Aftermath
+from tests.system.conftest import _types, folder, launch, ports
+from tests.system.system_orchestra import orchestra
+from tests.system.system_runs import Launched, PortBlock, write_files
+
+__all__ = ["RUN", "TICKS", "_types", "folder", "launch", "ports"]
+
+TICKS = 40
+RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")
+
+
+@pytest.fixture(scope="session")
+def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of an undisturbed run in lockstep."""
+    folder, ports = tmp_path_factory.mktemp("undisturbed"), PortBlock()
+    write_files(folder, orchestra(ports.public_url))
+    run = Launched(folder, ports, (*RUN, "--ticks", str(TICKS)), {})
+    try:
+        assert run.wait() == 0, run.text
+    finally:
+        run.end()
+        ports.release()
+    return folder / "log.lcm"
+
+
+@pytest.fixture
+def traced(folder: Path) -> Path:
+    """The orchestra's folder; players leave their numbers of process and tick in it."""
+    (folder / "traces").mkdir()
+    return folder
+
+
+@pytest.fixture
+def wall(traced: Path) -> Path:
+    """The orchestra by the clock on the wall, without a conductor."""
+    file = traced / "launch/orchestra.yaml"
+    lines = [line for line in file.read_text().splitlines() if "conductor" not in line and "speed" not in line]
+    file.write_text("\n".join([*lines, "clock: wall", "period_s: 0.05", "stage_time_s: 0.3", ""]))
+    return traced
+
+
+@pytest.fixture
+def after() -> Aftermath:
+    """Notes what runs hold of the machine; asked at the end, it says what is wrong."""
+    return Aftermath()

@@ -1,0 +1,27 @@
+"""Senders on one port, one after the other, as those of a host that was started again."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from fwk.bus import wire
+from fwk.bus.sockets import Sender, multicast_receiver
+from tests.system.system_runs import PortBlock
+
+
+@pytest.fixture
+def ports() -> Iterator[PortBlock]:
+    made = PortBlock()
+    yield made
+    made.release()
+
+
+def test_halves_of_two_lives_are_no_message(ports: PortBlock) -> None:
+    ears, assembler = multicast_receiver(ports.bus), wire.Assembler()
+    for life, kept in ((b"1", 0), (b"2", 1)):  # of the first only the beginning arrives, of the second only the end
+        sender = Sender(ports.bus + 1)
+        sender.publish(b"a/large", life * 100_000, ports.bus)
+        sender.socket.close()
+        halves = [ears.recv(wire.DATAGRAM_MAX) for _ in range(2)]
+        assert assembler.feed(halves[kept], ports.bus + 1) is None
+    ears.close()
