@@ -95,6 +95,8 @@ class LoopTimes:
         self.loop.add(took_us)
         if not self._warns or not 0 < desired_us * TOLERANCE < took_us or any(entry.held for entry in self._table):
             return
+        if tick == 1:  # memory and caches are cold everywhere
+            return
         if self._missed.lets_through(now_us):
             stage_us, stage = self._slowest_stage
             busy_us, host, its_stage = self._slowest_host
