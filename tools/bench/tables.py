@@ -66,7 +66,7 @@ def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
                 peer.title,
                 milliseconds(runs.spread(peer.name, scenario.name, tick_us)),
                 milliseconds(runs.spread(peer.name, scenario.name, tick_p99_us)),
-                milliseconds(runs.spread(peer.name, scenario.name, lambda result: _value(result, "cpu_us"))),
+                milliseconds(runs.spread(peer.name, scenario.name, _cpu_us)),
                 middle(peer.name, "switches", ".0f"),
                 middle(peer.name, "for_nothing", ".0f"),
                 middle(peer.name, "stale", ".0f"),
@@ -97,6 +97,12 @@ def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
 def _value(result: dict[str, Any], key: str) -> float | None:
     value = result.get(key)
     return None if value is None else float(value)
+
+
+def _cpu_us(result: dict[str, Any]) -> float | None:
+    """CPU time; not known when threads ended meanwhile, which took their counters along."""
+    used_us = _value(result, "cpu_us")
+    return None if used_us is None or used_us < 0 else used_us
 
 
 def jitter_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
