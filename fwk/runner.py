@@ -18,9 +18,11 @@ from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Outbox, Sends, SendsEach
 from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
-from fwk.component import DEFAULT_STAGES, Component, Declaration, Port
+from fwk.component import DEFAULT_STAGES, Component
 from fwk.config import LOG_LEVEL, Config
+from fwk.declaration import Declaration
 from fwk.messages import Message
+from fwk.port import Port
 from lcmtypes.core import done_t, log_t
 
 AWAY_TICKS = 16

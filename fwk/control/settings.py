@@ -10,9 +10,9 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 
-from fwk.component import declaration
 from fwk.config import Config
 from fwk.control.requests import RequestError
+from fwk.declaration import declaration
 from fwk.plan.errors import PlanError, Problems
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.plan.overrides import PLACE, overrides

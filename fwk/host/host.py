@@ -18,7 +18,7 @@ from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import US_PER_S, Clock, monotonic_us
-from fwk.component import DeclarationError, declaration
+from fwk.declaration import declaration
 from fwk.host.inputs import Inputs
 from fwk.host.memory import lift_limit
 from fwk.host.outputs import Outputs
@@ -28,6 +28,7 @@ from fwk.host.report import Complaints, Figures, told
 from fwk.messages import MessageError
 from fwk.plan.model import NOBODY, ComponentPlan, Plan
 from fwk.plan.starting import start_order
+from fwk.port import DeclarationError
 from fwk.runner import AWAY_TICKS, Runner, Surroundings
 from lcmtypes.core import actual_t, change_t, done_t, fetch_t, gone_t, log_t, tick_t
 

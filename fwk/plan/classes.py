@@ -12,8 +12,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, TracebackType
 
-from fwk.component import Component, Declaration, DeclarationError, declaration
+from fwk.component import Component
+from fwk.declaration import Declaration, declaration
 from fwk.plan.errors import hint
+from fwk.port import DeclarationError
 
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 

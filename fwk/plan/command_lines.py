@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from fwk import messages
-from fwk.component import Port
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY
 from fwk.plan.names import CHANNEL_BYTES
 from fwk.plan.wish import Report, Wish
+from fwk.port import Port
 
 ANSWERS = "answers"
 OUTSIDE = "outside"

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from fwk.component import Declaration
+from fwk.declaration import Declaration
 from fwk.plan.classes import UnusableError, components_in, find_class, imported
 from fwk.plan.errors import Problems
 from fwk.plan.expand import Asked, expand

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from fwk.component import Declaration
+from fwk.declaration import Declaration
 from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.errors import Problems
 from fwk.plan.expand import Asked

@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
-from fwk.component import RATE_MAX_HZ
+from fwk.declaration import RATE_MAX_HZ
 
 PACE_MAX = "max"
 

@@ -4,7 +4,8 @@ import re
 from collections.abc import Sequence
 
 from fwk.bus.ports import STAGES_MAX
-from fwk.component import DEFAULT_STAGES, Declaration
+from fwk.component import DEFAULT_STAGES
+from fwk.declaration import Declaration
 from fwk.plan.errors import Problems, hint
 from fwk.plan.expand import Asked
 from fwk.plan.files import Files

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from fwk import messages
-from fwk.component import Port
 from fwk.plan.command_lines import CommandLines
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan
 from fwk.plan.names import mistake_in, mistake_in_pattern
 from fwk.plan.providers import Granted, with_providers
 from fwk.plan.wish import Report, Wish
+from fwk.port import Port
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from fwk.component import Declaration, Port
+from fwk.declaration import Declaration
+from fwk.port import Port
 
 Report = Callable[[str, str | None, str], None]
 """Takes a mistake: component, port attribute or None, text."""

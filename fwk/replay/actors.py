@@ -7,7 +7,7 @@ from importlib import import_module
 from typing import Any
 
 from fwk.aspects.vision import Ring
-from fwk.component import declaration
+from fwk.declaration import declaration
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.runner import Runner, Surroundings
 from lcmtypes.core import log_t

@@ -11,7 +11,7 @@ from importlib import import_module
 from typing import Any
 
 from fwk.aspects.vision import Ring
-from fwk.component import declaration
+from fwk.declaration import declaration
 from fwk.messages import sequence_of
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing

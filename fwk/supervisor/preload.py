@@ -4,7 +4,8 @@ import json
 from contextlib import suppress
 from importlib import import_module
 
-from fwk.component import Component, declaration
+from fwk.component import Component
+from fwk.declaration import declaration
 from fwk.plan.model import Plan
 
 

@@ -7,7 +7,8 @@ from fwk import messages
 from fwk.aspects.main_loop import Holding
 from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
-from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.component import DEFAULT_STAGES, Component
+from fwk.declaration import declaration
 from fwk.gateway.outside import STAGE, WRITER
 from fwk.plan.wiring import wire
 from fwk.plan.wish import Wish

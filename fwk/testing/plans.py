@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fwk.clock import US_PER_S
-from fwk.component import DEFAULT_STAGES, Component, declaration
+from fwk.component import DEFAULT_STAGES, Component
+from fwk.declaration import declaration
 from fwk.messages import type_named
 from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
 from fwk.plan.needs import granted_by

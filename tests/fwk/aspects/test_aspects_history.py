@@ -5,7 +5,8 @@ from typing import Any
 import pytest
 
 from fwk import Component, Reads, ReadsEach, Writes, channel
-from fwk.component import DeclarationError, declaration
+from fwk.declaration import declaration
+from fwk.port import DeclarationError
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.robot import imu_t
 

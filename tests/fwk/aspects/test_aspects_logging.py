@@ -9,7 +9,8 @@ from fwk.aspects import logging
 from fwk.aspects.rate_limit import RateLimit
 from fwk.bus import wire
 from fwk.clock import US_PER_S, Clock
-from fwk.component import DeclarationError, declaration
+from fwk.declaration import declaration
+from fwk.port import DeclarationError
 from fwk.testing.bench import Bench
 from lcmtypes.core import log_t
 

@@ -3,7 +3,8 @@
 import pytest
 
 from fwk import Aspect, Clock, Component, Logger, Reads, ReadsEach, VisionMaster, Writes
-from fwk.component import DeclarationError, declaration
+from fwk.declaration import declaration
+from fwk.port import DeclarationError
 from fwk.runner import Runner
 from fwk.testing.bench import Bench
 from fwk.testing.memory import MemorySystem
