@@ -8,9 +8,9 @@ from typing import Annotated
 import typer
 
 from fwk.cli.logs import failing, find_log
+from fwk.host.blame import Failure
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
-from fwk.host.host import Failure
 from fwk.plan.errors import hint
 from fwk.record.types import use_types_of
 from fwk.replay.recording import Recording, RecordingError

@@ -10,9 +10,10 @@ from importlib import import_module
 from typing import Any
 
 from fwk.aspects.vision import Ring
+from fwk.host.assignment import Assignment
+from fwk.host.blame import Failure
 from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
-from fwk.host.host import Assignment, Failure
 from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, raise_file_limit
 from fwk.plan.model import ComponentPlan, Plan

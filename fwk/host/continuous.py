@@ -6,8 +6,9 @@ from collections.abc import Callable
 from fwk.bus import sync
 from fwk.bus.inbox import Box
 from fwk.clock import US_PER_S, monotonic_us, sleep_s
+from fwk.host.assignment import Assignment
 from fwk.host.attendant import Attendant
-from fwk.host.host import Assignment, Host
+from fwk.host.host import Host
 from fwk.runner import Runner
 from lcmtypes.core import change_t, done_t, tick_t
 
@@ -32,12 +33,12 @@ class ContinuousHost(Host):
         make_runner: Callable[..., Runner] = Runner,
     ) -> None:
         super().__init__(assignment, stopping, wakeup, make_runner)
-        rate_hz = self._own[0].rate_hz or 0.0
+        own = self._members.plans[0]
+        rate_hz = own.rate_hz or 0.0
         self._period_us = round(US_PER_S / rate_hz) if rate_hz else 0
         a_tick = max(1, math.ceil(rate_hz * self._plan.period_us / US_PER_S))
         self._most = _MOST if self._plan.clock == "wall" and rate_hz else a_tick
-        self._members = [[self._own[0].name]]
-        self._stage_names = ("",)
+        self._names = (own.name,)
         self._attendant = Attendant(self._sender.socket.fileno(), self._attend)
         self._told: list[tick_t] = []  # not taken over yet
         self._tick: tick_t | None = None  # the newest one that was taken over
@@ -49,28 +50,18 @@ class ContinuousHost(Host):
         self._sent_us = 0
         self._taken = True  # whether the supervisor has the last done
 
-    def serve(self) -> None:
-        """Initialises the component, lets it iterate until it is told to stop, finalizes it.
+    def _turn(self) -> None:
+        self._handle_own()
+        self._take_over()
+        if self._ready and monotonic_us() >= self._due_us:
+            self._run()
+        else:
+            self._poller.poll(self._idle_s)
+        self._repeat_if_due()
 
-        Raises:
-            Failure: the component raised.
-        """
-        try:
-            self._init()
-            while not self._stopping():
-                self._handle_own()
-                self._take_over()
-                if self._ready and monotonic_us() >= self._due_us:
-                    self._run()
-                else:
-                    self._poller.poll(self._idle_s)
-                self._repeat_if_due()
-                if monotonic_us() >= self._report_us:
-                    self._report()
-            self._see_taken()
-            self._finalize()
-        finally:
-            self._report()
+    def _finalize(self) -> None:
+        self._see_taken()
+        super()._finalize()
 
     @property
     def _ready(self) -> bool:
@@ -125,18 +116,17 @@ class ContinuousHost(Host):
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
         self._moved = {}
-        self._deliver(moved)
+        self._members.deliver(moved)
         changes, self._changes = self._changes, {}
         if changes:
-            self._configure(list(changes.values()))
-        if self._takers:
-            self._tell_holder(tick.main_loop)
+            self._members.configure(list(changes.values()))
+        self._members.tell_holder(tick.main_loop)
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         self._runs += 1
         tick.stage = self._runs
         self._due_us = self._period_us + max(self._due_us, monotonic_us() - self._period_us)
         with self._attendant.serving():
-            ran = self._run_members(tick, 0)
+            ran = self._members.run(self._names, "", tick)
         self._answered, self._taken = (tick.tick, tick.stage), False
         self._sent_us, self._repeat_us = monotonic_us(), REPEAT_US
         self._finish(tick, *ran)

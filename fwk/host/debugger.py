@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 from typing import Any
 
-from fwk.host.host import Failure
+from fwk.host.blame import Failure
 from fwk.plan.model import ComponentPlan
 
 LEFT = 75

@@ -13,10 +13,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.aspects.vision import Ring
+from fwk.host.assignment import Assignment
+from fwk.host.blame import Failure
 from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
-from fwk.host.host import Assignment, Failure
 from fwk.host.memory import limit_memory
 from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest

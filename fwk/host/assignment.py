@@ -1,0 +1,27 @@
+"""What a host process is told when it starts."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from fwk.aspects.vision import Ring
+from fwk.host.progress import Progress
+from fwk.plan.model import Plan
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """What a host process is told when it starts."""
+
+    plan: Plan
+    host: int
+    run: int
+    incarnation: int
+    sequences: Mapping[str, int]
+    """Sequence numbers that its channels have reached, for one that was restarted."""
+    rings: Mapping[str, Ring]
+    settings: Mapping[str, str] = field(default_factory=dict)
+    """Settings of its components that were changed since the run began, by name, as JSON."""
+    fresh_code: bool = False
+    """Whether it imports the application's modules anew."""
+    progress: Progress | None = None
+    """Where it says which of its components works."""

@@ -1,0 +1,178 @@
+"""The components of a process: what each gets, their iterations, and what they wrote."""
+
+import json
+from collections.abc import Callable, Iterable, Sequence
+from importlib import import_module
+
+from fwk.aspects.logging import Logger
+from fwk.bus.inbox import Box
+from fwk.clock import monotonic_us
+from fwk.declaration import declaration
+from fwk.host.assignment import Assignment
+from fwk.host.blame import Blame
+from fwk.host.report import Figures
+from fwk.plan.model import NOBODY, ComponentPlan
+from fwk.plan.starting import start_order
+from fwk.port import DeclarationError
+from fwk.runner import Runner, Surroundings
+from lcmtypes.core import change_t, log_t, tick_t
+
+
+class Members:
+    """Takes the components of a host from `init` to `finalize`.
+
+    Whatever one of them raises comes out as `Failure`.
+    """
+
+    def __init__(
+        self,
+        assignment: Assignment,
+        make_runner: Callable[..., Runner],
+        log: Logger,
+        send_log: Callable[[log_t], None],
+    ) -> None:
+        plan = assignment.plan
+        self.plans = [plan.components[index] for index in plan.hosts[assignment.host].components]
+        self.figures = {component.name: Figures(component.name) for component in self.plans}
+        self.runners: dict[str, Runner] = {}
+        self._assignment = assignment
+        self._plan = plan
+        self._make_runner = make_runner
+        self._send_log = send_log
+        self._blame = Blame(self.figures, plan.memory_limit_mb(assignment.host) or 0.0, log)
+        self._index = {component.name: component.index for component in self.plans}
+        self._progress = assignment.progress if len(self.plans) > 1 else None  # one alone needs no telling apart
+        self._takers: list[Runner] = []  # those that may take over the main loop
+        self._wishing: list[Runner] = []  # those that may ask something of the main loop
+        self._waiting: dict[str, dict[str, list[bytes]]] = {}  # what each component has not seen yet, by channel
+        self._readers: dict[int, list[str]] = {
+            channel.index: [plan.components[reader].name for reader in channel.readers if reader in set(self._own)]
+            for channel in plan.channels
+            if set(self._own) & set(channel.readers)
+        }
+        self._configured = 0  # number of the newest change of settings taken over
+
+    @property
+    def _own(self) -> Sequence[int]:
+        return self._plan.hosts[self._assignment.host].components
+
+    def init(self, told: Callable[[], None]) -> None:
+        """Makes and initialises them, in the order of their needs; calls `told` when a state changes."""
+        for index in start_order(self._plan.components, self._own):
+            plan = self._plan.components[index]
+            self.figures[plan.name].state = "init"
+            told()
+            self._works(index)
+            with self._blame.guard(plan.name, "init"):
+                runner = self._runner(plan)
+                self.runners[plan.name] = runner
+                self._waiting[plan.name] = {}
+                if runner.has_main_loop:
+                    self._takers.append(runner)
+                if runner.has_main_loop or runner.has_plugins:
+                    self._wishing.append(runner)
+                runner.init()
+            self.figures[plan.name].state = "running"
+        self._works(NOBODY)
+
+    def deliver(self, moved: Iterable[Box]) -> None:
+        """What became visible in these boxes is there for the next iteration of those who read them."""
+        for box in moved:
+            arrived, channel = box.take(), box.plan.name
+            for name in self._readers[box.plan.index]:
+                waiting = self._waiting[name]
+                waiting[channel] = waiting[channel] + arrived if channel in waiting else arrived
+
+    def configure(self, changes: Sequence[change_t]) -> None:
+        """Takes over changes of settings, each once."""
+        for change in changes:
+            plan = self._plan.components[change.component]
+            if plan.name in self.runners and change.number > self._configured:
+                with self._blame.guard(plan.name, "config_changed"):
+                    self.runners[plan.name].configure(json.loads(change.settings))
+        self._configured = max(self._configured, *(change.number for change in changes))
+
+    def tell_holder(self, component: int) -> None:
+        """Says to who cares which component has the main loop."""
+        if self._takers:
+            name = self._plan.components[component].name if component != NOBODY else ""
+            for runner in self._takers:
+                runner.main_loop.holder = name
+
+    def run(self, names: Sequence[str], stage: str, tick: tick_t) -> tuple[list[tuple[str, bytes]], int, int]:
+        """One iteration of each of these: what they wrote, when the next tick is (or -1), how long it took."""
+        written: list[tuple[str, bytes]] = []
+        next_us = -1
+        began_us = start_us = monotonic_us()
+        for name in names:
+            runner, waiting = self.runners[name], self._waiting[name]
+            if self._progress:
+                self._works(self._index[name])
+            self._waiting[name] = {}
+            try:
+                written += runner.iterate(tick.tick, tick.stage, stage, tick.time_us, waiting)
+            except BaseException as error:
+                self._blame.put(name, f"loop, tick {tick.tick}", error)
+                raise
+            end_us = monotonic_us()
+            self.figures[name].ran(end_us - start_us)
+            start_us = end_us
+            next_us = max(next_us, runner.time_source.next_us)
+        if self._progress:
+            self._works(NOBODY)
+        return written, next_us, start_us - began_us
+
+    def wishes(self) -> str:
+        """What the iterations asked for, in a done's words; mostly empty."""
+        asked: dict[str, dict[str, object]] = {}
+        for runner in self._wishing:
+            for aspect, wish in runner.wishes().items():
+                asked.setdefault(aspect, {})[runner.name] = wish
+        return json.dumps(asked) if asked else ""
+
+    def finalize(self) -> tuple[list[tuple[str, bytes]], int]:
+        """Finalizes them; returns what they wrote, and the tick that it is stamped with."""
+        tick, time_us = max((runner.stamp.tick, runner.stamp.time_us) for runner in self.runners.values())
+        written: list[tuple[str, bytes]] = []
+        for name, runner in reversed(self.runners.items()):
+            self.figures[name].state = "finalizing"
+            self._works(self._index[name])
+            with self._blame.guard(name, "finalize"):
+                written += runner.finalize(tick, time_us)
+            self.figures[name].state = "stopped"
+        return written, tick
+
+    def out_of_memory(self, error: MemoryError) -> None:
+        """Between two iterations memory ran out.
+
+        Raises:
+            Failure: always.
+        """
+        self._blame.put(self.plans[0].name, "its process", error)
+
+    def _works(self, component: int) -> None:
+        if self._progress:
+            self._progress.works(self._assignment.host, component)
+
+    def _runner(self, plan: ComponentPlan) -> Runner:
+        component = getattr(import_module(plan.module), plan.class_name)
+        declared = declaration(component)
+        surroundings = Surroundings(
+            self._plan.seed,
+            self._plan.period_us,
+            self._send_log,
+            self._assignment.rings,
+            self._plan.log.lines_per_s,
+            self._plan.stages,
+            [component.name for component in self._plan.components],
+        )
+        if {port.attribute for port in declared.ports} != set(plan.channels):
+            raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
+        changed = self._assignment.settings.get(plan.name)
+        settings = json.loads(changed) if changed else plan.config
+        config = declared.config.model_validate(settings)
+        incarnation = self._assignment.incarnation
+        runner = self._make_runner(declared, plan.name, config, plan.channels, surroundings, incarnation)
+        for channel, writer in runner.writers.items():
+            writer.sequence = self._assignment.sequences.get(channel, 0)
+        return runner
