@@ -8,7 +8,7 @@ import pytest
 from tools.bench.environments import CORE
 from tools.bench.figures import Run, Runs
 from tools.bench.goals import Verdict, judge
-from tools.bench.own import AT_100_HZ, SOCCER
+from tools.bench.own import AT_100_HZ, SOAK, SOCCER
 from tools.bench.registry import Peer
 
 PEERS = [
@@ -30,11 +30,12 @@ GOOD = {
     ("fwk", "N=20, loss 1 %"): 1300,
     ("fwk", "N=160, loss 1 %"): 10000,
 }
-CONTRACT, AHEAD, FLAT, RECORDER, LOSS, START, JITTER = range(7)
+CONTRACT, AHEAD, FLAT, RECORDER, LOSS, START, JITTER, MISSED = range(8)
 
 
 OWN: dict[str, dict[str, Any]] = {
     AT_100_HZ: {"error_us": [100.0] * 99 + [5000.0]},
+    SOAK: {"error_us": [100.0] * 59_900, "missed": 0},
     SOCCER: {"first_tick_s": 2.5, "pss_mb": 900.0},
 }
 
@@ -48,7 +49,7 @@ def verdicts(
 
 
 def test_all_goals_met() -> None:
-    assert [verdict.word for verdict in verdicts(GOOD, OWN)] == ["met"] * 7
+    assert [verdict.word for verdict in verdicts(GOOD, OWN)] == ["met"] * 8
 
 
 @pytest.mark.parametrize(
@@ -70,6 +71,8 @@ def test_one_figure_misses_one_goal(goal: int, change: dict[tuple[str, str], flo
     [
         (START, {SOCCER: {"first_tick_s": 3.1, "pss_mb": 900.0}}),
         (START, {SOCCER: {"first_tick_s": 2.5, "pss_mb": 1201.0}}),
+        (MISSED, {SOAK: {"error_us": [100.0] * 59_900, "missed": 1}}),
+        (MISSED, {SOAK: {"error_us": [100.0] * 10, "missed": 1}}),
         (JITTER, {AT_100_HZ: {"error_us": [100.0] * 98 + [5000.0] * 2}}),
     ],
 )
@@ -78,7 +81,12 @@ def test_one_figure_of_our_own_misses_one_goal(goal: int, change: dict[str, dict
 
 
 def test_what_was_not_measured_is_neither_met_nor_missed() -> None:
-    assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 7
+    assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 8
+
+
+def test_a_short_run_does_not_say_that_nothing_is_missed_in_a_long_one() -> None:
+    short = {SOAK: {"error_us": [100.0] * 1000, "missed": 0}}
+    assert verdicts(GOOD, {**OWN, **short})[MISSED].word == "not measured"
 
 
 def test_who_is_ahead_of_us_is_named() -> None:

@@ -10,6 +10,7 @@ import typer
 from tools.bench import machine, report, rotation
 from tools.bench.environments import REPOSITORY
 from tools.bench.figures import Run, error_us, tick_us
+from tools.bench.own import LONG
 from tools.bench.record import Record
 from tools.bench.registry import PEERS, Peer
 from tools.bench.scenarios import SIZES
@@ -26,6 +27,7 @@ def main(
     own: Annotated[bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")] = True,
     rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 3,
     seconds: Annotated[float, typer.Option(help="Longest time that ticks of one run are measured")] = 2.0,
+    soak: Annotated[float, typer.Option(help="Seconds of one long run at 100 Hz; 0: none")] = 600.0,
     quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
     json_file: Annotated[Path, typer.Option("--json", help="Where every run goes")] = _JSON,
     page: Annotated[Path, typer.Option(help="Page whose tables are replaced")] = _PAGE,
@@ -37,7 +39,7 @@ def main(
     Ctrl-C ends the measuring; what was measured until then is written.
     """
     if quick:
-        sizes, varied, rounds, seconds = "5,20", "20", 2, 0.5
+        sizes, varied, rounds, seconds, soak = "5,20", "20", 2, 0.5, 0.0
     if render:
         record = Record.read(json_file)
     else:
@@ -45,14 +47,14 @@ def main(
         about = {"command": _command(), **machine.describe(), "isolation": _isolation(), "rounds": str(rounds)}
         names = [peer.name for peer in chosen]
         record = Record(about, missing, names, _numbers(sizes), _numbers(varied), own)
-        _measure(record, rounds, seconds, json_file)
+        _measure(record, rounds, seconds, soak, json_file)
     tables = report.text(record)
     typer.echo(tables)
     if not no_page:
         report.insert(page, tables)
 
 
-def _measure(record: Record, rounds: int, seconds: float, json_file: Path) -> None:
+def _measure(record: Record, rounds: int, seconds: float, soak_s: float, json_file: Path) -> None:
     for name, reason in record.missing.items():
         typer.echo(f"{name}: left out: {reason}", err=True)
 
@@ -64,6 +66,8 @@ def _measure(record: Record, rounds: int, seconds: float, json_file: Path) -> No
     with suppress(KeyboardInterrupt):
         rotation.rotate(record.peers, record.scenarios, rounds, seconds, take)
         rotation.rotate_own(record.own, rounds, max(seconds, _REAL_TIME_S), take)
+        if soak_s:
+            rotation.rotate_own(LONG, 1, soak_s, take)
 
 
 def _peers(names: str) -> tuple[list[Peer], dict[str, str]]:

@@ -9,9 +9,9 @@ class OwnScenario:
     """One arrangement of fwk alone."""
 
     name: str
-    kind: Literal["jitter", "start"]
+    kind: Literal["jitter", "soak", "start"]
     components: int = 0
-    """Jitter: how many components tick."""
+    """Jitter, soak: how many components tick."""
     stages: int = 5
     period_s: float = 0.0
     busy: bool = False
@@ -25,6 +25,7 @@ class OwnScenario:
 
 
 AT_100_HZ = "100 Hz, N=20, idle cores"
+SOAK = "100 Hz, N=20, long"
 SOCCER = "soccer.yaml"
 
 JITTER = (
@@ -33,6 +34,8 @@ JITTER = (
     OwnScenario("1 kHz, N=2, idle cores", "jitter", components=2, stages=1, period_s=0.001),
     OwnScenario("1 kHz, N=2, busy cores", "jitter", components=2, stages=1, period_s=0.001, busy=True),
 )
+LONG = (OwnScenario(SOAK, "soak", components=20, period_s=0.01),)
+"""Measured once, and much longer than the others: what happens rarely."""
 START = (
     OwnScenario(SOCCER, "start", file="soccer.yaml"),
     OwnScenario("soccer-1v1.yaml", "start", file="soccer-1v1.yaml"),

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -37,7 +38,7 @@ def main() -> None:
     try:
         if job["isolated"]:
             namespace.set_up(0.0)
-        measure = {"jitter": jitter, "start": start}[job["kind"]]
+        measure = {"jitter": jitter, "soak": jitter, "start": start}[job["kind"]]
         with TemporaryDirectory(prefix="bench-") as folder:
             result = measure(job, folder)
     except (RunFailed, namespace.NoNamespace, OSError) as error:
@@ -47,6 +48,8 @@ def main() -> None:
 
 def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
     """In real time, how far each period of a component is from what was asked for: absolute errors in µs.
+
+    Besides, how many ticks were missed: periods that lasted two or more, and iterations that came too late.
 
     Raises:
         RunFailed: the run broke.
@@ -58,7 +61,7 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
         _launched(folder, file, "--time", str(job["seconds"])) as run,
     ):
         try:
-            run.wait(_PATIENCE_S)
+            run.wait(job["seconds"] + _PATIENCE_S)
         except subprocess.TimeoutExpired as error:
             raise RunFailed(f"did not end; {_last_words(folder)}") from error
     probe = Path(folder, "probe.json")
@@ -69,7 +72,10 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
     errors_us = [abs(after - before - period_us) for before, after in pairwise(began_us)]
     if not errors_us:
         raise RunFailed("too few ticks")
-    return {"error_us": errors_us}
+    late = re.search(r"\blate (\d+)", Path(folder, "output").read_text(errors="replace"))
+    if not late:
+        raise RunFailed(f"no word of late iterations; {_last_words(folder)}")
+    return {"error_us": errors_us, "missed": sum(error >= period_us for error in errors_us) + int(late[1])}
 
 
 def start(job: dict[str, Any], folder: str) -> dict[str, Any]:

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from tools.bench import goals, tables
 from tools.bench.figures import Runs
+from tools.bench.own import LONG
 from tools.bench.record import Record
 
 BEGIN, END = "<!-- bench: begin -->", "<!-- bench: end -->"
@@ -24,7 +25,7 @@ def text(record: Record) -> str:
     if others:
         parts += ["## Ten reads, large messages, packet loss", tables.tick_table(asked, peers, others)]
     if own:
-        parts += ["## Real time", tables.jitter_table(asked, [each for each in own if each.kind == "jitter"])]
+        parts += ["## Real time", tables.jitter_table(asked, [*(each for each in own if each.kind == "jitter"), *LONG])]
         parts += [
             "## Start, memory, restart",
             tables.start_table(asked, [each for each in own if each.kind == "start"]),

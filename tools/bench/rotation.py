@@ -61,7 +61,7 @@ def rotate_own(
     for number in range(rounds):
         for scenario in scenarios:
             job = {**scenario.job(seconds), "isolated": bool(words)}
-            run = Run(number, "fwk", scenario.name, _result([*words, *_module("own_driver"), json.dumps(job)]))
+            run = Run(number, "fwk", scenario.name, _result([*words, *_module("own_driver"), json.dumps(job)], seconds))
             runs.append(run)
             report(run)
     return runs
@@ -79,14 +79,14 @@ def _run(words: list[str], number: int, peer: Peer, scenario: Scenario, seconds:
         "seconds": seconds,
         "isolated": bool(words),
     }
-    return _result([*words, *_module("driver"), json.dumps(job)])
+    return _result([*words, *_module("driver"), json.dumps(job)], seconds)
 
 
 def _module(name: str) -> list[str]:
     return [sys.executable, "-m", f"tools.bench.{name}"]
 
 
-def _result(command: list[str]) -> dict[str, object]:
+def _result(command: list[str], seconds: float) -> dict[str, object]:
     try:
         done = subprocess.run(
             command,
@@ -94,11 +94,11 @@ def _result(command: list[str]) -> dict[str, object]:
             cwd=REPOSITORY,
             capture_output=True,
             text=True,
-            timeout=_RUN_S,
+            timeout=_RUN_S + seconds,
             check=False,
         )
     except subprocess.TimeoutExpired:
-        return {"error": f"nothing within {_RUN_S:.0f} s"}
+        return {"error": f"nothing within {_RUN_S + seconds:.0f} s"}
     if done.returncode or not done.stdout.strip():
         return {"error": (done.stderr.strip().splitlines() or ["the driver said nothing"])[-1]}
     result: dict[str, object] = json.loads(done.stdout.splitlines()[-1])

@@ -113,8 +113,11 @@ def jitter_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
             runs.spread("fwk", scenario.name, lambda result, share=share: error_us(result, share))  # type: ignore[misc]
             for share in (0.5, 0.99, 1.0)
         ]
-        rows.append([scenario.name, *(milliseconds(spread) for spread in spreads)])
-    return markdown(["error of the period, ms", "median", "p99", "largest"], rows)
+        missed = runs.spread("fwk", scenario.name, lambda result: _value(result, "missed"))
+        periods = runs.spread("fwk", scenario.name, lambda result: float(len(result["error_us"])))
+        counts = [f"{each.middle:.0f}" if each else "-" for each in (missed, periods)]
+        rows.append([scenario.name, *(milliseconds(spread) for spread in spreads), *counts])
+    return markdown(["error of the period, ms", "median", "p99", "largest", "ticks missed", "periods"], rows)
 
 
 def start_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
