@@ -1,4 +1,4 @@
-"""Compares two logs message by message, on every channel outside `fwk/`, however their channels interleave."""
+"""Compares two logs message by message, on every channel of the application, however their channels interleave."""
 
 from collections import OrderedDict, deque
 from collections.abc import Iterable
@@ -12,6 +12,7 @@ from fwk.record.log import Event, LogError, LogReader
 from fwk.record.types import header_of, is_interface
 
 FRAMEWORK = "fwk/"
+_SELF_TEST = "LCM_SELF_TEST"  # what liblcm sends when a process subscribes; a logger elsewhere may hear it
 _RECENT = 1024  # messages of a channel among which one sent again is recognized; writers keep fewer to send again
 
 
@@ -43,7 +44,7 @@ class Comparison:
         self._ranges = _common_ranges(readers) if common else None
         for pair in zip_longest(*readers):
             for side, event in enumerate(pair):
-                if event is not None and not event.channel.startswith(FRAMEWORK):
+                if event is not None and _counts(event.channel):
                     self._take(side, event, other_ended=pair[1 - side] is None)
         self.skipped_bytes = readers[0].skipped_bytes, readers[1].skipped_bytes
         """Damaged bytes in each log."""
@@ -150,6 +151,10 @@ class _Channel:
             side.waiting.clear()
 
 
+def _counts(channel: str) -> bool:
+    return channel != _SELF_TEST and not channel.startswith(FRAMEWORK)
+
+
 def _common_ranges(readers: Iterable[LogReader]) -> dict[str, tuple[int, int]]:
     """For each channel of both logs the first and last sequence number that both ranges contain."""
     ranges: list[dict[str, tuple[int, int]]] = []
@@ -157,7 +162,7 @@ def _common_ranges(readers: Iterable[LogReader]) -> dict[str, tuple[int, int]]:
         found: dict[str, tuple[int, int]] = {}
         for event in reader:
             head = header_of(event.data)
-            if head and not event.channel.startswith(FRAMEWORK):
+            if head and _counts(event.channel):
                 first, last = found.get(event.channel, (head.sequence, head.sequence))
                 found[event.channel] = min(first, head.sequence), max(last, head.sequence)
         ranges.append(found)

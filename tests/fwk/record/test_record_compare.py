@@ -40,6 +40,11 @@ def test_the_frameworks_own_channels_do_not_count(tmp_path: Path) -> None:
     assert text_of(tmp_path, entries(), without) == "None"
 
 
+def test_what_liblcm_sends_itself_does_not_count(tmp_path: Path) -> None:
+    heard = [*entries(), ("LCM_SELF_TEST", b"lcm self test", 0)]
+    assert text_of(tmp_path, entries(), heard) == "None"
+
+
 def test_a_message_sent_again_counts_once(tmp_path: Path) -> None:
     made = entries()
     heard = made[:]
