@@ -45,6 +45,8 @@ def replay(
             raise typer.Exit(UNUSABLE) from error
     found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
     typer.echo(f"{done.iterations} iterations replayed")
+    if done.recording.skipped_bytes:
+        typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are no whole message", err=True)
     if not verify:
         return
     if not found:
@@ -67,7 +69,7 @@ def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, deb
     if debugged:
         _debug(made, debugged, from_tick, to_tick)
     else:
-        made.run(lambda tick: to_tick is None or tick <= to_tick)
+        made.run(to_tick)
     return made
 
 
@@ -78,14 +80,13 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
         raise RecordingError(f"--debug: no component '{name}' in this run; {hint(name, components)}")
     reached = 0
 
-    def keep_on(tick: int) -> bool:
+    def begins(tick: int) -> None:
         nonlocal reached
         reached = tick
-        return to_tick is None or tick <= to_tick
 
     def work() -> None:
         try:
-            made.run(keep_on)
+            made.run(to_tick, begins)
         except RecordingError as error:
             raise Failure(str(error)) from (error.__cause__ or error)
 

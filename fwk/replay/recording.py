@@ -2,7 +2,7 @@
 
 import json
 import struct
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -38,17 +38,49 @@ class Recording:
         self._reader = LogReader(path)
         self.plan = self._plan()
 
-    def ticks(self) -> Iterator[RecordedTick]:
-        """All ticks, in order."""
+    @property
+    def skipped_bytes(self) -> int:
+        """How many bytes the newest reading passed over; only at the end of the log, where a run was cut off."""
+        return self._reader.skipped_bytes
+
+    def ticks(self, to_tick: int | None = None, types: Mapping[str, bytes] | None = None) -> Iterator[RecordedTick]:
+        """All ticks, in order, until `to_tick` if one is given.
+
+        Raises:
+            RecordingError: the log is damaged before that, or lacks messages, or a message of a channel in `types`
+                does not begin with that fingerprint.
+        """
         messages: dict[tuple[str, int, int], list[bytes]] = {}
-        for event in self._reader:
+        types = types or {}
+        tick = 0
+        for number, event in enumerate(self._reader):
+            if event.number != number:
+                raise RecordingError(self._gap(event.number - number, tick))
+            if event.data[:8] != types.get(event.channel, event.data[:8]):
+                raise RecordingError(
+                    f"{self.path}: {event.channel} has a message that is no {self._type_of(event.channel)} as it is "
+                    "now; the .lcm file was changed since (the run directory keeps the one of the run), or the log is "
+                    "damaged"
+                )
             if event.channel == RECORD:
-                yield RecordedTick(self._record(event), messages)
-                messages = {}
+                record = self._record(event)
+                yield RecordedTick(record, messages)
+                tick, messages = record.tick, {}
+                if to_tick is not None and tick >= to_tick:
+                    return
             elif not event.channel.startswith("fwk/"):
                 header = header_of(event.data)
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
+
+    def _gap(self, missing: int, tick: int) -> str:
+        skipped = self.skipped_bytes
+        cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or somebody took them out"
+        before = f"; replay what is before it with --to-tick {tick}" if tick else ""
+        return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
+
+    def _type_of(self, name: str) -> str:
+        return next(channel.type_name for channel in self.plan.channels if channel.name == name)
 
     def _record(self, event: Event) -> tick_record_t:
         try:

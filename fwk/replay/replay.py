@@ -12,7 +12,7 @@ from typing import Any
 
 from fwk.aspects.vision import Ring
 from fwk.declaration import declaration
-from fwk.messages import sequence_of
+from fwk.messages import MessageError, fingerprint, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor, ContinuousActor
@@ -54,12 +54,25 @@ class Replay:
         self._revealed: list[tuple[str, list[bytes]]] = []  # visible from the next stage on
         self._pending: dict[tuple[int, int, int], list[tuple[Actor, list[tuple[str, bytes]]]]] = {}
 
-    def run(self, keep_on: Callable[[int], bool] = lambda _: True) -> None:
-        """Replays all ticks as long as `keep_on(tick)` is true."""
-        for tick in self.recording.ticks():
-            if not keep_on(tick.record.tick):
-                return
+    def run(self, to_tick: int | None = None, begins: Callable[[int], None] = lambda _: None) -> None:
+        """Replays all ticks, or until `to_tick`; calls `begins(tick)` before each."""
+        for tick in self.recording.ticks(to_tick, self._types()):
+            begins(tick.record.tick)
             self._tick(tick)
+
+    def _types(self) -> dict[str, bytes]:
+        """What the messages begin with that the chosen components read and write."""
+        concerned = [
+            channel
+            for channel in self._plan.channels
+            if not self._chosen.isdisjoint((channel.writer, *channel.readers))
+        ]
+        try:
+            return {channel.name: fingerprint(type_named(channel.type_name)) for channel in concerned}
+        except MessageError as error:
+            raise RecordingError(
+                f"{self.recording.path}: {error}; the run directory keeps the types of the run"
+            ) from error
 
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
@@ -228,12 +241,18 @@ def _chosen(components: Sequence[ComponentPlan], only: Sequence[str], recording:
         chosen |= found
     channels = {channel.name: channel for channel in recording.plan.channels}
     for index in sorted(chosen):
-        for channel in _images_read(components[index]):
+        for channel in _images_read(components[index], recording):
             chosen.add(channels[channel].writer)
     return chosen
 
 
-def _images_read(component: ComponentPlan) -> list[str]:
-    declared = declaration(getattr(import_module(component.module), component.class_name))
+def _images_read(component: ComponentPlan, recording: Recording) -> list[str]:
+    try:
+        declared = declaration(getattr(import_module(component.module), component.class_name))
+    except Exception as error:
+        raise RecordingError(
+            f"{recording.path}: {component.name}: {component.module}:{component.class_name} cannot be had any more: "
+            f"{type(error).__name__}: {error}"
+        ) from error
     looks = [port.attribute for port in declared.ports if port.images and not port.writes]
-    return [channel for attribute in looks for channel in component.channels[attribute]]
+    return [channel for attribute in looks for channel in component.channels.get(attribute, ())]

@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
+from typer.testing import CliRunner
 
 from fwk import Component, Reads, Writes
+from fwk.cli.main import app as fwk
 from fwk.record.compare import Comparison
 from fwk.record.log import LogError, LogReader, LogWriter
 from fwk.record.log_info import log_info
@@ -179,3 +181,41 @@ def test_a_component_that_fails_in_replay_is_named_with_its_place(log: Path) -> 
     cut = [(channel, data[:50] if channel == "r/imu" else data) for channel, data in entries]
     with pytest.raises(RecordingError, match=r"r/thinker fails in tick 1 .*(?s:.*)in loop"):
         replay(write(log, cut))
+
+
+def test_a_log_that_was_cut_off_is_replayed_up_to_there_and_it_is_said(log: Path) -> None:
+    cut = log.with_name("cut.lcm")
+    cut.write_bytes(log.read_bytes()[:-10])
+    shown = CliRunner().invoke(fwk, ["replay", str(cut), "--verify"])
+    assert shown.exit_code == 0
+    assert "cut off: its last" in shown.output
+    assert "equal" in shown.output
+
+
+def test_a_log_that_lacks_messages_is_refused_and_replayed_up_to_there(log: Path) -> None:
+    whole = log.read_bytes()
+    at = whole.index(b"r/pose", whole.index(b"fwk/record", whole.index(b"fwk/record") + 1))
+    damaged_log = log.with_name("damaged.lcm")
+    damaged_log.write_bytes(whole[: at - 28] + bytes(60) + whole[at + 32 :])
+    with pytest.raises(RecordingError, match=r"missing after tick 2: \d+ bytes are damaged.* --to-tick 2"):
+        replay(damaged_log)
+    before = Replay(Recording(damaged_log))
+    before.run(to_tick=2)
+    assert (before.compared, before.differences) == (4, [])
+
+
+def test_a_type_that_was_changed_since_is_named(log: Path) -> None:
+    entries = recorded()
+    other = [(channel, b"12345678" + data[8:] if channel == "r/pose" else data) for channel, data in entries]
+    write(log, other)
+    with pytest.raises(RecordingError, match=r"r/pose has a message that is no soccer\.pose_t as it is now"):
+        replay(log)
+    sensor = Replay(Recording(log), ["r/sensor"])
+    sensor.run()
+    assert (sensor.compared, sensor.differences) == (TICKS, [])
+
+
+def test_a_component_that_is_gone_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delattr(f"{__name__}.Thinker")
+    with pytest.raises(RecordingError, match=r"r/thinker: .*:Thinker cannot be had any more: AttributeError"):
+        Replay(Recording(log), ["r/thinker"])

@@ -18,7 +18,7 @@ from fwk.plan.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 from tests.faults.faults_fuzz import HOSTILE_TEXT
 
-FEW = settings(max_examples=80, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+FEW = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 PARTS = """
 from fwk import Component, Config
 
