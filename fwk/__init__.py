@@ -7,7 +7,9 @@ import os
 for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
-from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402 - after the limits
+from pydantic import Field  # noqa: E402 - after the limits
+
+from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
 from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
@@ -31,6 +33,7 @@ __all__ = [
     "Commands",
     "Component",
     "Config",
+    "Field",
     "Future",
     "Image",
     "ImagesEach",

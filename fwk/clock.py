@@ -3,6 +3,10 @@
 import time
 
 US_PER_S = 1_000_000
+SECONDS_MAX = 1e9
+"""The longest duration that anybody may ask for, 30 years."""
+SPEED_MIN, SPEED_MAX = 1e-6, 1e6
+"""Of simulated time, in logical seconds per wall second."""
 
 
 class Clock:

@@ -18,11 +18,16 @@ class Config(BaseModel):
         \"\"\"0 keeps the old position, 1 jumps to the newest sighting.\"\"\"
     ```
     A setting that cannot be changed while the run goes on says so: `port: int = Field(7000, frozen=True)`.
-    Unknown keys and wrong types are refused. Nested settings are fields that are `Config`s themselves.
+    Unknown keys, wrong types and numbers that are not finite are refused. Nested settings are fields that are
+    `Config`s themselves.
     """
 
     model_config = ConfigDict(
-        extra="forbid", use_attribute_docstrings=True, validate_assignment=True, validate_default=True
+        extra="forbid",
+        use_attribute_docstrings=True,
+        validate_assignment=True,
+        validate_default=True,
+        allow_inf_nan=False,
     )
 
     def take_over(self, other: Self) -> frozenset[str]:

@@ -1,6 +1,5 @@
 """Reads values of the command line that are more than a number or a name."""
 
-import math
 import os
 from enum import StrEnum
 from pathlib import Path
@@ -8,6 +7,8 @@ from typing import Any
 
 import typer
 from typer.core import TyperCommand
+
+from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 
 _MANY = ("--only", "--without")
 _LAUNCH_FILES = (".yaml", ".yml")
@@ -43,21 +44,23 @@ def spread(arguments: list[str]) -> list[str]:
 
 
 def speed(text: str) -> float:
-    """A factor above 0, or `max`, which is 0 in plans.
+    """A factor, or `max`, which is 0 in plans.
 
     Raises:
         BadParameter: neither.
     """
-    return 0.0 if text == "max" else _above_zero(text, "a pace; say a number above 0, such as 0.5 or 2, or 'max'")
+    meaning = f"a pace; say a number from {SPEED_MIN:g} to {SPEED_MAX:g}, such as 0.5 or 2, or 'max'"
+    return 0.0 if text == "max" else _number(text, SPEED_MIN, SPEED_MAX, meaning)
 
 
 def seconds(text: str) -> float:
-    """A duration above 0.
+    """A duration.
 
     Raises:
         BadParameter: it is none.
     """
-    return _above_zero(text, "a duration; say seconds above 0, such as 60 or 0.5")
+    meaning = f"a duration; say seconds from 0.001 to {SECONDS_MAX:g}, such as 60 or 0.5"
+    return _number(text, 0.001, SECONDS_MAX, meaning)
 
 
 def new_file(text: str) -> Path:
@@ -88,11 +91,11 @@ def video_file(text: str) -> Path:
     return new_file(text)
 
 
-def _above_zero(text: str, meaning: str) -> float:
+def _number(text: str, least: float, greatest: float, meaning: str) -> float:
     try:
         number = float(text)
     except ValueError:
         number = -1.0
-    if not 0 < number < math.inf:
+    if not least <= number <= greatest:
         raise typer.BadParameter(f"'{text}' is not {meaning}")
     return number

@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 import typer
 
+from fwk.cli.arguments import seconds
 from fwk.control import client
 from fwk.control.client import ControlError, RefusedError
 
@@ -14,6 +15,10 @@ BAD_INPUT = 2
 
 BusPort = Annotated[
     int | None, typer.Option("--bus-port", metavar="N", help="which run, if there are several; as for fwk-launch")
+]
+Timeout = Annotated[
+    float,
+    typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait until it has happened"),
 ]
 Json = Annotated[bool, typer.Option("--json", help="for programs")]
 Names = Annotated[list[str], typer.Argument(metavar="NAME...", help="components, or patterns such as 'cyan1/*'")]

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk import messages
+from fwk.cli.arguments import seconds
 from fwk.cli.asking import FAILED, BusPort, Json, ask, asking
 from fwk.cli.bb import field_lines
 from fwk.cli.send import made
@@ -26,12 +27,16 @@ def call(
         list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
     ] = None,
     timeout_s: Annotated[
-        float, typer.Option("--timeout", metavar="SECONDS", min=0.001, help="how long to wait for the last answer")
+        float,
+        typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait for the last answer"),
     ] = TIMEOUT_S,
     expires_s: Annotated[
         float | None,
         typer.Option(
-            "--expires", metavar="SECONDS", min=0.001, help="logical time after which it is not begun; default: as long"
+            "--expires",
+            parser=seconds,
+            metavar="SECONDS",
+            help="logical time after which it is not begun; default: as long",
         ),
     ] = None,
     accepted: Annotated[bool, typer.Option("--accepted", help="do not wait until it is done")] = False,

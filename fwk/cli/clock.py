@@ -1,14 +1,12 @@
 """What pause, resume, step and speed have in common."""
 
 import json
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
 from fwk.cli.asking import ask, asking
 from fwk.clock import US_PER_S, speed_word
-
-Timeout = Annotated[float, typer.Option("--timeout", metavar="SECONDS", help="how long to wait until it has happened")]
 
 
 def ask_clock(verb: str, bus_port: int | None, timeout_s: float, as_json: bool, **fields: Any) -> None:

@@ -1,7 +1,7 @@
 """`fwk kill NAME...`."""
 
-from fwk.cli.asking import BusPort, Json, Names
-from fwk.cli.steering import WAIT_S, Timeout, steer
+from fwk.cli.asking import BusPort, Json, Names, Timeout
+from fwk.cli.steering import WAIT_S, steer
 
 
 def kill(names: Names, bus_port: BusPort = None, timeout_s: Timeout = WAIT_S, as_json: Json = False) -> None:

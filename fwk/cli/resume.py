@@ -1,7 +1,7 @@
 """`fwk resume`."""
 
-from fwk.cli.asking import BusPort, Json
-from fwk.cli.clock import Timeout, ask_clock
+from fwk.cli.asking import BusPort, Json, Timeout
+from fwk.cli.clock import ask_clock
 
 
 def resume(bus_port: BusPort = None, timeout_s: Timeout = 30.0, as_json: Json = False) -> None:

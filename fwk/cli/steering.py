@@ -1,14 +1,13 @@
 """What start, stop, restart, reload, load, unload and kill have in common."""
 
 import json
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 
 from fwk.cli.asking import FAILED, ask, asking
 from fwk.control.requests import Action
 
-Timeout = Annotated[float, typer.Option("--timeout", metavar="SECONDS", help="how long to wait until it has happened")]
 WAIT_S = 30.0
 
 

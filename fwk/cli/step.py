@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.asking import BusPort, Json
-from fwk.cli.clock import Timeout, ask_clock
+from fwk.cli.asking import BusPort, Json, Timeout
+from fwk.cli.clock import ask_clock
 
 
 def step(

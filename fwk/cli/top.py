@@ -24,7 +24,7 @@ _MEGABYTE = 1 << 20
 def top(
     once: Annotated[bool, typer.Option("--once", help="one picture, then end")] = False,
     interval_s: Annotated[
-        float, typer.Option("--interval", min=0.1, metavar="SECONDS", help="time from picture to picture")
+        float, typer.Option("--interval", min=0.1, max=86_400, metavar="SECONDS", help="time from picture to picture")
     ] = 1.0,
     since: Annotated[
         Since,

@@ -4,8 +4,8 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.asking import BusPort, Json, Names
-from fwk.cli.steering import WAIT_S, Timeout, steer
+from fwk.cli.asking import BusPort, Json, Names, Timeout
+from fwk.cli.steering import WAIT_S, steer
 
 
 def unload(

@@ -5,7 +5,9 @@ Every answer is a JSON object with `ok`; where that is false, `error` says what 
 
 from typing import Annotated, Literal, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, ValidationError
+
+from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 
 R = TypeVar("R")
 Action = Literal["start", "stop", "restart", "reload", "load", "unload", "kill"]
@@ -54,13 +56,19 @@ class TakePlace(_Request):
     """Whether a debugger has it: then nobody hurries it."""
 
 
+def _possible(speed: float) -> float:
+    if 0.0 < speed < SPEED_MIN:
+        raise ValueError(f"it should be 0, or from {SPEED_MIN:g} to {SPEED_MAX:g}")
+    return speed
+
+
 class Clock(_Request):
     """Simulated time stands still, goes on, goes on for some ticks, or at another speed; answered when it does."""
 
     verb: Literal["pause", "resume", "step", "speed"]
     ticks: int = Field(1, ge=1)
     """To step."""
-    speed: float | None = Field(None, ge=0.0, allow_inf_nan=False)
+    speed: Annotated[float, Field(ge=0.0, le=SPEED_MAX), AfterValidator(_possible)] | None = None
     """Logical seconds per wall second, 0: as fast as it goes; without it the speed is only told."""
 
 
@@ -129,7 +137,7 @@ class Call(_Request):
     name: str
     data: str
     """The command's message, encoded, in hexadecimal digits; header and expiry are filled in."""
-    expires_s: float = Field(gt=0.0, allow_inf_nan=False, le=1e9)
+    expires_s: float = Field(gt=0.0, allow_inf_nan=False, le=SECONDS_MAX)
     """Logical time after which it is not begun any more."""
 
 

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
+from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 from fwk.declaration import RATE_MAX_HZ
 
 PACE_MAX = "max"
@@ -16,8 +17,8 @@ def _as_list(value: Any) -> Any:
 def _as_pace(value: Any) -> Any:
     if value == PACE_MAX:
         return 0.0
-    if isinstance(value, bool) or not isinstance(value, int | float) or value <= 0:
-        raise ValueError(f"Input should be a number above 0, or {PACE_MAX}")
+    if isinstance(value, bool) or not isinstance(value, int | float) or not SPEED_MIN <= value <= SPEED_MAX:
+        raise ValueError(f"Input should be a number from {SPEED_MIN:g} to {SPEED_MAX:g}, or {PACE_MAX}")
     return value
 
 
@@ -28,7 +29,7 @@ def _as_scalar(value: Any) -> Any:
 
 
 _WORDS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
-_PACE = {"anyOf": [{"type": "number", "exclusiveMinimum": 0}, {"const": PACE_MAX}]}
+_PACE = {"anyOf": [{"type": "number", "minimum": SPEED_MIN, "maximum": SPEED_MAX}, {"const": PACE_MAX}]}
 _SCALAR = {"type": ["string", "number", "boolean"]}
 
 Words = Annotated[list[str], BeforeValidator(_as_list), WithJsonSchema(_WORDS)]
@@ -42,16 +43,16 @@ SettingsByComponent = dict[str, dict[str, Any]]
 
 
 class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
 
 
 class RestartEntry(_Entry):
     """When a component that ended is started again."""
 
     when: Literal["never", "on-failure", "always"] = "on-failure"
-    backoff_s: float = Field(0.1, ge=0.0)
+    backoff_s: float = Field(0.1, ge=0.0, le=SECONDS_MAX)
     limit: int = Field(5, ge=0)
-    window_s: float = Field(60.0, gt=0.0)
+    window_s: float = Field(60.0, gt=0.0, le=SECONDS_MAX)
 
 
 class ComponentEntry(_Entry):
@@ -73,8 +74,8 @@ class ComponentEntry(_Entry):
     start: bool = True
     """Whether it starts with the run."""
     restart: RestartEntry = RestartEntry()
-    ready_timeout_s: float = Field(20.0, gt=0.0)
-    memory_limit_mb: float | None = Field(None, gt=0.0)
+    ready_timeout_s: float = Field(20.0, gt=0.0, le=SECONDS_MAX)
+    memory_limit_mb: float | None = Field(None, gt=0.0, le=1e9)
     """What it may take beyond what its process begins with."""
 
 
@@ -100,7 +101,7 @@ class LogEntry(_Entry):
     """Lines on the public bus."""
     recording: TargetLevel | None = None
     """Lines in the recording."""
-    file_mb: float | None = Field(None, ge=0.01)
+    file_mb: float | None = Field(None, ge=0.01, le=1e6)
     """Size at which a file is put aside and a new one begun."""
     files: int | None = Field(None, ge=1, le=1000)
     """How many are kept, with the one that is written."""
@@ -127,9 +128,9 @@ class HostFile(_Entry):
     speed: Pace | None = None
     """Logical seconds per second, or `max`."""
     seed: int | None = Field(None, ge=0)
-    stage_time_s: float | None = Field(None, ge=0.0)
+    stage_time_s: float | None = Field(None, ge=0.0, le=SECONDS_MAX)
     """With `clock: wall`: how long a stage may take; 0: the period."""
-    loop_time_s: float | None = Field(None, ge=0.0)
+    loop_time_s: float | None = Field(None, ge=0.0, le=SECONDS_MAX)
     """How long a tick should take; 0: the period."""
     loop_time_warnings: bool | None = None
     """Whether it is said when ticks take longer."""

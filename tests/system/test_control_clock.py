@@ -51,6 +51,22 @@ def test_pausing_stepping_and_speed_change_nothing(start: Start, tmp_path: Path)
     assert compared.messages == 4 * ticks
 
 
+def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
+    run = start()
+    assert "goes on at speed 1e-06" in run.fwk("speed", "1e-6")
+    assert "is not a pace" in run.fwk("speed", "1e-9", code=2)
+    for impossible in (1e-9, 1e30):
+        with pytest.raises(RefusedError, match=r"1e-06 to 1e|less than or equal to 1000000"):
+            run.ask("speed", speed=impossible)
+    for impossible in ("nan", "1e30", "-1", "0"):
+        assert f"'{impossible}' is not a duration" in run.fwk("stop", "r/counter", "--timeout", impossible, code=2)
+    tick = run.tick
+    run.fwk("speed", "max")
+    run.ticks_pass(5)
+    assert run.tick > tick
+    run.end()
+
+
 def test_a_paused_run_is_steered_and_the_recording_replays(start: Start) -> None:
     run = start()
     tick = run.ask("pause")["tick"]

@@ -118,7 +118,7 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """
         it.yaml:1: 'period_s' is 0; it should be greater than or equal to 0.001
         it.yaml:2: 'clock' is 'real'; it should be 'simulated' or 'wall'
-        it.yaml:3: 'speed' is -1; it should be a number above 0, or max
+        it.yaml:3: 'speed' is -1; it should be a number from 1e-06 to 1e+06, or max
         it.yaml:4: 'seed' is true; it should be a number
         it.yaml:5: 'stage_time_s' is 'long'; it should be a valid number, unable to parse string as a number
         """,
@@ -129,6 +129,30 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         seed: true
         stage_time_s: long
         components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
+        """
+        it.yaml:1: 'speed' is nan; it should be a number from 1e-06 to 1e+06, or max
+        it.yaml:2: 'stage_time_s' is inf; it should be a finite number
+        it.yaml:3: 'loop_time_s' is 1e+300; it should be less than or equal to 1000000000
+        it.yaml:4: 'log.file_mb' is inf; it should be a finite number
+        it.yaml:6: 'components.it/a.ready_timeout_s' is inf; it should be a finite number
+        it.yaml:7: 'components.it/b.memory_limit_mb' is 1e+300; it should be less than or equal to 1000000000
+        it.yaml:8: 'components.it/c.restart.backoff_s' is inf; it should be a finite number
+        it.yaml:9: x/d: 'limits.speed_m_s' is inf; it should be a finite number
+        """,
+        """
+        speed: .nan
+        stage_time_s: .inf
+        loop_time_s: 1e300
+        log: {file_mb: .inf}
+        components:
+          it/a: {use: plan_parts:Odometer, ready_timeout_s: .inf}
+          it/b: {use: plan_parts:Camera, memory_limit_mb: 1e300}
+          it/c: {use: plan_parts:Pilot, restart: {backoff_s: .inf}}
+          x/d: {use: plan_parts:Wheels, config: {limits: {speed_m_s: .inf}}}
+          x/e: {use: plan_parts:Pilot}
         """,
     ),
     Broken(
