@@ -58,8 +58,8 @@ def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
     for impossible in (1e-9, 1e30):
         with pytest.raises(RefusedError, match=r"1e-06 to 1e|less than or equal to 1000000"):
             run.ask("speed", speed=impossible)
-    for impossible in ("nan", "1e30", "-1", "0"):
-        assert f"'{impossible}' is not a duration" in run.fwk("stop", "r/counter", "--timeout", impossible, code=2)
+    for typed in ("nan", "1e30", "-1", "0"):
+        assert f"'{typed}' is not a duration" in run.fwk("stop", "r/counter", "--timeout", typed, code=2)
     tick = run.tick
     run.fwk("speed", "max")
     run.ticks_pass(5)
