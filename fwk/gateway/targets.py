@@ -7,6 +7,7 @@ from fwk.aspects.logging import LEVELS
 from fwk.gateway import json_log, text_log
 from fwk.gateway.gateway import Sink
 from fwk.gateway.json_log import JsonLog
+from fwk.gateway.syslog import Syslog
 from fwk.gateway.text_log import TextLog
 from fwk.plan.model import LogPlan
 from fwk.record.rotating import RotatingFile
@@ -36,6 +37,11 @@ def above(sink: Sink, level: str) -> Sink:
     if level == "debug":
         return sink
     return Above(sink, LEVELS.get(level, max(LEVELS.values()) + 1))
+
+
+def syslog(log: LogPlan, run: str, report: Callable[[str], None]) -> list[Sink]:
+    """The system's log, if it is wanted."""
+    return [] if log.syslog == OFF else [above(Syslog(log.syslog_to, run, report), log.syslog)]
 
 
 def files(log: LogPlan, folder: Path, report: Callable[[str], None]) -> list[Sink]:

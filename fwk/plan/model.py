@@ -91,6 +91,9 @@ class LogPlan:
     json_lines: str = "debug"
     bus: str = "debug"
     recording: str = "debug"
+    syslog: str = "off"
+    syslog_to: str = "/dev/log"
+    """Path of the daemon's socket, or `ADDRESS:PORT`."""
     file_mb: float = 16.0
     files: int = 4
     lines_per_s: int = 200

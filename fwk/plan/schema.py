@@ -1,8 +1,9 @@
 """The shape of a launch file: which keys there are, and what may stand behind them."""
 
+import ipaddress
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 from fwk.declaration import RATE_MAX_HZ
@@ -26,6 +27,18 @@ def _as_scalar(value: Any) -> Any:
     if value is None or isinstance(value, dict | list):
         raise ValueError("Input should be a word or a number")
     return value
+
+
+def _as_syslog(to: str) -> str:
+    address, _, port = to.rpartition(":")
+    try:
+        if not to.startswith("/"):
+            ipaddress.IPv4Address(address)
+            if not (port.isdecimal() and 0 < int(port) < 1 << 16):
+                raise ValueError
+    except ValueError as error:
+        raise ValueError("Input should be a socket's path, or an address and port such as 10.0.0.7:514") from error
+    return to
 
 
 _WORDS = {"anyOf": [{"type": "string"}, {"type": "array", "items": {"type": "string"}}]}
@@ -101,6 +114,10 @@ class LogEntry(_Entry):
     """Lines on the public bus."""
     recording: TargetLevel | None = None
     """Lines in the recording."""
+    syslog: TargetLevel | None = None
+    """Lines in the system's log."""
+    syslog_to: Annotated[str, AfterValidator(_as_syslog)] | None = None
+    """Where that is: a socket's path, or an address and port."""
     file_mb: float | None = Field(None, ge=0.01, le=1e6)
     """Size at which a file is put aside and a new one begun."""
     files: int | None = Field(None, ge=1, le=1000)

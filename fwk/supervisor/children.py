@@ -113,6 +113,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     gateway.sinks += [
         *([targets.above(sinks.Mirror(plan, public), plan.log.bus)] if public else []),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
+        *targets.syslog(plan.log, plan.name, gateway.log.error),
         board,
         calls,
         targets.above(sinks.Display(plan, display), plan.log.console),

@@ -2,7 +2,9 @@
 
 import json
 import re
+import socket
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -158,6 +160,22 @@ def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
     )
     assert loud_heading == quiet_heading
     assert len(loud_heading) == 500
+
+
+def test_the_systems_log_gets_lines_of_components_and_of_what_they_print(
+    tmp_path: Path, talk: Callable[..., Launched]
+) -> None:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as daemon:
+        daemon.bind(str(tmp_path / "log"))
+        daemon.setblocking(False)
+        run = talk("--ticks", "5", lines=1, printed=1, log={"syslog": "info", "syslog_to": str(tmp_path / "log")})
+        assert run.wait() == 0
+        heard = []
+        with suppress(BlockingIOError):
+            while True:
+                heard.append(daemon.recv(9000).decode())
+    for text in ("a/talker tick 3: chatter 0", "printed 0", "to the other stream"):
+        assert any(text in each for each in heard), text
 
 
 def test_a_level_is_changed_while_it_runs(talk: Callable[..., Launched], ports: PortBlock) -> None:

@@ -115,6 +115,11 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:1: 'log.syslog_to' is 'localhost'; it should be a socket's path, or an address and port "
+        "such as 10.0.0.7:514",
+        "log: {syslog_to: localhost}\ncomponents: {it/a: {use: plan_parts:Odometer}}",
+    ),
+    Broken(
         """
         it.yaml:1: 'period_s' is 0; it should be greater than or equal to 0.001
         it.yaml:2: 'clock' is 'real'; it should be 'simulated' or 'wall'
