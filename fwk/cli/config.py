@@ -15,7 +15,7 @@ from fwk.cli.conditions import pattern
 from fwk.control import client
 from fwk.control.client import ControlError
 from fwk.control.files_again import differences
-from fwk.control.keep import KeepError, Kept, keep
+from fwk.control.keep import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
 from fwk.plan.classes import UnusableError
@@ -141,6 +141,26 @@ def set_settings(
 
 
 @config.command()
+def unset(
+    paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.gain")],
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Takes settings out of the host-specific file, all or none; the run takes over what the files say then.
+
+    NAME is what was typed with `fwk config set --save`, a pattern for example.
+    """
+    with asking(), client.supervisor(bus_port) as run:
+        run.ask("settings", names=paths)
+        try:
+            forget(host_file(Path(run.ask("run")["file"])), paths)
+        except KeepError as error:
+            typer.echo(f"error: {error}; nothing was changed", err=True)
+            raise typer.Exit(FAILED) from error
+        _take_over(run, paths, "fwk config unset", as_json)
+
+
+@config.command()
 def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
     """Reads the launch files again and takes over what they say otherwise of settings.
 
@@ -148,13 +168,17 @@ def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json =
     cannot be changed while the run goes on are named.
     """
     with asking(), client.supervisor(bus_port) as run:
-        rows = run.ask("settings", names=names or [])["settings"]
-        try:
-            changes, later = differences(rows, load_plan(run.ask("run")["file"]))
-        except PlanError as error:
-            typer.echo(error, err=True)
-            raise typer.Exit(BAD_INPUT) from error
-        answer = run.ask("set", changes=changes, origin="fwk config reload") if changes else {"settings": []}
+        _take_over(run, names or [], "fwk config reload", as_json)
+
+
+def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool) -> None:
+    rows = run.ask("settings", names=names)["settings"]
+    try:
+        changes, later = differences(rows, load_plan(run.ask("run")["file"]))
+    except PlanError as error:
+        typer.echo(error, err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    answer = run.ask("set", changes=changes, origin=origin) if changes else {"settings": []}
     if as_json:
         typer.echo(json.dumps({**answer, "later": later}))
         return

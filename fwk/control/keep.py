@@ -3,12 +3,12 @@
 import contextlib
 import fcntl
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fwk.control.yaml_edit import EditError, read, with_value
+from fwk.control.yaml_edit import EditError, read, with_value, without
 from fwk.plan.errors import Problems
 from fwk.plan.files import shown
 from fwk.plan.selection import matches
@@ -46,14 +46,41 @@ def keep(file: Path, settings: Sequence[Kept]) -> None:
     Raises:
         KeepError: not written; the file is as it was.
     """
+
+    def edit(text: str) -> str:
+        for each in settings:
+            text = with_value(text, ("config", each.component, *each.setting.split(".")), each.value)
+            _check_wins(read(text)["config"], each)
+        return text
+
+    _rewrite(file, edit)
+
+
+def forget(file: Path, paths: Sequence[str]) -> None:
+    """Takes settings, `NAME.SETTING` each, out of the file.
+
+    Raises:
+        KeepError: one of them is not in it, or it cannot be written; the file is as it was.
+    """
+
+    def edit(text: str) -> str:
+        for path in paths:
+            component, _, setting = path.partition(".")
+            try:
+                text = without(text, ("config", component, *setting.split(".")))
+            except EditError as error:
+                raise EditError(str(error).replace("'config.", "'")) from error
+        return text
+
+    _rewrite(file, edit)
+
+
+def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
     file = file.resolve()
     try:
         with _locked(file.parent) as folder:
             text = file.read_text(encoding="utf-8") if file.exists() else ""
-            for each in settings:
-                text = with_value(text, ("config", each.component, *each.setting.split(".")), each.value)
-                _check_wins(read(text)["config"], each)
-            _write(file, text, folder)
+            _write(file, edit(text), folder)
     except (EditError, UnicodeDecodeError) as error:
         raise KeepError(f"{shown(file)}: {error}") from error
     except OSError as error:

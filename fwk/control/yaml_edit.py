@@ -1,4 +1,4 @@
-"""Changes one value in a YAML text and leaves everything else as people wrote it, comments too."""
+"""Changes or takes out one value in a YAML text and leaves everything else as people wrote it, comments too."""
 
 import json
 import math
@@ -11,6 +11,7 @@ import yaml
 from fwk.plan.errors import Problems
 from fwk.plan.source import read_value
 
+_COMMA = re.compile(r"\s*,\s*")
 _PLAIN_KEY = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
 
 
@@ -27,9 +28,28 @@ def with_value(text: str, path: Sequence[str], value: Any) -> str:
         EditError: it is no YAML, or the value cannot be put there.
     """
     before = read(text)
-    changed = _edited(text, path, value)
+    changed = _edited(text if text.strip() else "", path, value)
     if not _reads_as(changed, _over(before, path, value)):
         raise EditError(f"'{'.'.join(path)}' cannot be changed there without touching other values; write it by hand")
+    return changed
+
+
+def without(text: str, path: Sequence[str]) -> str:
+    """The text without the value at the mapping keys of `path`, and without keys that have nothing below them then.
+
+    Raises:
+        EditError: it is no YAML, no such value is there, or it cannot be taken out without touching others.
+    """
+    data = read(text)
+    depth, below = 0, data
+    for place, key in enumerate(path):
+        if not isinstance(below, dict) or key not in below:
+            raise EditError(f"there is no '{'.'.join(path)}'")
+        depth = place if len(below) > 1 else depth
+        below = below[key]
+    changed = _cut(text, path[: depth + 1])
+    if not _reads_as(changed, _less(data, path[: depth + 1])):
+        raise EditError(f"'{'.'.join(path)}' cannot be taken out without touching other values; do it by hand")
     return changed
 
 
@@ -58,6 +78,32 @@ def _over(data: Any, path: Sequence[str], value: Any) -> Any:
         return value
     below = data if isinstance(data, dict) else {}
     return {**below, path[0]: _over(below.get(path[0]), path[1:], value)}
+
+
+def _less(data: Any, path: Sequence[str]) -> Any:
+    return {
+        key: _less(below, path[1:]) if key == path[0] else below
+        for key, below in data.items()
+        if path != [key] and path != (key,)
+    }
+
+
+def _cut(text: str, path: Sequence[str]) -> str:
+    """The text without the pair at `path`, which is there."""
+    around: Any = None
+    name: Any = None
+    node: Any = yaml.compose(text, yaml.SafeLoader)
+    for key in path:
+        around = node
+        name, node = next(pair for pair in around.value if pair[0].value == key)
+    start, end = name.start_mark.index, _end(node)
+    if around.flow_style:
+        comma = _COMMA.match(text, end)
+        before = text[:start] if comma else text[:start].rstrip().removesuffix(",")
+        return before + text[comma.end() if comma else end :]
+    if not text[:end].endswith("\n"):  # with the comment at the end of that line
+        end = text.find("\n", end) + 1 or len(text)
+    return text[: text.rfind("\n", 0, start) + 1] + text[end:]
 
 
 def _edited(text: str, path: Sequence[str], value: Any) -> str:
@@ -119,7 +165,7 @@ def _with_newline(text: str) -> str:
 
 
 def _key(key: str) -> str:
-    return key if _PLAIN_KEY.fullmatch(key) else json.dumps(key)
+    return key if _PLAIN_KEY.fullmatch(key) else json.dumps(key, ensure_ascii=False)
 
 
 def flow(value: Any) -> str:

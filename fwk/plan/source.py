@@ -9,6 +9,7 @@ import yaml
 
 from fwk.plan.errors import Problems
 
+_HALF = re.compile("[\ud800-\udfff]")
 VALUES_MAX = 100_000
 """Of a file with its aliases written out; more is a mistake or meant to hurt."""
 
@@ -154,20 +155,21 @@ class _Converter:
         made: dict[str, Node] = {}
         for key, value in node.value:
             line = key.start_mark.line + 1
-            if not isinstance(key, yaml.ScalarNode):
+            word = _joined(key.value) if isinstance(key, yaml.ScalarNode) else None
+            if word is None:
                 self._problems.add(f"{self._shown}:{line}", "", "a key is one word, not a list or a mapping")
-            elif key.value in made:
-                first = made[key.value].place.rpartition(":")[2]
-                text = f"'{key.value}' stands here a second time, first in line {first}; keep one"
+            elif word in made:
+                first = made[word].place.rpartition(":")[2]
+                text = f"'{word}' stands here a second time, first in line {first}; keep one"
                 self._problems.add(f"{self._shown}:{line}", "", text)
             else:
-                made[key.value] = self.convert(value, line)
+                made[word] = self.convert(value, line)
         return made
 
     def _scalar(self, node: yaml.Node, place: str) -> Any:
         kind, text = node.tag.removeprefix(_TAG), node.value
         if kind == "str":
-            return text
+            return _joined(text)
         if kind == "null":
             return None
         try:
@@ -182,3 +184,13 @@ class _Converter:
             return None
         self._problems.add(place, "", f"the tag '{node.tag}' is not known here; leave it out")
         return None
+
+
+def _joined(text: str) -> str:
+    """The text with what JSON writes as two halves, `"\\ud83e\\udd16"`, as one letter."""
+    if not _HALF.search(text):
+        return text
+    try:
+        return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
+    except UnicodeDecodeError:  # a half alone is no letter; whoever checks the value says so
+        return text

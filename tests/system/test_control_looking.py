@@ -124,6 +124,19 @@ def test_watched_settings_are_told_and_kept_ones_are_there_next_time(run: Steere
     assert "r/counter.step = 2.0 (small.host.yaml:4)" in checked.stdout
 
 
+def test_a_kept_setting_is_erased_and_the_run_takes_what_the_files_say_then(run: Steered) -> None:
+    file = run.launched.folder / "small.host.yaml"
+    before = run.ask("settings", names=["r/counter.step"])["settings"][0]
+    run.fwk("config", "set", "r/counter.step=7", "--save")
+    assert "no setting 'r/counter.nonsense'" in run.fwk("config", "unset", "r/counter.nonsense", code=2)
+    assert f"r/counter.step = {before['value']} since tick" in run.fwk("config", "unset", "r/counter.step")
+    assert file.read_text() == ""
+    after = run.ask("settings", names=["r/counter.step"])["settings"][0]
+    assert (after["value"], after["origin"].partition(",")[0]) == (before["value"], "fwk config unset")
+    refused = run.fwk("config", "unset", "r/counter.step", code=1)
+    assert "small.host.yaml: there is no 'r/counter.step'; nothing was changed" in refused
+
+
 def test_the_log_is_found_followed_and_sifted(run: Steered) -> None:
     with subprocess.Popen(
         [BIN / "fwk", "log", "-f", "--text", "ASKED", "--bus-port", str(run.ask("run")["bus_port"])],

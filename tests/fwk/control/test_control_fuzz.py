@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as some
 
 from fwk.control import requests
-from fwk.control.keep import KeepError, Kept, keep
+from fwk.control.keep import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError, parsed
 from fwk.control.settings import RunSettings
 from fwk.control.yaml_edit import EditError, read
@@ -149,6 +149,42 @@ def test_no_file_is_spoiled(tmp_path: Path, text: str, setting: str, value: Any)
     assert file.read_text() == text
     with suppress(EditError):
         read(text)
+
+
+def bare(data: Any) -> Any:
+    """Without mappings that hold nothing."""
+    if not isinstance(data, dict):
+        return data
+    below = {key: bare(each) for key, each in data.items()}
+    return {key: each for key, each in below.items() if each != {}}
+
+
+@FEW
+@given(some_config, some.sampled_from(["a/tiny", "*/tiny", "b"]), some.lists(some_key, min_size=1), json_value)
+def test_what_is_kept_and_forgotten_leaves_the_rest(
+    tmp_path: Path, data: dict[str, Any], component: str, path: list[str], value: Any
+) -> None:
+    file, setting = tmp_path / "it.host.yaml", ".".join(path)
+    file.write_text(commented(data))
+    with suppress(KeepError):
+        forget(file, [f"{component}.{setting}"])  # perhaps it was there
+    before = read(file.read_text())
+    try:
+        keep(file, [Kept(component, setting, value)])
+    except KeepError:
+        return
+    kept = file.read_text()
+    try:
+        forget(file, [f"{component}.{setting}"])
+    except KeepError:
+        assert file.read_text() == kept
+        return
+    below = read(file.read_text())
+    if isinstance(before.get("config"), dict) and isinstance(before["config"].get(component, {}), dict):
+        assert bare(below.get("config", {})).keys() <= before["config"].keys()
+    assert {key: each for key, each in below.items() if key != "config"} == {
+        key: each for key, each in before.items() if key != "config"
+    }
 
 
 VERBS = [

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from fwk.clock import sleep_s
-from fwk.control.keep import KeepError, Kept, keep
+from fwk.control.keep import KeepError, Kept, forget, keep
 from fwk.control.yaml_edit import read
 
 OLD = "# mine\nconfig:\n  a/b:\n    gain: 1  # why\n"
@@ -32,6 +32,24 @@ def test_comments_mode_and_links_stay(tmp_path: Path) -> None:
     assert real.read_text() == OLD.replace("gain: 1", "gain: 2")
     assert real.stat().st_mode & 0o777 == 0o640
     assert file.is_symlink()
+
+
+def test_what_was_kept_is_forgotten_all_or_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "soccer.host.yaml"
+    file.write_text(OLD)
+    keep(file, [Kept.of("a/b.other=2"), Kept.of("*/c.inner.deep=3")])
+    with pytest.raises(KeepError, match=r"soccer\.host\.yaml: there is no 'a/b\.nonsense'"):
+        forget(file, ["a/b.other", "a/b.nonsense"])
+    assert read(file.read_text())["config"]["a/b"] == {"gain": 1, "other": 2}
+    forget(file, ["a/b.other", "*/c.inner.deep"])
+    assert file.read_text() == OLD
+
+
+def test_a_file_of_nothing_but_a_tab_is_as_good_as_empty(tmp_path: Path) -> None:
+    file = tmp_path / "soccer.host.yaml"
+    file.write_text("\t")
+    keep(file, [Kept.of("a/b.gain=1")])
+    assert read(file.read_text()) == {"config": {"a/b": {"gain": 1}}}
 
 
 def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:

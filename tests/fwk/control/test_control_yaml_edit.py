@@ -2,7 +2,7 @@
 
 import pytest
 
-from fwk.control.yaml_edit import EditError, read, with_value
+from fwk.control.yaml_edit import EditError, read, with_value, without
 
 GAIN = ("config", "a/b", "gain")
 
@@ -66,3 +66,44 @@ def test_a_pattern_is_quoted() -> None:
 def test_what_would_be_spoiled_is_refused(text: str) -> None:
     with pytest.raises(EditError):
         with_value(text, GAIN, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("config:\n  a/b:\n    gain: 0.5\n", ""),
+        ("# mine\nconfig:\n  a/b:\n    gain: 0.5  # why\nspeed: 2\n", "# mine\nspeed: 2\n"),
+        ("config:\n  a/b:\n    gain: 1\n    x: 1  # one\n", "config:\n  a/b:\n    x: 1  # one\n"),
+        ("config:\n  a/b:\n    x: 1\n    gain:\n      deep: 1\n", "config:\n  a/b:\n    x: 1\n"),
+        ("config:\n  a/b:\n    gain:\n    - 1\n    - 2\n  c/d: {x: 2}", "config:\n  c/d: {x: 2}"),
+        ("config:\n  a/b:\n    gain: |\n      long\n      text\n    x: 1\n", "config:\n  a/b:\n    x: 1\n"),
+        ("config: {a/b: {gain: 0.5}}\n", ""),
+        ("config: {a/b: {gain: 0.5, x: 1}}\n", "config: {a/b: {x: 1}}\n"),
+        ("config: {a/b: {x: 1, gain: 0.5}}\n", "config: {a/b: {x: 1}}\n"),
+        ("config: {c/d: {x: 1}, 'a/b': {gain: 0.5}}", "config: {c/d: {x: 1}}"),
+    ],
+)
+def test_a_value_goes_with_what_holds_nothing_else(before: str, after: str) -> None:
+    assert without(before, GAIN) == after
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("", "there is no"),
+        ("config: {a/b: {x: 1}}", "there is no 'config.a/b.gain'"),
+        ("config: {a/b: 3}", "there is no"),
+        ("config: [", "it is no YAML"),
+        ("config:\n  a/b: &x {gain: 1}\n  c/d: *x\n", "without touching other values"),
+        ("config:\n  a/b: {gain: 1}\n  c/d: {<<: *x}\n", "it is no YAML"),
+    ],
+)
+def test_what_is_not_there_or_would_be_spoiled_is_not_taken_out(text: str, error: str) -> None:
+    with pytest.raises(EditError, match=error):
+        without(text, GAIN)
+
+
+def test_letters_beyond_16_bits_stay_what_they_are() -> None:
+    text = with_value("", ("config", "a/b", "\U0001f916"), "\U0001f916")
+    assert read(text) == {"config": {"a/b": {"\U0001f916": "\U0001f916"}}}
+    assert read('{"\\ud83e\\udd16": "\\ud83e\\udd16"}') == {"\U0001f916": "\U0001f916"}
