@@ -56,7 +56,7 @@ def declaration(component: type[Component]) -> Declaration:
         DeclarationError: no stage, or an annotation that is no aspect.
     """
     where = f"{component.__module__}.{component.__qualname__}"
-    stages, rate_hz = getattr(component, "stage", None) or (), component.rate_hz
+    stages, rate_hz = _stages(component, where), component.rate_hz
     if stages and rate_hz is not None:
         raise DeclarationError(f"{where}: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous")
     if not stages and rate_hz is None:
@@ -67,6 +67,8 @@ def declaration(component: type[Component]) -> Declaration:
     for attribute, wish in hints.items():
         if attribute in ("stage", "rate_hz", "name", "changed_settings", "provides") or attribute.startswith("_"):
             continue
+        if hasattr(Component, attribute) and attribute != "config":
+            raise DeclarationError(f"{where}.{attribute}: every component has '{attribute}'; call this one otherwise")
         default = getattr(component, attribute, None)
         if get_origin(wish) in PORT_KINDS:
             ports.append(declared_port(where, attribute, PORT_KINDS[get_origin(wish)], get_args(wish), default))
@@ -90,13 +92,14 @@ def declaration(component: type[Component]) -> Declaration:
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
                 f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
                 "CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
-                "numpy.random.Generator, TimeSource, MainLoop or an Aspect, and set plain attributes in init()"
+                "numpy.random.Generator, TimeSource, MainLoop, PluginControl or an Aspect, and set plain attributes "
+                "in init()"
             )
     if rate_hz is not None:
         _check_continuous(where, rate_hz, ports, aspects)
     return Declaration(
         component,
-        (stages,) if isinstance(stages, str) else tuple(stages),
+        stages,
         tuple(ports),
         with_log_level(config),
         aspects,
@@ -106,10 +109,18 @@ def declaration(component: type[Component]) -> Declaration:
     )
 
 
+def _stages(component: type[Component], where: str) -> tuple[str, ...]:
+    said = getattr(component, "stage", None) or ()
+    stages = (said,) if isinstance(said, str) else said
+    if not isinstance(stages, tuple | list) or not all(isinstance(stage, str) for stage in stages):
+        raise DeclarationError(f'{where}: stage is {said!r}; it should be text such as "think", or a tuple of it')
+    return tuple(stages)
+
+
 def _hints(kind: type, where: str) -> dict[str, Any]:
     try:
         return typing.get_type_hints(kind)
-    except (NameError, TypeError, AttributeError) as error:
+    except (NameError, TypeError, AttributeError, SyntaxError) as error:
         raise DeclarationError(f"{where}: an annotation cannot be read: {error}") from error
 
 

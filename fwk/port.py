@@ -99,7 +99,12 @@ def declared_port(where: str, attribute: str, kind: PortKind, types: tuple[Any, 
         if not messages.has_header(message_type):
             name = messages.type_name(message_type)
             raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
-    given = default if isinstance(default, ChannelDefault) else ChannelDefault("")
+    given = ChannelDefault("") if default is None else default
+    if not isinstance(given, ChannelDefault) or not isinstance(given.name, str):
+        said = f"channel({given.name!r})" if isinstance(given, ChannelDefault) else repr(given)
+        raise DeclarationError(
+            f"{where}.{attribute}: {said} names no channel; write = channel('world/ball'), or nothing for '{attribute}'"
+        )
     made = Port(attribute, kind, types[0], given.name or attribute, history=given.history)
     if given.history < 0 or (given.history and kind not in ("reads", "reads_each")):
         wrong = "a history has at least 1 message" if given.history < 0 else "only Reads and ReadsEach keep a history"

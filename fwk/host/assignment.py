@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from fwk.aspects.vision import Ring
+from fwk.declaration import Declaration
 from fwk.host.progress import Progress
 from fwk.plan.model import Plan
 
@@ -25,3 +26,5 @@ class Assignment:
     """Whether it imports the application's modules anew."""
     progress: Progress | None = None
     """Where it says which of its components works."""
+    before: Mapping[str, Declaration] = field(default_factory=dict)
+    """With fresh code: what its components' classes said until then, by name."""

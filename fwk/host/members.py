@@ -4,12 +4,15 @@ import json
 from collections.abc import Callable, Iterable, Sequence
 from importlib import import_module
 
+from pydantic import ValidationError
+
 from fwk.aspects.logging import Logger
 from fwk.bus.inbox import Box
 from fwk.clock import monotonic_us
 from fwk.declaration import declaration
 from fwk.host.assignment import Assignment
 from fwk.host.blame import Blame
+from fwk.host.fresh import check_unchanged
 from fwk.host.report import Figures
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.plan.starting import start_order
@@ -166,11 +169,19 @@ class Members:
             self._plan.stages,
             [component.name for component in self._plan.components],
         )
+        if before := self._assignment.before.get(plan.name):
+            stages = tuple(self._plan.stages[index] for index in plan.stages)
+            check_unchanged(plan, stages, before, declared)
         if {port.attribute for port in declared.ports} != set(plan.channels):
             raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
         changed = self._assignment.settings.get(plan.name)
         settings = json.loads(changed) if changed else plan.config
-        config = declared.config.model_validate(settings)
+        try:
+            config = declared.config.model_validate(settings)
+        except ValidationError as error:
+            first = error.errors(include_url=False)[0]
+            wrong = f"'{'.'.join(map(str, first['loc']))}': {first['msg']}"
+            raise DeclarationError(f"{plan.module}: the run's settings do not fit its class: {wrong}") from error
         incarnation = self._assignment.incarnation
         runner = self._make_runner(declared, plan.name, config, plan.channels, surroundings, incarnation)
         for channel, writer in runner.writers.items():

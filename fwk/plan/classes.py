@@ -42,8 +42,6 @@ def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
         return declaration(_named(module, wanted) if wanted else _only(module))
     except DeclarationError as error:
         raise UnusableError(str(error)) from error
-    except (TypeError, SyntaxError) as error:  # a stage that is no text, an annotation in quotes that is no Python
-        raise UnusableError(f"the class of '{use}' cannot be read: {error}") from error
 
 
 def find_object(use: str, folders: Sequence[str] = ()) -> object:

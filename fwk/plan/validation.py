@@ -101,7 +101,7 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
     )
     path = _path(node, location)
     if not path:
-        return message
+        return f"the default of '{_dotted(location)}' does not fit: {message}" if location else message
     if node.at(*path).value is None:
         return f"'{_dotted(path)}' is empty; {message}"
     return f"'{_dotted(path)}' is {_short(node.at(*path).plain())}; {message}"

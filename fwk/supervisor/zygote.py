@@ -1,6 +1,7 @@
 """The zygote: a process that has imported everything and forks hosts when asked, so that they start in no time."""
 
 import contextlib
+import dataclasses
 import gc
 import json
 import os
@@ -245,7 +246,8 @@ def _serve_host(
 ) -> int:
     sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
     if assignment.fresh_code:
-        forget_modules(assignment.plan)
+        before = forget_modules(assignment.plan, assignment.host)
+        assignment = dataclasses.replace(assignment, before=before)
     limit = assignment.plan.memory_limit_mb(assignment.host)
     if limit:
         limit_memory(limit)

@@ -99,6 +99,40 @@ def test_code_that_does_not_start_is_told_and_put_right(run: Steered) -> None:
     run.end()
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        (
+            'stage = "think"',
+            'stage = ("think", "skill")',
+            "the stage of its class was think when the run began and is now think, skill; start the run again",
+        ),
+        (
+            "imu: Writes[imu_t]",
+            "imu: Reads[imu_t]",
+            "'imu' of its class was writes robot.imu_t of imu when the run began and is now reads robot.imu_t of imu; ",
+        ),
+        (
+            "    step: float = 1.0",
+            "    steps: float = 1.0",
+            "do not fit its class: 'step': Extra inputs are not permitted",
+        ),
+    ],
+)
+def test_code_that_would_need_another_plan_is_refused(run: Steered, old: str, new: str, text: str) -> None:
+    file = run.launched.folder / "parts.py"
+    assert old in PARTS
+    file.write_text(PARTS.replace(old, new))
+    assert text in run.fwk("reload", "r/counter", code=1)
+    own = PARTS.replace("import Component,", "import Clock, Component,").replace(
+        "config: C", "time: Clock\n    config: C"
+    )
+    file.write_text(own)  # what it wants for itself needs no other plan
+    run.steer("reload", "r/counter")
+    assert run.component("r/counter")["state"] == "running"
+    run.end()
+
+
 def test_a_vision_master_stays_as_long_as_it_has_users(run: Steered) -> None:
     assert "r/camera is needed by r/finder" in run.fwk("unload", "r/camera", code=2)
     run.fwk("unload", "r/camera", "r/finder")

@@ -50,7 +50,9 @@ def test_the_value_goes_where_a_person_would_put_it(before: str, after: str) -> 
         "config:\n  a/b:\n    gain: 'quoted'  # kept\n    x: 1\n",
     ],
 )
-@pytest.mark.parametrize("value", [0.5, "te: xt", [1, 2.5], {"deep": 1, "*": False}, float("inf"), 1e-7, None, "é\n"])
+@pytest.mark.parametrize(
+    "value", [0.5, "te: xt", [1, 2.5], {"deep": 1, "*": False}, float("inf"), 1e-7, None, "é\n", {"🙂": "🙂"}]
+)
 def test_any_value_replaces_any_other(before: str, value: object) -> None:
     changed = read(with_value(before, GAIN, value))
     assert changed == {"config": {"a/b": {"gain": value, "x": 1}}}

@@ -197,14 +197,14 @@ def test_imports(folder: Path, broken: Broken) -> None:
     Broken(
         """
         it.yaml:2: it/a: its settings cannot be checked: LookupError: no table
-        it.yaml:3: it/b: the class of 'strange:Numbered' cannot be read: 'int' object is not iterable
+        it.yaml:3: it/b: the default of 'parts' does not fit: it should be greater than 3
         """,
         """
         components:
           it/a: {use: strange:Strict, config: {parts: 0}}
-          it/b: {use: strange:Numbered}
+          it/b: {use: strange:Defaulted}
         --- strange.py
-        from fwk import Component, Config
+        from fwk import Component, Config, Field
         from pydantic import field_validator
         class Parts(Config):
             parts: int = 1
@@ -214,8 +214,11 @@ def test_imports(folder: Path, broken: Broken) -> None:
         class Strict(Component):
             stage = "think"
             config: Parts
-        class Numbered(Component):
-            stage = 5
+        class Odd(Config):
+            parts: int = Field(1, gt=3)
+        class Defaulted(Component):
+            stage = "think"
+            config: Odd
         """,
     ),
     Broken(
