@@ -11,7 +11,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.live import Live
 
-from fwk.cli.lines import log_line, status_line
+from fwk.cli.lines import log_line, progress_of, status_line
 from fwk.cli.screen import screen
 from fwk.cli.view import View
 from fwk.clock import US_PER_S, monotonic_us
@@ -41,8 +41,8 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
 
 
 def show_lines(view: View, connection: socket.socket, out: TextIO) -> None:
-    """Every log line as it comes, and the state of the run in one line each few seconds."""
-    due_us = 0
+    """Every log line as it comes, and the state of the run in one line each few seconds, unless it stands still."""
+    due_us, shown = 0, ""
     for packet in _packets(connection, _STATUS_LINE_S):
         with contextlib.suppress(MessageError):
             line = view.take(packet) if packet else None
@@ -50,8 +50,11 @@ def show_lines(view: View, connection: socket.socket, out: TextIO) -> None:
                 print(log_line(line), file=out, flush=True)
         if view.status and monotonic_us() >= due_us:
             due_us = monotonic_us() + round(_STATUS_LINE_S * US_PER_S)
-            headline = view.headline
-            print(status_line(view.status), *([headline] if headline else []), sep="   ", file=out, flush=True)
+            progress = progress_of(view.status)
+            if progress != shown:
+                headline = view.headline
+                print(status_line(view.status), *([headline] if headline else []), sep="   ", file=out, flush=True)
+            shown = progress
 
 
 def show_live(view: View, connection: socket.socket, console: Console) -> None:

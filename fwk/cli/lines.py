@@ -20,12 +20,19 @@ def log_line(line: log_t) -> str:
 
 def status_line(status: status_t) -> str:
     """Tick, logical time, pace and what went wrong so far."""
-    sums = figures.totals(figures.components(status))
-    states = ", ".join(f"{count} {state}" for state, count in sums.states.items())
     return (
         f"tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   "
-        f"{status.ticks_per_s:.1f} ticks/s   {states}   {losses(status)}"
+        f"{status.ticks_per_s:.1f} ticks/s   {_states(status)}   {losses(status)}"
     )
+
+
+def progress_of(status: status_t) -> str:
+    """What differs between two statuses of a run in which something happened meanwhile."""
+    return f"{status.tick} {_states(status)}"
+
+
+def _states(status: status_t) -> str:
+    return ", ".join(f"{count} {state}" for state, count in figures.totals(figures.components(status)).states.items())
 
 
 def pace(status: status_t) -> str:

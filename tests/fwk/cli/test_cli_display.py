@@ -1,5 +1,6 @@
 """The display process on a real terminal and on a pipe."""
 
+import io
 import os
 import pty
 import signal
@@ -11,9 +12,11 @@ from contextlib import contextmanager
 
 import pytest
 
+from fwk.cli import display as display_module
+from fwk.cli.view import View
 from lcmtypes.core import log_t, status_t
 from lcmtypes.soccer import game_state_t
-from tests.fwk.cli.cli_runs import TRACKER, game_state, log, packet, status
+from tests.fwk.cli.cli_runs import TRACKER, game_state, log, packet, plan, status
 
 HIDE_CURSOR, SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"
 PROGRAM = """
@@ -105,6 +108,18 @@ def test_on_a_pipe_it_writes_lines_without_escape_codes(start: Callable[..., Dis
     assert state.endswith("CYAN 1 : 0 MAGENTA")
     assert line.endswith(" 40     2.000 s info    cyan1/tracker: found the ball (tracker.py:12)")
     assert "\x1b" not in display.shown
+
+
+def test_while_a_run_stands_still_nothing_is_written_into_a_debuggers_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(display_module, "_STATUS_LINE_S", 1e-6)
+    view, out = View(plan("tests.fwk.cli.cli_runs:headline")), io.StringIO()
+    supervisor, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    with end:
+        for tick, repeated in ((77, 1), (77, 50), (77, 100), (78, 100)):
+            supervisor.send(packet("fwk/status", status(TRACKER, tick, repeated=repeated)))
+        supervisor.close()
+        display_module.show_lines(view, end, out)
+    assert [line.split()[1] for line in out.getvalue().splitlines()] == ["77", "78"]
 
 
 def test_plain_means_lines_on_a_terminal_too(start: Callable[..., Display]) -> None:
