@@ -10,7 +10,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 from pydantic import Field  # noqa: E402 - after the limits
 
 from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
-from fwk.aspects.commands import Command, Commands, CommandState  # noqa: E402
+from fwk.aspects.commands import Command, CommandError, Commands, CommandState  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
 from fwk.aspects.plugins import PluginControl  # noqa: E402
@@ -29,6 +29,7 @@ __all__ = [
     "CallsEach",
     "Clock",
     "Command",
+    "CommandError",
     "CommandState",
     "Commands",
     "Component",

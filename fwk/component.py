@@ -62,7 +62,10 @@ class Component:
         """
 
     def init(self) -> None:
-        """Called once before the first iteration; an exception means that the component does not start."""
+        """Called once before the first iteration; an exception means that the component does not start.
+
+        What it writes goes out with the first iteration, as the first of it. There is no tick yet, so `clock` says 0.
+        """
 
     def loop(self) -> None:
         """One iteration."""

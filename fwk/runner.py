@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from fwk import messages
 from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach
 from fwk.aspects.commands import Commands, Queue, Source
 from fwk.aspects.logging import LEVELS, Logger
@@ -66,7 +67,7 @@ class Runner:
         self.readers: dict[str, Reads[Any]] = {}
         self.writers: dict[str, Writes[Any]] = {}
         self.images: list[Image] = []
-        self._command_ports: list[Queue[Any] | Outbox[Any, Any]] = []
+        self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
         self.main_loop = MainLoop(name, surroundings.stages)
@@ -105,6 +106,15 @@ class Runner:
         for aspect in self._provided:
             aspect.init()
         self.component.init()
+        early = [
+            (writer, messages.decode(writer.message_type, data, writer.channel))
+            for writer in self.writers.values()
+            for data in writer.written
+        ]
+        if early:
+            for writer in self.writers.values():
+                writer.drop()
+            self._command_ports.append(_Early(early))
 
     def configure(self, settings: Mapping[str, Any]) -> None:
         """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
@@ -240,6 +250,24 @@ class Runner:
         outbox = kind(sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers])
         self._command_ports.append(outbox)
         return outbox
+
+
+class _Early:
+    """What `init` wrote: it goes out with the first iteration, stamped as what that writes, and before it."""
+
+    def __init__(self, written: Sequence[tuple[Writes[Any], Any]]) -> None:
+        self._written = written
+
+    def begin(self) -> None:
+        """The first iteration begins; later ones have nothing more to do here."""
+        for writer, value in self._written:
+            own, writer.value = writer.value, value
+            writer.write()
+            writer.value = own
+        self._written = ()
+
+    def end(self) -> None:
+        """The component was stopped; if there was no iteration, nobody has seen any of it."""
 
 
 def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:

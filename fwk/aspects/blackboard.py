@@ -173,6 +173,11 @@ class Writes(Generic[T]):
         self._buffer.append(self._encode(self.value))
 
     @property
+    def written(self) -> Sequence[bytes]:
+        """For the framework: what was written in this iteration, oldest first."""
+        return self._buffer
+
+    @property
     def pending(self) -> int:
         """Messages written in this iteration, not yet sent."""
         return len(self._buffer)

@@ -39,7 +39,7 @@ WIRE = {
 
 
 class CommandError(Exception):
-    """A command was answered twice; says which, and what it was answered."""
+    """A command cannot be answered again, or be sent like that; says which, and why."""
 
 
 class Source(Reads[T]):

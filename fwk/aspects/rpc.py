@@ -59,6 +59,7 @@ class Calls(Outbox[Q, Call[R]], Generic[Q, R]):
 
         Raises:
             MessageError: a field holds something that its type cannot.
+            CommandError: a time that cannot be, or `init`, which has none.
         """
         return self._send(timeout_s, expires_s)
 

@@ -4,8 +4,8 @@ from collections.abc import ItemsView, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 from fwk.aspects.blackboard import Reads, Writes
-from fwk.aspects.commands import QUEUE_MAX, WIRE, CommandState
-from fwk.clock import US_PER_S, Clock
+from fwk.aspects.commands import QUEUE_MAX, WIRE, CommandError, CommandState
+from fwk.clock import SECONDS_MAX, US_PER_S, Clock
 from lcmtypes.core import answer_t
 
 T = TypeVar("T")
@@ -94,18 +94,25 @@ class Outbox(Generic[T, F]):
 
     def _send(self, timeout_s: float, expires_s: float | None) -> F:
         now_us = self._clock.now_us
-        timeout_us = now_us + round(timeout_s * US_PER_S)
+        if not self._clock.tick:
+            raise CommandError(f"{self.name}: {self._sender} has no time yet in init(); send in loop()")
+        timeout_us = now_us + self._us("timeout_s", timeout_s)
         if len(self._open) >= QUEUE_MAX:
             future = self._future(0, timeout_us)
             future.end(CommandState.REJECTED, f"queue full: {QUEUE_MAX} commands to {self.name} are not finished")
             return future
         message: Any = self.value
-        message.command.expires_us = timeout_us if expires_s is None else now_us + round(expires_s * US_PER_S)
+        message.command.expires_us = timeout_us if expires_s is None else now_us + self._us("expires_s", expires_s)
         self._writes.value = self.value
         self._writes.write()
         future = self._future(message.header.sequence, timeout_us)
         self._open[future.sequence] = future
         return future
+
+    def _us(self, name: str, seconds: float) -> int:
+        if not 0.0 <= seconds <= SECONDS_MAX:
+            raise CommandError(f"{self.name}: {name} is {seconds}; it should be from 0 to {SECONDS_MAX:g} s")
+        return round(seconds * US_PER_S)
 
     def _hear(self, message: Any) -> None:
         answer: answer_t = message.answer
@@ -133,6 +140,7 @@ class Sends(Outbox[T, Future], Generic[T]):
 
         Raises:
             MessageError: a field holds something that its type cannot.
+            CommandError: a time that cannot be, or `init`, which has none.
         """
         return self._send(timeout_s, expires_s)
 

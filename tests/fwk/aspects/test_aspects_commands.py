@@ -166,6 +166,27 @@ def test_a_future_follows_its_command(parts: Any) -> None:
     assert future.state == "failed"  # the last answer was the last
 
 
+@pytest.mark.parametrize("seconds", [float("nan"), float("inf"), -1.0, 1e300])
+@pytest.mark.parametrize("name", ["timeout_s", "expires_s"])
+def test_a_time_that_cannot_be_is_refused(parts: Any, name: str, seconds: float) -> None:
+    bench = Bench(parts.Worker, flood=1)
+    bench.iterate()
+    before = len(bench.port("lift").sent)
+    with pytest.raises(CommandError, match=f"lift: {name} is {seconds}".replace("+", "[+]")):
+        bench.component.lift.send(**{name: seconds})
+    bench.iterate()
+    assert len(bench.port("lift").sent) == before + 1
+
+
+def test_nothing_is_sent_in_init(parts: Any) -> None:
+    class Eager(parts.Worker):  # type: ignore[misc]
+        def init(self) -> None:
+            self.lift.send()
+
+    with pytest.raises(CommandError, match=r"lift: robot/component has no time yet in init\(\); send in loop\(\)"):
+        Bench(Eager)
+
+
 def test_answers_to_others_are_not_heard(parts: Any) -> None:
     bench, future = sender(parts)
     owner = bench.owner_of("lift")
