@@ -124,6 +124,10 @@ class Runner:
             self.component.changed_settings = changed - {LOG_LEVEL}
             self.component.config_changed()
 
+    def is_new(self, tick: int) -> bool:
+        """Whether the iteration of that tick is that of a newcomer, or of one that was away for long."""
+        return tick > self._away_after
+
     def iterate(
         self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
     ) -> list[tuple[str, bytes]]:

@@ -19,6 +19,8 @@ class Box:
         self.plan = plan
         self.mark = 0  # highest sequence number that is visible
         self.floor = 0  # everything up to here was taken or is not wanted any more
+        self.missed: list[int] = []
+        """Sequence numbers of messages that were visible and never came."""
         self._held: dict[int, bytes] = {}
         self._newest = 0
 
@@ -51,7 +53,10 @@ class Box:
         held, floor = self._held, self.floor
         self.floor = self.mark
         taken = [held.pop(number, b"") for number in range(floor + 1, self.mark + 1)]
-        return taken if all(taken) else [data for data in taken if data]
+        if not all(taken):
+            self.missed += [number for number, data in enumerate(taken, floor + 1) if not data]
+            taken = [data for data in taken if data]
+        return taken
 
     def skip_to(self, sequence: int) -> None:
         """Does not want anything up to `sequence`: a late joiner takes the newest only."""

@@ -47,6 +47,9 @@ def replay(
     typer.echo(f"{done.iterations} iterations replayed")
     if done.recording.skipped_bytes:
         typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are no whole message", err=True)
+    if lost := {channel: numbers for channel, numbers in done.lost.items() if numbers}:
+        which = ", ".join(f"{len(lost[channel])} of {channel} (the first is {min(lost[channel])})" for channel in lost)
+        typer.echo(f"{log}: messages were lost in the run: {which}; who read them may differ", err=True)
     if not verify:
         return
     if not found:

@@ -1,5 +1,6 @@
 """The host process: answers each tick with one iteration of each of its components and one done."""
 
+import json
 import select
 import socket
 import struct
@@ -22,6 +23,7 @@ from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
 REPORT_US = US_PER_S
+MISSED_MAX = 2_000  # that fit into a done
 
 
 class Host:
@@ -156,7 +158,15 @@ class Host:
 
     def _finish(self, tick: tick_t, written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
         """Sends what was written, and the done."""
-        self._publish(written, tick.tick, tick.stage, next_us, busy_us, self._members.wishes())
+        wishes = self._members.wishes()
+        if self.inputs.lost:
+            wishes = self._with_missed(wishes)
+        self._publish(written, tick.tick, tick.stage, next_us, busy_us, wishes)
+
+    def _with_missed(self, wishes: str) -> str:
+        """The recording says what this host never saw, so that a replay keeps it from its components, too."""
+        missed = self.inputs.missed()[:MISSED_MAX]
+        return json.dumps({**json.loads(wishes or "{}"), "missed": missed}) if missed else wishes
 
     def _publish(
         self, written: list[tuple[str, bytes]], tick: int, stage: int, next_us: int, busy_us: int, wishes: str

@@ -124,6 +124,15 @@ class Inputs:
         self.lost += lost
         return lost
 
+    def missed(self) -> list[tuple[int, int]]:
+        """Channel and sequence number of visible messages that never came, each once."""
+        found = []
+        for index, box in self._boxes.items():
+            if box.missed:
+                found += [(index, number) for number in box.missed]
+                box.missed = []
+        return found
+
     def _ask(self, lacking: Sequence[Box]) -> None:
         for box in lacking:
             missing = box.missing()

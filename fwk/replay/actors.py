@@ -1,16 +1,19 @@
 """A component in a replay: built as in its host process, fed from the recording."""
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
 from fwk.aspects.vision import Ring
 from fwk.declaration import declaration
+from fwk.messages import sequence_of
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.runner import Runner, Surroundings
 from lcmtypes.core import log_t
+
+Written = list[tuple[str, bytes]]
 
 
 class Actor:
@@ -32,6 +35,8 @@ class Actor:
         surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names)
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {}
+        self._missed: set[tuple[str, int]] = set()  # channel and number of messages that it never saw
+        self._changes: list[Mapping[str, Any]] = []  # of settings, which it is told with its next iteration
         self.runner.init()
 
     def continue_at(self, channel: str, sequence: int) -> None:
@@ -40,22 +45,56 @@ class Actor:
             self.runner.writers[channel].sequence = sequence
 
     def configure(self, settings: Mapping[str, Any]) -> None:
-        """New settings, which it has from now on."""
-        self.runner.configure(settings)
+        """New settings, which it has from its next iteration on."""
+        self._changes.append(settings)
 
     def see(self, channel: str, data: list[bytes]) -> None:
         """Messages became visible; the next iteration has them."""
         if channel in self.runner.readers:
             self._waiting.setdefault(channel, []).extend(data)
 
-    def iterate(self, tick: int, place: int, stage: int, time_us: int) -> list[tuple[str, bytes]]:
-        """One iteration with everything that became visible since the last."""
-        waiting, self._waiting = self._waiting, {}
-        written = self.runner.iterate(tick, place, self._stages[stage], time_us, waiting)
-        self.runner.wishes()  # what came of them is in the recording
-        return written
+    def miss(self, channel: str, sequence: int) -> None:
+        """A message that is there in the recording never came to its process."""
+        self._missed.add((channel, sequence))
 
-    def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
+    def iteration(self, tick: int, place: int, stage: int, time_us: int, holder: str) -> Callable[[], Written | None]:
+        """What its host does in a stage, when the result is called: takes over settings, iterates if it takes part.
+
+        The iteration has everything that is visible now and was not before its last one.
+        """
+        changes, self._changes = self._changes, []
+        takes_part = stage in self.plan.stages
+        waiting: dict[str, list[bytes]] = {}
+        if takes_part:
+            waiting, self._waiting = self._waiting, {}
+
+        def run() -> Written | None:
+            for settings in changes:
+                self.runner.configure(settings)
+            self.runner.main_loop.holder = holder
+            if not takes_part:
+                return None
+            written = self.runner.iterate(tick, place, self._stages[stage], time_us, self._seen(tick, waiting))
+            self.runner.wishes()  # what came of them is in the recording
+            return written
+
+        return run
+
+    def _seen(self, tick: int, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
+        """Of what became visible, what its process got."""
+        if not self._missed:
+            return fresh
+        newest_only = self.runner.is_new(tick)
+        return {
+            channel: [
+                data
+                for data in (arrived[-1:] if newest_only else arrived)
+                if (channel, sequence_of(data)) not in self._missed
+            ]
+            for channel, arrived in fresh.items()
+        }
+
+    def finalize(self, tick: int, time_us: int) -> Written:
         """What it writes when it is stopped."""
         return self.runner.finalize(tick, time_us)
 
@@ -81,11 +120,6 @@ class ContinuousActor(Actor):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._told: deque[_Told] = deque()
-        self._changes: list[Mapping[str, Any]] = []
-
-    def configure(self, settings: Mapping[str, Any]) -> None:
-        """New settings, which it has with the next tick that it is told."""
-        self._changes.append(settings)
 
     def tell(self, tick: int, time_us: int, holder: str) -> None:
         """A tick says that everything seen so far is visible."""
@@ -93,7 +127,7 @@ class ContinuousActor(Actor):
         changes, self._changes = self._changes, []
         self._told.append(_Told(tick, time_us, holder, arrived, changes))
 
-    def iterate_on(self, tick: int, number: int) -> list[tuple[str, bytes]]:
+    def iterate_on(self, tick: int, number: int) -> Written:
         """Its iteration of that number on the marks of a tick."""
         fresh: dict[str, list[bytes]] = {}
         while len(self._told) > 1 and self._told[0].tick < tick:
@@ -102,7 +136,7 @@ class ContinuousActor(Actor):
         self._take(newest, fresh)
         self._told[0] = _Told(newest.tick, newest.time_us, newest.holder, {}, [])
         self.runner.main_loop.holder = newest.holder
-        written = self.runner.iterate(tick, number, "", newest.time_us, fresh)
+        written = self.runner.iterate(tick, number, "", newest.time_us, self._seen(tick, fresh))
         self.runner.wishes()
         return written
 

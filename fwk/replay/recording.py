@@ -103,6 +103,8 @@ class Recording:
             return False
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
+        if event.kind == tick_event_t.MISSED and not 0 <= event.stage < len(plan.channels):
+            return False
         return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 
     def _plan(self) -> Plan:

@@ -7,6 +7,7 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from fnmatch import fnmatchcase
+from functools import partial
 from importlib import import_module
 from typing import Any
 
@@ -15,9 +16,12 @@ from fwk.declaration import declaration
 from fwk.messages import MessageError, fingerprint, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
-from fwk.replay.actors import Actor, ContinuousActor
+from fwk.replay.actors import Actor, ContinuousActor, Written
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
 from lcmtypes.core import change_t, done_t, tick_event_t
+
+Made = list[tuple[Actor, Written]]
+Iteration = Callable[[], Written | None]
 
 
 class Replay:
@@ -36,6 +40,8 @@ class Replay:
         self.iterations = 0
         self.compared = 0
         self.differences: list[Difference] = []
+        self.lost: dict[str, set[int]] = {}
+        """Sequence numbers by channel that are not in the recording, and that no chosen component wrote again."""
         self._plan = plan
         self._chosen = _chosen(plan.components, only, recording)
         self._rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
@@ -49,10 +55,12 @@ class Replay:
         self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
         self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
         self._newest: dict[str, bytes] = {}
+        self._marks: dict[str, int] = {}
         self._sequences: dict[str, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
         self._revealed: list[tuple[str, list[bytes]]] = []  # visible from the next stage on
-        self._pending: dict[tuple[int, int, int], list[tuple[Actor, list[tuple[str, bytes]]]]] = {}
+        self._owed: dict[tuple[int, int, int], tuple[int, list[tuple[Actor, Iteration]]]] = {}
+        """By host, tick and place: what has not been answered yet, and its time."""
 
     def run(self, to_tick: int | None = None, begins: Callable[[int], None] = lambda _: None) -> None:
         """Replays all ticks, or until `to_tick`; calls `begins(tick)` before each."""
@@ -76,9 +84,10 @@ class Replay:
 
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
+        self._lose(tick)
         record, stage, place = tick.record, -1, -1
         for change in record.changes:
-            self._change(record.tick, change)
+            self._change(change)
         events = deque(record.events)
         while events:
             event = events.popleft()
@@ -94,7 +103,10 @@ class Replay:
             elif event.kind == tick_event_t.LOST:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
-                self._iterate(event.index, record.tick, place, stage, record.time_us)
+                self._begin(event.index, record.tick, place, stage, record.time_us, late=True)
+            elif event.kind == tick_event_t.MISSED:
+                for actor in [*self._actors.get(event.index, []), *self._leaving.get(event.index, [])]:
+                    actor.miss(self._plan.channels[event.stage].name, event.tick)
             elif event.kind == tick_event_t.TOLD:
                 self._show()
                 for actor in self._continuous():
@@ -103,20 +115,32 @@ class Replay:
                 self._come_in()
             elif event.kind == tick_event_t.DONE:
                 if event.stage == done_t.FINAL:
-                    self._finalize(event.index, event.tick)
+                    made = self._finalize(event.index, event.tick)
                 elif self._plan.components[self._plan.hosts[event.index].components[0]].rate_hz is not None:
-                    self._iterate_on(event.index, event.tick, event.stage)
-                elif (event.index, event.tick, event.stage) not in self._pending:
-                    self._iterate(event.index, event.tick, event.stage, stage, record.time_us)
-                self._done(event.index, event.tick, event.stage)
+                    made = self._iterate_on(event.index, event.tick, event.stage)
+                else:
+                    if (event.index, event.tick, event.stage) not in self._owed:
+                        self._begin(event.index, event.tick, event.stage, stage, record.time_us)
+                    made = self._run(event.index, event.tick, event.stage)
+                self._done(event.index, event.tick, event.stage, made)
 
-    def _change(self, tick: int, change: change_t) -> None:
+    def _lose(self, tick: RecordedTick) -> None:
+        """Finds out which messages became visible and are not there: the gateway never got them."""
+        here: dict[str, list[int]] = {}
+        for (channel, _, _), data in tick.messages.items():
+            here.setdefault(channel, []).extend(map(sequence_of, data))
+        for index, mark in zip(tick.record.channel, tick.record.sequence, strict=True):
+            channel = self._plan.channels[index].name
+            before, self._marks[channel] = self._marks.get(channel, 0), mark
+            if len(here.get(channel, ())) < mark - before:
+                self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
+
+    def _change(self, change: change_t) -> None:
         settings = json.loads(change.settings)
         self._changes.setdefault(change.component, []).append((change.number, settings))
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
-                with self._failing(actor.plan, f"the change of its settings in tick {tick}"):
-                    actor.configure(settings)
+                actor.configure(settings)
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings after that change, then takes over what was changed since."""
@@ -130,8 +154,8 @@ class Replay:
             with self._failing(component, "its start"):
                 kind = Actor if component.rate_hz is None else ContinuousActor
                 actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
-                for _, settings in changes[len(before) :]:
-                    actor.configure(settings)
+            for _, settings in changes[len(before) :]:
+                actor.configure(settings)
             for channel, data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():
@@ -142,39 +166,53 @@ class Replay:
         """What it was late with it takes along."""
         self._actors.pop(host, None)
         self._leaving.pop(host, None)
-        self._pending = {key: made for key, made in self._pending.items() if key[0] != host}
+        self._time_us.pop(host, None)
+        self._owed = {key: owed for key, owed in self._owed.items() if key[0] != host}
 
-    def _iterate(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
-        made = []
-        self._time_us[host] = time_us
+    def _begin(self, host: int, tick: int, place: int, stage: int, time_us: int, *, late: bool = False) -> None:
+        """Freezes what a host sees in a stage. Its iterations run when its done comes: one that was late may have died
+        over it, or have left without ever having run it. Only who looks at frames looks now, while they are there.
+        """
+        owed: list[tuple[Actor, Iteration]] = []
         for actor in self._actors.get(host, []):
-            actor.runner.main_loop.holder = self._holder
-            if stage in actor.plan.stages:
+            iteration = actor.iteration(tick, place, stage, time_us, self._holder)
+            if late and actor.runner.images:
                 with self._failing(actor.plan, f"tick {tick}"):
-                    made.append((actor, actor.iterate(tick, place, stage, time_us)))
-                self.iterations += 1
-        self._pending[host, tick, place] = made
+                    iteration = partial(_the_same, iteration())
+            owed.append((actor, iteration))
+        self._owed[host, tick, place] = time_us, owed
 
-    def _finalize(self, host: int, tick: int) -> None:
+    def _run(self, host: int, tick: int, place: int) -> Made:
+        made = []
+        self._time_us[host], owed = self._owed.pop((host, tick, place))
+        for actor, iteration in owed:
+            with self._failing(actor.plan, f"tick {tick}"):
+                written = iteration()
+            if written is not None:
+                made.append((actor, written))
+                self.iterations += 1
+        return made
+
+    def _finalize(self, host: int, tick: int) -> Made:
         made = []
         for actor in reversed(self._leaving.pop(host, [])):
             with self._failing(actor.plan, "finalize"):
                 made.append((actor, actor.finalize(tick, self._time_us.get(host, 0))))
-        self._pending[host, tick, done_t.FINAL] = made
+        return made
 
     def _continuous(self) -> list[ContinuousActor]:
         return [actor for actors in self._actors.values() for actor in actors if isinstance(actor, ContinuousActor)]
 
-    def _iterate_on(self, host: int, tick: int, number: int) -> None:
+    def _iterate_on(self, host: int, tick: int, number: int) -> Made:
         """A continuous component has run on the marks of a tick, perhaps long ago."""
-        made: list[tuple[Actor, list[tuple[str, bytes]]]] = []
+        made: Made = []
         for actor in self._actors.get(host) or self._leaving.get(host, []):
             if isinstance(actor, ContinuousActor):
                 with self._failing(actor.plan, f"iteration {number} on tick {tick}"):
                     made.append((actor, actor.iterate_on(tick, number)))
                 self._time_us[host] = actor.runner.stamp.time_us
                 self.iterations += 1
-        self._pending[host, tick, number] = made
+        return made
 
     @contextmanager
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
@@ -189,18 +227,28 @@ class Replay:
                 f"damaged, or the component was changed or depends on something else\n{trace}"
             ) from error
 
-    def _done(self, host: int, tick: int, place: int) -> None:
+    def _done(self, host: int, tick: int, place: int, made: Made) -> None:
         recorded: dict[str, list[bytes]] = {}
         for channel in self._host_channels[host]:
-            data = self._hidden.pop((channel, tick, place), None)
+            data = self._hidden.pop((channel, tick, place), [])
+            if channel in self.lost:
+                data = self._with_lost(channel, data, made)
             if data:
                 recorded[channel] = data
                 self._sequences[channel] = sequence_of(data[-1])  # a successor counts on from here
                 self._revealed.append((channel, data))
-        for actor, written in self._pending.pop((host, tick, place)):
+        for actor, written in made:
             for channel in actor.runner.writers:
                 ours = [data for name, data in written if name == channel]
                 self._compare(channel, recorded.get(channel, []), ours)
+
+    def _with_lost(self, channel: str, recorded: list[bytes], made: Made) -> list[bytes]:
+        """A message that is not in the recording is there again if its writer is replayed."""
+        lost = self.lost[channel]
+        again = [data for _, written in made for name, data in written if name == channel and sequence_of(data) in lost]
+        lost.difference_update(map(sequence_of, again))
+        self.compared -= len(again)
+        return sorted([*recorded, *again], key=sequence_of)
 
     def _come_in(self) -> None:
         """What came from outside is visible from the beginning of its tick on."""
@@ -227,6 +275,10 @@ class Replay:
                 for actor in actors:
                     actor.see(channel, data)
         self._revealed = []
+
+
+def _the_same(written: Written | None) -> Written | None:
+    return written
 
 
 def _chosen(components: Sequence[ComponentPlan], only: Sequence[str], recording: Recording) -> set[int]:

@@ -301,6 +301,7 @@ class MainLoop:
         if done.next_time_us >= 0:
             self.pace.source(done.next_time_us)
         if done.wishes:
+            self.records.missed(done)
             self.turns.ask(done)
             self.on_wishes(done)
         self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
@@ -308,12 +309,19 @@ class MainLoop:
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
         for entry in members:
             if entry.index in self._outstanding:
-                entry.busy, self._owed[entry.index] = (self.tick, self._place), (self._told, stage)
+                entry.busy, self._owed[entry.index] = (self.tick, self._place), (self._told_to(entry, members), stage)
                 entry.seen = self._step
                 self.records.event(tick_event_t.LATE, entry.index)
                 self.late += not entry.held
                 self.times.late(entry, stage, self.tick, self._stage_time_us)
         self._outstanding = set()
+
+    def _told_to(self, entry: HostEntry, members: list[HostEntry]) -> bytes:
+        """The newest tick for one host alone: a process that is started meanwhile must not take it for its first."""
+        tick: tick_t = sync.decode_tick(self._told)
+        tick.absent = [other.index for other in members if other is not entry]
+        tick.n_absent = len(tick.absent)
+        return sync.encode_tick(tick)
 
     def _on_started(self, entry: HostEntry) -> None:
         self.records.event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
