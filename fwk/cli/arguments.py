@@ -85,10 +85,20 @@ def video_file(text: str) -> Path:
         BadParameter: it ends otherwise, or cannot be written.
     """
     if Path(text).suffix != ".mp4":
-        raise typer.BadParameter(
-            f"'{text}' is no .mp4, the only kind that is written; say {Path(text).with_suffix('.mp4')}"
-        )
+        right = Path(text).with_suffix(".mp4") if Path(text).name else "match.mp4"
+        raise typer.BadParameter(f"'{text}' is no .mp4, the only kind that is written; say {right}")
     return new_file(text)
+
+
+def folder(text: str) -> Path:
+    """A folder that is there.
+
+    Raises:
+        BadParameter: it is none.
+    """
+    if not os.path.isdir(text or "."):  # False, too, for what can be no path or is forbidden
+        raise typer.BadParameter(f"there is no folder '{text}'")
+    return Path(text)
 
 
 def _number(text: str, least: float, greatest: float, meaning: str) -> float:

@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from fwk.cli.arguments import folder
 from fwk.cli.logs import failing, find_log
 from fwk.record.compare import Comparison
 from fwk.record.types import use_types_of
@@ -18,7 +19,9 @@ def compare(
     common: Annotated[
         bool, typer.Option("--common", help="only sequence numbers that both logs reach; for logs of different length")
     ] = False,
-    types: Annotated[Path, typer.Option(help="folder whose lcmtypes/ names the fields")] = Path(),
+    types: Annotated[
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ names the fields")
+    ] = Path(),
 ) -> None:
     """Compares two logs on every channel outside fwk/ and names the first difference.
 

@@ -3,6 +3,7 @@
 import math
 import re
 import sys
+import warnings
 from datetime import UTC, datetime, timedelta
 
 import typer
@@ -68,7 +69,8 @@ def pattern(text: str, option: str) -> re.Pattern[str]:
         BadParameter: it is none.
     """
     try:
-        return re.compile(text, re.IGNORECASE)
+        with warnings.catch_warnings(action="ignore", category=FutureWarning):  # what may mean something else one day
+            return re.compile(text, re.IGNORECASE)
     except (re.error, OverflowError, RecursionError) as error:
         right = re.escape(text)
         raise typer.BadParameter(

@@ -10,6 +10,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
+from fwk.cli.arguments import folder
 from fwk.cli.logs import failing, find_log
 from fwk.record.log_info import ChannelInfo, LogInfo
 from fwk.record.log_info import log_info as read_info
@@ -21,7 +22,9 @@ WIDTH_IN_A_PIPE = 200
 def log_info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="log or run directory")],
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
-    types: Annotated[Path, typer.Option(help="folder whose lcmtypes/ the messages are of")] = Path(),
+    types: Annotated[
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
+    ] = Path(),
 ) -> None:
     """Shows channels, types, counts, rates, ticks, gaps and damage of a log."""
     with failing(2):

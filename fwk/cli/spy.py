@@ -5,6 +5,7 @@ from typing import Annotated
 
 import typer
 
+from fwk.cli.arguments import folder
 from fwk.plan.model import Plan
 from fwk.record.spy import SpyError, build_jar, cache_folder, class_path, start
 from fwk.record.types import source_folders, use_types_of
@@ -14,7 +15,9 @@ from fwk.typegen import TypeGenerationError
 def spy(
     jar: Annotated[bool, typer.Option("--jar", help="only build the jar and print the class path")] = False,
     url: Annotated[str, typer.Option(help="bus to listen on")] = Plan.public_url,
-    types: Annotated[Path, typer.Option(help="folder whose lcmtypes/ are added to the framework's")] = Path(),
+    types: Annotated[
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ are added to the framework's")
+    ] = Path(),
 ) -> None:
     """Starts lcm-spy with our types on its class path, so that it shows decoded messages.
 

@@ -1,6 +1,7 @@
 """Whatever is typed behind a command, it ends with an answer or a sentence, never with a traceback."""
 
 import json
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as some
 from typer import Typer
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from fwk import messages
@@ -20,6 +22,7 @@ from fwk.cli.send import made
 from fwk.gateway.board import plain
 from fwk.messages import MessageError
 from tests.faults.faults_fuzz import HOSTILE_TEXT, all_types
+from tests.fwk.cli.cli_processes import free_bus_port
 from tests.system.system_runs import write_files
 
 TINY = {
@@ -73,6 +76,7 @@ OPTIONS = [
     "--record",
     "--set",
     "--hosting",
+    "--profile",
     "--only",
     "--without",
     "--debug",
@@ -100,35 +104,39 @@ def test_every_launch_file(tiny: Path) -> None:
         check(fwk, "check", text)
 
 
-COMMANDS = [
-    "status",
-    "top",
-    "bb show",
-    "bb list",
-    "bb watch",
-    "config get",
-    "config set",
-    "config list",
-    "send",
-    "send a/b",
-    "start",
-    "restart",
-    "log",
-    "log-info",
-    "log-info --types",
-    "compare",
-    "compare x",
-    "replay",
-    "replay x --only",
-    "replay x --from-tick",
-    "video",
-]
+def commands(path: tuple[str, ...], command: Any) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Every command of `fwk` with its words."""
+    below: Any = getattr(command, "commands", {})
+    if not below:
+        yield path, command
+    for name in below:
+        yield from commands((*path, name), below[name])
+
+
+COMMANDS = {" ".join(path): command for path, command in commands((), get_command(fwk)) if path != ("spy",)}
+"""Without the one that starts a program of somebody else."""
+
+
+def places(command: Any) -> Iterator[tuple[str, ...]]:
+    """Words behind which each text is typed: as an argument, behind other arguments, and behind each option."""
+    arguments = [each for each in command.params if each.param_type_name == "argument"]
+    for count in range(len(arguments)):
+        yield ("x",) * count
+    needed = ("x",) * sum(each.required for each in arguments)
+    for option in command.params:
+        if option.param_type_name == "option" and not option.is_flag:
+            yield (*needed, option.opts[0])
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command(tiny: Path, command: str) -> None:
-    for text in HOSTILE_TEXT:
-        check(fwk, *command.split(), text)
+def test_every_argument_and_option_of_every_command(tiny: Path, command: str) -> None:
+    made = COMMANDS[command]
+    nobody = ("--bus-port", free_bus_port())  # and not somebody else's run on this machine
+    has_port = any("--bus-port" in each.opts for each in made.params)
+    for before in places(made):
+        port = nobody if has_port and before[-1:] != ("--bus-port",) else ()
+        for text in HOSTILE_TEXT:
+            check(fwk, *command.split(), *port, *before, text)
 
 
 @pytest.mark.parametrize("command", ["status", "bb list", "config list", "log", "doctor"])

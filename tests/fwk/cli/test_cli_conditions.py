@@ -62,5 +62,9 @@ def test_what_is_none_is_refused_with_what_would_be_right(read: object, text: st
         read(text)  # type: ignore[operator]
 
 
+def test_a_pattern_that_python_wonders_about_is_one() -> None:
+    assert pattern("[[a]", "--text").search("[")
+
+
 def test_a_pattern_minds_no_capitals() -> None:
     assert pattern("TURN.*left", "--text").search("it turned left")

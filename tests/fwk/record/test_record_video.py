@@ -15,6 +15,7 @@ from typer.testing import CliRunner
 from fwk.cli.video import video as command
 from fwk.plan.model import Plan
 from fwk.record.video import Picture, VideoError, drawing, render_video
+from lcmtypes.core import plan_t
 from tests.fwk.record.record_made import entries, write
 
 Newest = Callable[[str], Any]
@@ -92,9 +93,11 @@ def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> Non
     log, out = write(tmp_path / "log", entries(ticks=3)), tmp_path / "out.mp4"
     alone = run(app, [str(tmp_path), "-o", str(out)])
     assert alone.exit_code == 1
-    assert alone.stderr == f"error: {log}: no readable plan.json of its run beside it; name the drawing with --draw\n"
+    assert alone.stderr == f"error: {log}: no readable plan of its run in it; name the drawing with --draw\n"
     plan = Plan("x", "x.yaml", (), (), 50_000, "simulated", 1, (), (), (), video=f"{__name__}:Grey")
-    (tmp_path / "plan.json").write_text(json.dumps(plan.to_json()))
+    said = plan_t()
+    said.json = json.dumps(plan.to_json())
+    write(log, [("fwk/plan", said.encode(), 0), *entries(ticks=3)])
     drawn = run(app, [str(tmp_path), "-o", str(out)])
     assert (drawn.exit_code, drawn.stdout) == (0, f"{out}: 3 pictures\n")
     assert run(app, [str(log), "-o", str(out), "--draw", f"{__name__}:grey"]).exit_code == 0
