@@ -5,6 +5,10 @@ PYTHON ?= $(shell for each in python3 python3.11 python3.12 python3.13; do \
 BIN := .venv/bin
 READY := .venv/.ready
 
+# Tests wait more than they compute: a worker more than processors.
+WORKERS ?= $(shell expr $$(nproc) + 1)
+PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
+
 .DEFAULT_GOAL := help
 .PHONY: help soccer test test-fast lint types docs clean
 
@@ -15,7 +19,7 @@ help:  ## Lists what can be made
 $(READY): pyproject.toml fwk/packaging/build_backend.py
 	@test -n "$(PYTHON)" || { echo "fwk needs Python 3.11 or newer; install it or say: make PYTHON=/path/to/python3"; exit 2; }
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $@
 
 types: $(READY)  ## Generates Python classes from lcmtypes/*.lcm
@@ -30,10 +34,10 @@ lint: types  ## Format, lint, types
 	$(BIN)/mypy
 
 test: lint  ## Everything that has to hold before a commit
-	$(BIN)/pytest
+	$(BIN)/pytest $(PARALLEL)
 
-test-fast: types  ## The tests without the slow ones
-	$(BIN)/pytest -m 'not slow'
+test-fast: types  ## The tests of parts, and of the whole what breaks first
+	$(BIN)/pytest $(PARALLEL) -m '(not system or core) and not slow'
 
 docs: types  ## Writes docs/commands.md from the commands themselves
 	$(BIN)/python -m fwk.cli.reference > .venv/commands.md && mv .venv/commands.md docs/commands.md

@@ -1,4 +1,4 @@
-"""What all tests share: a test that needs a program which is not here is left out by name, and the end says so."""
+"""What all tests share: ports of their own, and leaving out what this machine cannot run, which the end names."""
 
 import shutil
 import subprocess
@@ -9,11 +9,11 @@ from typing import NoReturn
 import pytest
 from hypothesis import settings
 
+from tests.system.system_runs import PortBlock
+
 settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile("long", deadline=None, max_examples=5000)
 settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long looks for new ones
-
-_LEFT_OUT = pytest.StashKey[dict[str, list[str]]]()
 
 _PACKAGES = {
     "Xvfb": "xvfb",
@@ -30,14 +30,20 @@ _PACKAGES = {
 
 
 @pytest.fixture
-def leave_out(request: pytest.FixtureRequest) -> Callable[[str], NoReturn]:
-    """`leave_out("needs root")` skips the test; the reason is said at the end."""
+def ports() -> Iterator[PortBlock]:
+    """Ports that no other test on this machine uses meanwhile, whichever suite or worker it belongs to."""
+    made = PortBlock()
+    yield made
+    made.release()
 
-    def skip(reason: str) -> NoReturn:
-        request.config.stash.setdefault(_LEFT_OUT, {}).setdefault(reason, []).append(request.node.nodeid)
-        pytest.skip(reason)
 
-    return skip
+@pytest.fixture
+def leave_out() -> Callable[[str], NoReturn]:
+    """`leave_out("needs root")` skips the test; the reason is said at the end.
+
+    The one way to skip: only what this machine lacks is a reason to leave a test out, never the test's own trouble.
+    """
+    return pytest.skip
 
 
 @pytest.fixture
@@ -76,9 +82,15 @@ def small_disk(
         subprocess.run(["umount", "--lazy", str(folder)], check=True)
 
 
-def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    """Lists what was left out and why, so that a green run does not hide it."""
-    for reason, tests in sorted(config.stash.get(_LEFT_OUT, {}).items()):
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    """Lists what was left out and why, so that a green run does not hide it.
+
+    Asks the reports, which come from all workers.
+    """
+    left_out: dict[str, list[str]] = {}
+    for report in terminalreporter.stats.get("skipped", []):
+        left_out.setdefault(report.longrepr[2].removeprefix("Skipped: "), []).append(report.nodeid)
+    for reason, tests in sorted(left_out.items()):
         terminalreporter.section(f"left out, {reason}")
-        for test in tests:
+        for test in sorted(tests):
             terminalreporter.write_line(test)

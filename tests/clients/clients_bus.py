@@ -1,7 +1,5 @@
 """A public bus for one test, and LCM's own programs on it."""
 
-import itertools
-import os
 import signal
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
@@ -16,7 +14,6 @@ from fwk.typegen import lcm_gen
 
 PROBE = "fwk/probe"
 _DEADLINE_S = 60.0  # a busy machine is slow; nothing waits that long when it works
-_number = itertools.count()
 
 
 def program(name: str) -> str:
@@ -25,12 +22,11 @@ def program(name: str) -> str:
 
 
 class Bus:
-    """A multicast port that no other test uses."""
+    """Publishes and listens on a public bus."""
 
-    def __init__(self) -> None:
-        port = 24_000 + (os.getpid() * 8 + next(_number)) % 8_000
-        self.url = f"udpm://239.255.76.67:{port}?ttl=0&recv_buf_size=4194304"
-        self._lcm = lcm.LCM(self.url)
+    def __init__(self, url: str) -> None:
+        self.url = url
+        self._lcm = lcm.LCM(url)
 
     def play(self, log: Path, *options: str) -> None:
         """Publishes a log with lcm-logplayer, four times as fast as recorded."""

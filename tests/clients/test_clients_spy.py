@@ -19,6 +19,7 @@ from fwk.messages import has_header, type_name
 from fwk.record.types import by_fingerprint
 from tests.clients.clients_bus import Bus, process, wait_until
 from tests.fwk.record.record_made import Entry, write
+from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system
 FWK_SPY = "import typer; from fwk.cli.spy import spy; typer.run(spy)"
@@ -58,9 +59,9 @@ def read_table(folder: Path) -> Table:
         return {row["Channel"]: row for row in csv.DictReader(file, delimiter="\t")}
 
 
-def test_every_channel_is_decoded(tmp_path: Path, needs: Callable[..., None], display: str) -> None:
+def test_every_channel_is_decoded(tmp_path: Path, needs: Callable[..., None], display: str, ports: PortBlock) -> None:
     needs("java", "javac", "jar")
-    bus, made = Bus(), one_of_each_type()
+    bus, made = Bus(ports.public_url), one_of_each_type()
     channels = {channel for channel, _, _ in made}
     (tmp_path / "seen").mkdir()
     (tmp_path / "agent").mkdir()

@@ -5,11 +5,11 @@ from pathlib import Path
 import pytest
 
 from tests.faults.faults_after import Aftermath
-from tests.system.conftest import _types, folder, launch, ports
+from tests.system.conftest import _types, folder, launch
 from tests.system.system_orchestra import orchestra
 from tests.system.system_runs import Launched, PortBlock, write_files
 
-__all__ = ["RUN", "TICKS", "_types", "folder", "launch", "ports"]
+__all__ = ["RUN", "TICKS", "_types", "folder", "launch"]
 
 TICKS = 40
 RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.fwk.cli.cli_processes import PROCS, free_bus_port, write_files
+from tests.fwk.cli.cli_processes import PROCS, write_files
+from tests.system.system_runs import PortBlock
 
 ROOT = Path(__file__).parents[2]
 INSTALL_TIMEOUT_S = 280.0
@@ -98,8 +99,8 @@ def test_the_installed_launch_files_are_found(installed: Run) -> None:
     assert "components" in result.stdout
 
 
-def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run) -> None:
-    arguments = ["--ticks", "20", "--speed", "max", "--bus-port", free_bus_port()]
+def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run, ports: PortBlock) -> None:
+    arguments = ["--ticks", "20", "--speed", "max", "--bus-port", str(ports.bus)]
     result = installed("fwk-launch", "cards.yaml", "--record", "mine.log", *arguments)
     assert result.returncode == 0, result.stdout
     assert "20 ticks done" in result.stdout
@@ -107,9 +108,9 @@ def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run
     assert "cards.count_t" in info.stdout, info.stdout
 
 
-def test_the_installed_robots_play(installed: Run) -> None:
+def test_the_installed_robots_play(installed: Run, ports: PortBlock) -> None:
     result = installed(
-        "fwk-launch", "one-robot.yaml", "--ticks", "5", "--speed", "max", "--bus-port", free_bus_port(), "--no-record"
+        "fwk-launch", "one-robot.yaml", "--ticks", "5", "--speed", "max", "--bus-port", str(ports.bus), "--no-record"
     )
     assert result.returncode == 0, result.stdout
     assert "CYAN 0 : 0 MAGENTA" in result.stdout

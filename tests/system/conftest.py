@@ -13,14 +13,6 @@ Launch = Callable[..., Launched]
 
 
 @pytest.fixture
-def ports() -> Iterator[PortBlock]:
-    """Ports of the test's own."""
-    made = PortBlock()
-    yield made
-    made.release()
-
-
-@pytest.fixture
 def launch(tmp_path: Path, ports: PortBlock) -> Iterator[Launch]:
     """`launch("launch/x.yaml", "--ticks", "5", env={}, folder=...)` starts a run; whatever is left of it is killed."""
     launched: list[Launched] = []

@@ -10,6 +10,7 @@ import uuid
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Self
 
 import psutil
 
@@ -23,7 +24,10 @@ _BASES = range(21_120, 32_000, _BLOCK)  # where lock blocks of ports begin
 
 
 class PortBlock:
-    """A block of ports that no other test on this machine uses at the same time."""
+    """A block of ports that no other test on this machine uses at the same time.
+
+    Its lock is a name in the network's namespace, as far as ports reach, and goes with the process that took it.
+    """
 
     def __init__(self) -> None:
         for base in _BASES:
@@ -39,7 +43,14 @@ class PortBlock:
         raise AssertionError("no free ports")
 
     def release(self) -> None:
+        """Gives them to the next test."""
         self._lock.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
 
 
 class Launched:

@@ -10,9 +10,11 @@ from fwk.bus.sockets import Sender
 from fwk.plan.model import ChannelPlan
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
+from tests.system.system_runs import PortBlock
 
 PLAN = ChannelPlan(0, "cyan1/pose", "soccer.pose_t", 0, ())
-PORT, WRITER, STRANGER = 19_900, 19_901, 19_902
+WRITER, STRANGER = 1, 2
+"""Ports, counted from the channel's."""
 
 
 def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0) -> bytes:
@@ -22,22 +24,24 @@ def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0) ->
 
 
 class Wired:
-    def __init__(self) -> None:
+    def __init__(self, port: int) -> None:
+        self.port = port
         self.complaints: list[str] = []
-        self.inbox = Inbox(PLAN, PORT, (WRITER,), lambda channel, text: self.complaints.append(f"{channel}: {text}"))
-        self.sender = Sender(WRITER)
+        writers = (port + WRITER,)
+        self.inbox = Inbox(PLAN, port, writers, lambda channel, text: self.complaints.append(f"{channel}: {text}"))
+        self.sender = Sender(port + WRITER)
 
     def send(self, *sequences: int, writer: str = "cyan1/localization") -> None:
         for sequence in sequences:
-            self.sender.publish(b"cyan1/pose", pose(sequence, writer), PORT)
+            self.sender.publish(b"cyan1/pose", pose(sequence, writer), self.port)
 
     def taken(self) -> list[int]:
         return [pose_t.decode(data).header.sequence for data in self.inbox.take()]
 
 
 @pytest.fixture
-def wired() -> Iterator[Wired]:
-    made = Wired()
+def wired(ports: PortBlock) -> Iterator[Wired]:
+    made = Wired(ports.bus)
     yield made
     made.inbox.close()
     made.sender.socket.close()
@@ -123,7 +127,7 @@ def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
 @pytest.mark.parametrize(
     ("port", "datagram", "says"),
     [
-        (STRANGER, stranger(pose(2)), "port 19902, which is not the writer's"),
+        (STRANGER, stranger(pose(2)), "port {}, which is not the writer's"),
         (WRITER, b"rubbish", "no LCM message"),
         (WRITER, stranger(pose(2))[:30], "no soccer.pose_t"),
         (WRITER, stranger(imu_t().encode() + bytes(50)), "no soccer.pose_t"),
@@ -132,13 +136,13 @@ def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
 )
 def test_what_does_not_belong_here_is_refused_and_named(wired: Wired, port: int, datagram: bytes, says: str) -> None:
     wired.send(1)
-    other = wired.sender if port == WRITER else Sender(port)
-    other.socket.sendto(datagram, ("239.255.76.67", PORT))
+    other = wired.sender if port == WRITER else Sender(wired.port + port)
+    other.socket.sendto(datagram, ("239.255.76.67", wired.port))
     if other is not wired.sender:
         other.socket.close()
     wired.inbox.mark = 2
     assert not wired.inbox.collect()
-    assert says in wired.complaints[0]
+    assert says.format(wired.port + port) in wired.complaints[0]
     wired.send(2)
     assert wired.inbox.collect()
     assert wired.taken() == [1, 2]
@@ -146,7 +150,7 @@ def test_what_does_not_belong_here_is_refused_and_named(wired: Wired, port: int,
 
 def test_large_messages_come_in_fragments(wired: Wired) -> None:
     data = pose(1) + bytes(200_000)
-    wired.sender.publish(b"cyan1/pose", data, PORT)
+    wired.sender.publish(b"cyan1/pose", data, wired.port)
     wired.inbox.mark = 1
     assert wired.inbox.collect()
     assert wired.inbox.take() == [data]

@@ -1,8 +1,11 @@
 """Ports of a run and the lock on them."""
 
+import re
+
 import pytest
 
 from fwk.bus.ports import PortLock, Ports, PortsInUse
+from tests.system.system_runs import PortBlock
 
 
 def test_no_port_has_two_uses() -> None:
@@ -14,17 +17,20 @@ def test_no_port_has_two_uses() -> None:
     assert max(used) < ports.end
 
 
-def test_a_second_run_on_overlapping_ports_is_told_who_has_them_and_what_to_type() -> None:
-    lock = PortLock(Ports(30_000, 5, 5), "soccer.yaml")
-    with pytest.raises(PortsInUse, match=r"second.yaml: ports 30010 .*another run \(pid \d+: .*--bus-port \d+"):
-        PortLock(Ports(30_010, 5, 5), "second.yaml")
+def test_a_second_run_on_overlapping_ports_is_told_who_has_them_and_what_to_type(ports: PortBlock) -> None:
+    lock, overlapping = PortLock(Ports(ports.bus, 5, 5), "soccer.yaml"), Ports(ports.bus + 10, 5, 5)
+    told = rf"second.yaml: ports {overlapping.base} .*another run \(pid \d+: .*--bus-port \d+"
+    with pytest.raises(PortsInUse, match=told):
+        PortLock(overlapping, "second.yaml")
     lock.release()
-    PortLock(Ports(30_010, 5, 5), "second.yaml").release()
+    PortLock(overlapping, "second.yaml").release()
 
 
-def test_two_runs_do_not_mirror_to_the_same_public_bus() -> None:
-    bus = "udpm://239.255.76.67:7999?ttl=0"
-    lock = PortLock(Ports(30_000, 5, 5), "soccer.yaml", bus)
-    with pytest.raises(PortsInUse, match=r"second.yaml: the public bus udpm://239.255.76.67:7999 .*another public_url"):
-        PortLock(Ports(31_000, 5, 5), "second.yaml", bus.replace("ttl=0", "ttl=1"))
+def test_two_runs_do_not_mirror_to_the_same_public_bus(ports: PortBlock) -> None:
+    bus, other = ports.public_url, PortBlock()
+    lock = PortLock(Ports(ports.bus, 5, 5), "soccer.yaml", bus)
+    told = f"second.yaml: the public bus {re.escape(bus.partition('?')[0])} .*another public_url"
+    with pytest.raises(PortsInUse, match=told):
+        PortLock(Ports(other.bus, 5, 5), "second.yaml", bus.replace("ttl=0", "ttl=1"))
     lock.release()
+    other.release()

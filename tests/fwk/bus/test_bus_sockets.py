@@ -1,19 +1,8 @@
 """Senders on one port, one after the other, as those of a host that was started again."""
 
-from collections.abc import Iterator
-
-import pytest
-
 from fwk.bus import wire
 from fwk.bus.sockets import Sender, multicast_receiver
 from tests.system.system_runs import PortBlock
-
-
-@pytest.fixture
-def ports() -> Iterator[PortBlock]:
-    made = PortBlock()
-    yield made
-    made.release()
 
 
 def test_halves_of_two_lives_are_no_message(ports: PortBlock) -> None:

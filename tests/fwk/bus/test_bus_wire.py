@@ -11,13 +11,14 @@ import pytest
 from fwk.bus import wire
 from fwk.bus.public import PublicBus, UrlError, parse_url
 from fwk.messages import MessageError
+from tests.system.system_runs import PortBlock
 
 SIZES = [0, 1, 300, 65_000, 65_490, 65_499, 65_500, 131_000, 1_000_000]
 
 
 @pytest.fixture
-def url() -> str:
-    return f"udpm://239.255.76.67:{20_000 + os.getpid() % 10_000}?ttl=0&recv_buf_size=4194304"
+def url(ports: PortBlock) -> str:
+    return ports.public_url
 
 
 @pytest.fixture

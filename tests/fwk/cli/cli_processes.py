@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from fwk.bus.ports import PortLock, Ports, PortsInUse
+from tests.system.system_runs import PortBlock
 
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
@@ -53,17 +53,6 @@ def write_files(folder: Path, files: dict[str, str]) -> None:
         (folder / name).write_text(content)
 
 
-def free_bus_port() -> str:
-    """A value for `--bus-port`."""
-    for base in range(10_240, 16_000, 128):
-        try:
-            PortLock(Ports(base, 8, 32), "test").release()
-        except PortsInUse:
-            continue
-        return str(base)
-    raise AssertionError("no free ports")
-
-
 def environment(home: Path) -> dict[str, str]:
     """The commands of this environment first on the path, and a home that the test may fill."""
     return {**os.environ, "HOME": str(home), "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
@@ -85,4 +74,5 @@ def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
 
 def launch(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     """`fwk-launch` on free ports."""
-    return run(folder, "fwk-launch", *arguments, "--bus-port", free_bus_port())
+    with PortBlock() as ports:
+        return run(folder, "fwk-launch", *arguments, "--bus-port", str(ports.bus))

@@ -15,13 +15,13 @@ from fwk.bus.ports import PortLock, Ports
 from fwk.cli import doctor_checks as checks
 from fwk.cli.doctor import doctor
 from fwk.cli.doctor_checks import Finding, Level
+from tests.system.system_runs import PortBlock
 
 DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.doctor import doctor; typer.run(doctor)"]
-PORT = 19_000 + os.getpid() % 4_000 // 64 * 64
 
 
-def test_ports_of_another_run_are_named() -> None:
-    wanted = Ports(PORT, 3, 4)
+def test_ports_of_another_run_are_named(ports: PortBlock) -> None:
+    wanted = Ports(ports.bus, 3, 4)
     assert checks.ports(wanted).level is Level.OK
     lock = PortLock(wanted, "other")
     try:
@@ -33,11 +33,11 @@ def test_ports_of_another_run_are_named() -> None:
     assert checks.ports(wanted).level is Level.OK
 
 
-def test_ports_of_other_programs_are_named() -> None:
+def test_ports_of_other_programs_are_named(ports: PortBlock) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", PORT + 2))
-        found = checks.ports(Ports(PORT, 3, 4))
-    assert (found.level, found.text) == (Level.WARNING, f"other programs have {PORT + 2}")
+        taken.bind(("127.0.0.1", ports.bus + 2))
+        found = checks.ports(Ports(ports.bus, 3, 4))
+    assert (found.level, found.text) == (Level.WARNING, f"other programs have {ports.bus + 2}")
     assert found.advice.startswith("fwk-launch FILE --bus-port ")
 
 

@@ -15,7 +15,8 @@ from typer.testing import CliRunner
 from fwk.bus.ports import PortLock, Ports
 from fwk.cli.launch import app
 from fwk.record.log import LogReader
-from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, free_bus_port, launch, write_files
+from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, launch, write_files
+from tests.system.system_runs import PortBlock
 
 CARDS = "launch/cards.yaml"
 PICTURE = {"procs/picture.py": "import numpy as np\n\ndef draw(newest):\n    return np.zeros((48, 64, 3), np.uint8)\n"}
@@ -146,10 +147,9 @@ def test_debugging_a_component_that_is_not_there_is_refused(folder: Path) -> Non
 
 
 @pytest.mark.system
-def test_a_run_that_would_collide_says_so(folder: Path) -> None:
-    port = free_bus_port()
-    lock = PortLock(Ports(int(port), 1, 1), "test")
-    arguments = ["fwk-launch", *FAST, "--ticks", "1", "--bus-port", port]
+def test_a_run_that_would_collide_says_so(folder: Path, ports: PortBlock) -> None:
+    lock = PortLock(Ports(ports.bus, 1, 1), "test")
+    arguments = ["fwk-launch", *FAST, "--ticks", "1", "--bus-port", str(ports.bus)]
     result = subprocess.run(arguments, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False)
     lock.release()
     assert result.returncode == 2
@@ -157,9 +157,9 @@ def test_a_run_that_would_collide_says_so(folder: Path) -> None:
 
 
 @pytest.mark.system
-def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path) -> None:
+def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path, ports: PortBlock) -> None:
     screen, terminal = pty.openpty()
-    arguments = ["fwk-launch", CARDS, "--bus-port", free_bus_port()]
+    arguments = ["fwk-launch", CARDS, "--bus-port", str(ports.bus)]
     process = subprocess.Popen(
         arguments, cwd=folder, env=environment(folder), stdin=terminal, stdout=terminal, start_new_session=True
     )

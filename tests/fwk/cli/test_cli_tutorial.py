@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.fwk.cli.cli_processes import free_bus_port, run, write_files
+from tests.fwk.cli.cli_processes import run, write_files
+from tests.system.system_runs import PortBlock
 
 DOCS = Path(__file__).parents[3] / "docs"
 _FILE = re.compile(r"this as `([^`]+)`:\n\n```\w+\n(.*?)```", re.S)
@@ -35,7 +36,7 @@ def shows(output: str, line: str) -> bool:
     ("name", "n_files", "n_commands"),
     [("first-component.md", 5, 7), ("commands-between-components.md", 5, 4), ("porting.md", 7, 4)],
 )
-def test_the_page_does_what_it_says(tmp_path: Path, name: str, n_files: int, n_commands: int) -> None:
+def test_the_page_does_what_it_says(tmp_path: Path, ports: PortBlock, name: str, n_files: int, n_commands: int) -> None:
     page = (DOCS / name).read_text()
     files, commands = dict(_FILE.findall(page)), steps(page)
     assert len(files) == n_files
@@ -44,7 +45,7 @@ def test_the_page_does_what_it_says(tmp_path: Path, name: str, n_files: int, n_c
     for command, lines in commands:
         words = shlex.split(command)
         if words[0] == "fwk-launch":  # the one word added: beside other runs of this machine
-            words += ["--bus-port", free_bus_port()]
+            words += ["--bus-port", str(ports.bus)]
         result = run(tmp_path, *words)
         assert result.returncode == 0, f"{command}\n{result.stdout}"
         for line in lines:

@@ -92,12 +92,10 @@ class Followed:
 
 
 @pytest.fixture
-def followed() -> Iterator[Followed]:
-    ports = PortBlock()
+def followed(ports: PortBlock) -> Iterator[Followed]:
     made = Followed(ports.bus)
     yield made
     made.close()
-    ports.release()
 
 
 def gone_of(message: tuple[bytes, bytes] | None) -> tuple[int, int]:

@@ -78,12 +78,10 @@ class Opened:
 
 
 @pytest.fixture
-def opened() -> Iterator[Opened]:
-    ports = PortBlock()
+def opened(ports: PortBlock) -> Iterator[Opened]:
     made = Opened(ports)
     yield made
     made.close()
-    ports.release()
 
 
 def wish(vx_m_s: float = 0.0) -> bytes:

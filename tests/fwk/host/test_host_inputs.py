@@ -73,9 +73,8 @@ Make = Callable[..., Pair]
 
 
 @pytest.fixture
-def make() -> Iterator[Make]:
+def make(ports: PortBlock) -> Iterator[Make]:
     made: list[Pair] = []
-    ports = PortBlock()
 
     def kept(**how: Any) -> Pair:
         made.append(Pair(ports.bus, **how))
@@ -84,7 +83,6 @@ def make() -> Iterator[Make]:
     yield kept
     for each in made:
         each.close()
-    ports.release()
 
 
 def test_what_a_mark_names_is_waited_for_and_no_more_is_given(make: Make) -> None:
