@@ -21,7 +21,7 @@ from procs.vision.recorded import Endless, Folder, Recorded, SourceError, Video
 class CameraDriverConfig(Config):
     """Settings of the camera's driver."""
 
-    source: str = "/dev/video0"
+    source: str | int = "/dev/video0"
     """Where pictures come from: a device (`/dev/video0`, or its number), an address (`rtsp://...`, `http://...`), a
     video file, or a folder of pictures, taken in the order of their names."""
     width_px: int = Setting(default=0, ge=0, le=10_000)
@@ -91,7 +91,7 @@ class CameraDriver(Component):
         self._live, self._recorded, self._ended = None, None, False
         if bool(config.width_px) != bool(config.height_px):
             raise SourceError(f"{self.name}: width_px and height_px belong together; give both or none")
-        source, path = config.source, Path(config.source)
+        source, path = str(config.source), Path(str(config.source))
         backoff = Backoff(config.retry_s, config.longest_retry_s)
         if "://" in source:
             self._live = Live(lambda: open_stream(source), backoff)

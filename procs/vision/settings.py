@@ -25,7 +25,8 @@ class MirrorConfig(Config):
         if pixels.shape != wanted:
             raise ValueError(
                 f"{component}: the frame is {' x '.join(map(str, pixels.shape))}, but mirror.size_px says "
-                f"{' x '.join(map(str, wanted))}; give camera and detector the same mirror settings"
+                f"{' x '.join(map(str, wanted))}; give camera and detector the same mirror settings, "
+                "or a camera driver width_px and height_px"
             )
 
     def mirror(self, roll_deg: float = 0.0, pitch_deg: float = 0.0) -> Mirror:

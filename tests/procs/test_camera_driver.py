@@ -121,6 +121,11 @@ def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path, source
         bench(source.format(folder=tmp_path))
 
 
+def test_a_device_may_be_named_by_its_number() -> None:
+    with pytest.raises(SourceError, match="'/dev/video99'"):
+        Bench(CameraDriver, name="cyan1/camera", source=99)
+
+
 def test_a_device_that_the_user_may_not_read_is_refused_with_the_group(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
