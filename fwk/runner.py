@@ -3,7 +3,7 @@
 import hashlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from fwk.aspects.plugins import PluginControl
 from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Outbox, Sends, SendsEach
-from fwk.aspects.vision import Image, ImagesEach, Ring, VisionMaster
+from fwk.aspects.vision import Frames, Image, ImagesEach, Ring, VisionMaster
 from fwk.clock import Clock, TimeSource
 from fwk.component import DEFAULT_STAGES, Component
 from fwk.config import LOG_LEVEL, Config
@@ -28,6 +28,8 @@ from lcmtypes.core import done_t, log_t
 
 AWAY_TICKS = 16
 """Who took no part for longer is like a newcomer, because writers may no longer have everything."""
+MISSED_FRAMES = "missed_frames"
+"""Under this name a done says which frames its components did not get."""
 NOTHING: list[bytes] = []
 """No message came. Readers do not change what they are given."""
 
@@ -46,6 +48,8 @@ class Surroundings:
     stages: Sequence[str] = DEFAULT_STAGES
     components: Sequence[str] = ()
     """Names of all components of the run; none: there are no others."""
+    frames: Mapping[str, Frames] = field(default_factory=dict)
+    """In a replay: channels whose frames are looked at elsewhere than in their ring."""
 
 
 class Runner:
@@ -66,7 +70,7 @@ class Runner:
         self.name = name
         self.readers: dict[str, Reads[Any]] = {}
         self.writers: dict[str, Writes[Any]] = {}
-        self.images: list[Image] = []
+        self.images: dict[str, Image] = {}
         self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
@@ -81,7 +85,7 @@ class Runner:
         limit = RateLimit(surroundings.lines_per_s)
         self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
         self.component: Component = declaration.component()
-        self._rings = surroundings.rings
+        self._rings, self._frames = surroundings.rings, surroundings.frames
         self._away_after = 1 if incarnation == 1 else 0  # tick
         self._histories: dict[str, int] = {}
         for port in declaration.ports:
@@ -185,9 +189,17 @@ class Runner:
         return LEVELS[getattr(self._config, LOG_LEVEL)]
 
     def wishes(self) -> dict[str, Any]:
-        """What the iteration asked of the main loop, by aspect."""
-        order, plugins = self.main_loop.take(), self.plugins.take()
-        return ({} if order is None else {"main_loop": order}) | ({"plugins": plugins} if plugins else {})
+        """What the iteration asked of the main loop, by aspect, and which frames it missed."""
+        order, plugins, missed = self.main_loop.take(), self.plugins.take(), self.missed_frames()
+        return (
+            ({} if order is None else {"main_loop": order})
+            | ({"plugins": plugins} if plugins else {})
+            | ({MISSED_FRAMES: missed} if missed else {})
+        )
+
+    def missed_frames(self) -> dict[str, list[int]]:
+        """Frames that were overwritten before the component read them, by channel; mostly nothing."""
+        return {channel: numbers for channel, image in self.images.items() if (numbers := image.missed())}
 
     def _put(self, attribute: str, value: Any) -> None:
         """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
@@ -223,10 +235,15 @@ class Runner:
             return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
         read = {channel: self._reader(channel, port.message_type) for channel in channels}
         if port.images:
-            images = {channel: Image(read[channel], self._rings[channel], self.log) for channel in channels}
-            self.images += images.values()
-            return ImagesEach(_by_namespace(images)) if port.each else images[channels[0]]
+            looked_at = {channel: self._image(channel, read[channel]) for channel in channels}
+            return ImagesEach(_by_namespace(looked_at)) if port.each else looked_at[channels[0]]
         return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+
+    def _image(self, channel: str, announcement: Reads[Any]) -> Image:
+        """The one view of a camera, whichever ports stand for it."""
+        if channel not in self.images:
+            self.images[channel] = Image(announcement, self._frames.get(channel) or self._rings[channel], self.log)
+        return self.images[channel]
 
     def _reader(self, channel: str, message_type: type[Message]) -> Reads[Any]:
         """The one reader of a channel, whichever ports stand for it."""

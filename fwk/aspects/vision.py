@@ -6,7 +6,7 @@ import os
 import struct
 from collections.abc import ItemsView, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,13 @@ Frame = NDArray[np.uint8]
 
 class FrameError(Exception):
     """A frame does not fit into its ring, or too many were written in one iteration."""
+
+
+class Frames(Protocol):
+    """Where somebody who was told of a frame finds it: a ring, or in a replay a recording."""
+
+    def get(self, number: int, size: int) -> Frame | None:
+        """A copy of frame `number`; None if it is no longer to be had."""
 
 
 class Ring:
@@ -140,10 +147,11 @@ class Image:
     `lost` and logged at the 1st, 10th, 100th time.
     """
 
-    def __init__(self, announcement: Reads[frame_t], ring: Ring, log: Logger) -> None:
+    def __init__(self, announcement: Reads[frame_t], frames: Frames, log: Logger) -> None:
         self.announcement = announcement
         self.lost = 0  # frames that were overwritten before this component came to read them
-        self._ring = ring
+        self._missed: list[int] = []
+        self._frames = frames
         self._log = log
         self._number = -1
         self._pixels: Frame | None = None
@@ -165,7 +173,9 @@ class Image:
         if frame.frame != self._number:
             self._number = frame.frame
             flat = (
-                self._ring.get(frame.frame, frame.height_px * frame.width_px * frame.channels) if frame.frame else None
+                self._frames.get(frame.frame, frame.height_px * frame.width_px * frame.channels)
+                if frame.frame
+                else None
             )
             shape = shape_of(frame.height_px, frame.width_px, frame.channels)
             self._pixels = None if flat is None else flat.reshape(shape)
@@ -173,8 +183,14 @@ class Image:
                 self._lose(frame.frame)
         return self._pixels
 
+    def missed(self) -> list[int]:
+        """Numbers of the frames lost since the last call; the recording has them, so that a replay loses the same."""
+        taken, self._missed = self._missed, []
+        return taken
+
     def _lose(self, number: int) -> None:
         self.lost += 1
+        self._missed.append(number)
         if str(self.lost).strip("0") == "1":
             self._log.warning(
                 f"{self.announcement.channel}: frame {number} was overwritten before it was read: too late by "

@@ -117,7 +117,7 @@ class Host:
     def _finalize(self) -> None:
         """Finalizes the components and sends what they wrote, with a last done: it counts if the run goes on."""
         written, tick = self._members.finalize()
-        self._publish(written, tick, done_t.FINAL, -1, 0, "")
+        self._publish(written, tick, done_t.FINAL, -1, 0, self._members.missed_frames())
 
     def _receive_tick(self, source: socket.socket) -> tick_t | None:
         try:
@@ -220,7 +220,7 @@ class Host:
         actual.n = len(actual.components)
         for component in actual.components:
             if component.name in runners:
-                component.lost = sum(image.lost for image in runners[component.name].images)
+                component.lost = sum(image.lost for image in runners[component.name].images.values())
         first = actual.components[0]
         first.lost += self.inputs.lost
         first.fetched, first.strangers = self.inputs.fetched, self._complaints.total

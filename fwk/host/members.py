@@ -17,7 +17,7 @@ from fwk.host.report import Figures
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.plan.starting import start_order
 from fwk.port import DeclarationError
-from fwk.runner import Runner, Surroundings
+from fwk.runner import MISSED_FRAMES, Runner, Surroundings
 from lcmtypes.core import change_t, log_t, tick_t
 
 
@@ -72,8 +72,8 @@ class Members:
                 self._waiting[plan.name] = {}
                 if runner.has_main_loop:
                     self._takers.append(runner)
-                if runner.has_main_loop or runner.has_plugins:
-                    self._wishing.append(runner)
+                if runner.has_main_loop or runner.has_plugins or (runner.images and self._plan.clock == "wall"):
+                    self._wishing.append(runner)  # in lockstep no frame is missed
                 runner.init()
             self.figures[plan.name].state = "running"
         self._works(NOBODY)
@@ -132,6 +132,11 @@ class Members:
             for aspect, wish in runner.wishes().items():
                 asked.setdefault(aspect, {})[runner.name] = wish
         return json.dumps(asked) if asked else ""
+
+    def missed_frames(self) -> str:
+        """Frames that they did not get while they finalized, as in `wishes`."""
+        missed = {name: lost for name, runner in self.runners.items() if (lost := runner.missed_frames())}
+        return json.dumps({MISSED_FRAMES: missed}) if missed else ""
 
     def finalize(self) -> tuple[list[tuple[str, bytes]], int]:
         """Finalizes them; returns what they wrote, and the tick that it is stamped with."""

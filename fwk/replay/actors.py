@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from fwk.aspects.vision import Ring
+from fwk.aspects.vision import Frames, Ring
 from fwk.declaration import declaration
 from fwk.messages import sequence_of
 from fwk.plan.model import ComponentPlan, Plan
@@ -17,7 +17,10 @@ Written = list[tuple[str, bytes]]
 
 
 class Actor:
-    """One life of a component, from its start to its end; `settings` are those it was started with."""
+    """One life of a component, from its start to its end.
+
+    `settings` are those it was started with; `frames` those of cameras whose rings it shall not look into.
+    """
 
     def __init__(
         self,
@@ -26,13 +29,16 @@ class Actor:
         incarnation: int,
         rings: Mapping[str, Ring],
         settings: Mapping[str, Any],
+        frames: Mapping[str, Frames],
     ) -> None:
         self.plan = component
         self._stages = plan.stages
         declared = declaration(getattr(import_module(component.module), component.class_name))
         config = declared.config.model_validate(settings)
         names = [each.name for each in plan.components]
-        surroundings = Surroundings(plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names)
+        surroundings = Surroundings(
+            plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names, frames=frames
+        )
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {}
         self._missed: set[tuple[str, int]] = set()  # channel and number of messages that it never saw

@@ -3,6 +3,7 @@
 import json
 import struct
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -73,6 +74,25 @@ class Recording:
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
 
+    def missed_frames(self) -> dict[tuple[int, int], dict[str, set[int]]]:
+        """Numbers of the frames that were gone when a start of a component came to read them, by channel.
+
+        By the component's index and the number of its start. A done says it, perhaps ticks after the iteration: so it
+        is known beforehand. What is damaged, `ticks` tells.
+        """
+        found: dict[tuple[int, int], dict[str, set[int]]] = {}
+        starts = [1] * len(self.plan.hosts)
+        with suppress(RecordingError):
+            for record in (self._record(event) for event in self._reader if event.channel == RECORD):
+                for event in record.events:
+                    if event.kind == tick_event_t.STARTED:
+                        starts[event.index] = event.stage
+                    elif event.kind == tick_event_t.FRAME_MISSED:
+                        component, channel = self.plan.components[event.index], self.plan.channels[event.stage]
+                        start = (component.index, starts[component.host])
+                        found.setdefault(start, {}).setdefault(channel.name, set()).add(event.tick)
+        return found
+
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes
         cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or somebody took them out"
@@ -101,6 +121,8 @@ class Recording:
         plan = self.plan
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
+        if event.kind == tick_event_t.FRAME_MISSED:
+            return 0 <= event.index < len(plan.components) and 0 <= event.stage < len(plan.channels)
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
         if event.kind == tick_event_t.MISSED and not 0 <= event.stage < len(plan.channels):

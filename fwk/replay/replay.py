@@ -11,12 +11,13 @@ from functools import partial
 from importlib import import_module
 from typing import Any
 
-from fwk.aspects.vision import Ring
+from fwk.aspects.vision import Frames, Ring
 from fwk.declaration import declaration
 from fwk.messages import MessageError, fingerprint, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor, ContinuousActor, Written
+from fwk.replay.frames import Withheld
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
 from lcmtypes.core import change_t, done_t, tick_event_t
 
@@ -45,6 +46,7 @@ class Replay:
         self._plan = plan
         self._chosen = _chosen(plan.components, only, recording)
         self._rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+        self._missed = recording.missed_frames() if self._rings and plan.clock == "wall" else {}
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
@@ -153,7 +155,8 @@ class Replay:
             before = [settings for number, settings in changes if number <= started_with]
             with self._failing(component, "its start"):
                 kind = Actor if component.rate_hz is None else ContinuousActor
-                actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1])
+                frames = self._frames(index, incarnation)
+                actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1], frames)
             for _, settings in changes[len(before) :]:
                 actor.configure(settings)
             for channel, data in self._newest.items():
@@ -161,6 +164,10 @@ class Replay:
             for channel, sequence in self._sequences.items():
                 actor.continue_at(channel, sequence)
             self._actors[host].append(actor)
+
+    def _frames(self, component: int, incarnation: int) -> dict[str, Frames]:
+        missed = self._missed.get((component, incarnation), {})
+        return {channel: Withheld(self._rings[channel], numbers) for channel, numbers in missed.items()}
 
     def _end(self, host: int) -> None:
         """What it was late with it takes along."""

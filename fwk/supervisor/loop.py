@@ -13,6 +13,7 @@ from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.mailbox import Mailbox
+from fwk.supervisor.missed import Missed
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.patience import Patience
 from fwk.supervisor.records import Records, change_message, void_messages
@@ -82,6 +83,7 @@ class MainLoop:
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
         self.records = Records(self._ports, run, sender, mailbox)
+        self._missed = Missed(plan, self.records)
         continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
         self._continuous = continuous if continuous.entries else None
         self._told = b""  # the newest tick as it was sent
@@ -304,6 +306,7 @@ class MainLoop:
             self.records.missed(done)
             self.turns.ask(done)
             self.on_wishes(done)
+            self._missed.take(done)
         self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
 
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
