@@ -11,6 +11,7 @@ from pydantic import Field  # noqa: E402 - after the limits
 
 from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
 from fwk.aspects.commands import Command, CommandError, Commands, CommandState  # noqa: E402
+from fwk.aspects.commands_each import CommandsEach, ServesEach  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
 from fwk.aspects.plugins import PluginControl  # noqa: E402
@@ -32,6 +33,7 @@ __all__ = [
     "CommandError",
     "CommandState",
     "Commands",
+    "CommandsEach",
     "Component",
     "Config",
     "Field",
@@ -47,6 +49,7 @@ __all__ = [
     "Sends",
     "SendsEach",
     "Serves",
+    "ServesEach",
     "TimeSource",
     "VisionMaster",
     "Writes",

@@ -31,6 +31,7 @@ class Component:
     | `kick: Sends[kick_t]` | sends them, and sees what becomes of each |
     | `path: Serves[path_request_t, path_t]`, `path: Calls[...]` | requests with a typed reply, to answer; to ask |
     | `SendsEach[...]`, `CallsEach[...]` | to many of those who carry them out, by namespace |
+    | `CommandsEach[...]`, `ServesEach[...]` | to carry out for many, by namespace |
     | `image: Image`, `image: VisionMaster` | frames of a camera, to read or to give out |
     | `image: ImagesEach` | frames of many cameras, by namespace |
     | `config: MyConfig` | checked settings |

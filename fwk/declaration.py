@@ -90,8 +90,8 @@ def declaration(component: type[Component]) -> Declaration:
         elif get_origin(wish) is not ClassVar and default is None:
             raise DeclarationError(
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
-                f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, SendsEach, Serves, Calls, "
-                "CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
+                f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, "
+                "Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
                 "numpy.random.Generator, TimeSource, MainLoop, PluginControl or an Aspect, and set plain attributes "
                 "in init()"
             )

@@ -6,6 +6,7 @@ from typing import Any, Literal
 from fwk import messages
 from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, WritesEach
 from fwk.aspects.commands import Commands
+from fwk.aspects.commands_each import CommandsEach, ServesEach
 from fwk.aspects.rpc import Calls, CallsEach, Serves
 from fwk.aspects.sending import Sends, SendsEach
 from fwk.aspects.vision import Image, ImagesEach, VisionMaster
@@ -30,6 +31,8 @@ PortKind = Literal[
     "calls",
     "sends_each",
     "calls_each",
+    "commands_each",
+    "serves_each",
 ]
 PORT_KINDS: dict[Any, PortKind] = {
     Reads: "reads",
@@ -42,6 +45,8 @@ PORT_KINDS: dict[Any, PortKind] = {
     Calls: "calls",
     SendsEach: "sends_each",
     CallsEach: "calls_each",
+    CommandsEach: "commands_each",
+    ServesEach: "serves_each",
 }
 IMAGE_KINDS: dict[Any, PortKind] = {Image: "image", ImagesEach: "images_each", VisionMaster: "vision_master"}
 
@@ -69,12 +74,12 @@ class Port:
     @property
     def each(self) -> bool:
         """Whether it stands for many instances."""
-        return self.kind in ("reads_each", "writes_each", "sends_each", "calls_each", "images_each")
+        return self.kind.endswith("_each")
 
     @property
     def owns(self) -> bool:
         """Whether the component carries out the commands or answers the requests."""
-        return self.kind in ("commands", "serves")
+        return self.kind in ("commands", "serves", "commands_each", "serves_each")
 
     @property
     def sends(self) -> bool:

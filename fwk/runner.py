@@ -10,7 +10,8 @@ import numpy as np
 
 from fwk import messages
 from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach
-from fwk.aspects.commands import Commands, Queue, Source
+from fwk.aspects.commands import ANSWERS, Commands, Queue, Source
+from fwk.aspects.commands_each import CommandsEach, ServesEach
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.main_loop import MainLoop
 from fwk.aspects.plugins import PluginControl
@@ -219,7 +220,12 @@ class Runner:
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:
         if port.owns:
-            return self._queue(port, *channels)
+            queues = [self._queue(port, *row) for row in _rows(channels)]
+            if not port.each:
+                return queues[0]
+            return (ServesEach if port.kind == "serves_each" else CommandsEach)(
+                _by_namespace({queue.name: queue for queue in queues})
+            )
         if port.sends:
             pairs = list(zip(channels[::2], channels[1::2], strict=True))
             made_each = {sent: self._outbox(port, sent, answers) for sent, answers in pairs}
@@ -258,7 +264,7 @@ class Runner:
         made: dict[str, Source[Any]] = {name: Source(name, port.message_type) for name in sources}
         self.readers.update(made)
         self.writers[answers] = Writes(answers, port.reply_type, self.stamp)
-        kind: type[Queue[Any]] = Serves if port.kind == "serves" else Commands
+        kind: type[Queue[Any]] = Serves if port.kind.startswith("serves") else Commands
         queue = kind(answers.partition("@")[0], self.name, self.clock, made, self.writers[answers])
         self._command_ports.append(queue)
         return queue
@@ -289,6 +295,12 @@ class _Early:
 
     def end(self) -> None:
         """The component was stopped; if there was no iteration, nobody has seen any of it."""
+
+
+def _rows(channels: Sequence[str]) -> list[Sequence[str]]:
+    """Channels of an owner, a row for each name: that of the answers, and those of its senders."""
+    begins = [place for place, name in enumerate(channels) if name.endswith(f"@{ANSWERS}")]
+    return [channels[begin:end] for begin, end in zip(begins, [*begins[1:], len(channels)], strict=True)]
 
 
 def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:

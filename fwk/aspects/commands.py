@@ -12,6 +12,8 @@ from fwk.messages import Header
 from lcmtypes.core import answer_t
 
 T = TypeVar("T")
+ANSWERS = "answers"
+"""As the sender in a channel's name: what its owner answers."""
 QUEUE_MAX = 64
 """Commands of one sender to one owner that are not finished; the next ones are rejected."""
 

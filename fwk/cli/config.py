@@ -103,10 +103,10 @@ def get(
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
     elif len(rows) == 1:
-        typer.echo(json.dumps(rows[0]["value"]))
+        typer.echo(_value(rows[0]["value"]))
     else:
         for row in rows:
-            typer.echo(f"{_path(row)} = {json.dumps(row['value'])}")
+            typer.echo(f"{_path(row)} = {_value(row['value'])}")
 
 
 @config.command("set")
@@ -203,7 +203,7 @@ def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = 
                 if as_json:
                     typer.echo(json.dumps({**row, "tick": answer["tick"]}))
                 else:
-                    typer.echo(f"tick {answer['tick']}: {path} = {json.dumps(row['value'])} ({row['origin']})")
+                    typer.echo(f"tick {answer['tick']}: {path} = {_value(row['value'])} ({row['origin']})")
 
 
 def _rows(names: list[str], file: str | None, bus_port: int | None) -> list[dict[str, Any]]:
@@ -231,13 +231,18 @@ def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
 
 
 def _texts(row: dict[str, Any]) -> tuple[str, ...]:
-    return _path(row), json.dumps(row["value"]), row["type"], row["origin"], row["meaning"]
+    return _path(row), _value(row["value"]), row["type"], row["origin"], row["meaning"]
+
+
+def _value(value: object) -> str:
+    """A value as people type it, also in other scripts than Latin."""
+    return json.dumps(value, ensure_ascii=False)
 
 
 def _say(answer: dict[str, Any], kept: str) -> None:
     for component in answer["settings"]:
         for setting, value in component["values"].items():
-            typer.echo(f"{component['component']}.{setting} = {json.dumps(value)} since tick {answer['tick']}{kept}")
+            typer.echo(f"{component['component']}.{setting} = {_value(value)} since tick {answer['tick']}{kept}")
 
 
 def _keep(file: Path, changes: list[str]) -> None:

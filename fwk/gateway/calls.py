@@ -5,14 +5,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fwk import messages
-from fwk.aspects.commands import QUEUE_MAX, CommandState
+from fwk.aspects.commands import ANSWERS, QUEUE_MAX, CommandState
 from fwk.aspects.sending import state_of
 from fwk.clock import US_PER_S, Clock
 from fwk.control.requests import Call, RequestError
 from fwk.control.server import Connection
 from fwk.gateway.outside import WRITER, Full
 from fwk.messages import MessageError
-from fwk.plan.command_lines import ANSWERS, OUTSIDE
+from fwk.plan.command_lines import OUTSIDE
 from fwk.plan.errors import hint
 from fwk.plan.model import Plan
 from lcmtypes.core import answer_t

@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
 from fwk import messages
+from fwk.aspects.commands import ANSWERS
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY
 from fwk.plan.names import CHANNEL_BYTES
 from fwk.plan.wish import Report, Wish
 from fwk.port import Port
 
-ANSWERS = "answers"
 OUTSIDE = "outside"
 """Tools, as if they were one sender; their commands come through the control socket."""
 
@@ -47,8 +47,8 @@ class _End:
 class CommandLines:
     """All lines of a system. `ports` says for each component and port which channels it stands for.
 
-    An owner's port stands for the answers' channel and those of its senders; a sender's for its own channel and that
-    of the answers, one pair for each owner.
+    An owner's port stands for the answers' channel and those of its senders, one such row for each name that it owns;
+    a sender's for its own channel and that of the answers, one pair for each owner.
     """
 
     def __init__(
@@ -59,9 +59,14 @@ class CommandLines:
         self._report = report
         ends = [_End(*each) for each in asked if each[2].owns or each[2].sends]
         owners: dict[str, _End] = {}
+        asked_for = sorted({end.wish.pattern(end.port) for end in ends if end.port.sends and not end.port.each})
         for end in ends:
             if end.port.owns:
-                self._own(end, owners)
+                pattern = end.wish.pattern(end.port)
+                self.ports[end.index, end.port.attribute] = ()
+                targets = [name for name in asked_for if fnmatchcase(name, pattern)] if end.port.each else [pattern]
+                for target in targets:
+                    self._own(end, target, owners)
         senders: dict[str, list[_End]] = {target: [] for target in owners}
         for end in ends:
             if end.port.sends:
@@ -70,9 +75,7 @@ class CommandLines:
             if ends_of or target in owners:
                 self._join(target, owners.get(target), ends_of)
 
-    def _own(self, end: _End, owners: dict[str, _End]) -> None:
-        target = end.wish.pattern(end.port)
-        self.ports[end.index, end.port.attribute] = ()
+    def _own(self, end: _End, target: str, owners: dict[str, _End]) -> None:
         if target in owners:
             text = f"two components carry out '{target}': {owners[target].name} and {end.name}; keep one"
             self._report(end.name, end.port.attribute, text)
@@ -124,7 +127,7 @@ class CommandLines:
             self._add(sender, Line(names[-1], command, sender.index, (owner.index,) if owner else ()))
             self.ports[sender.index, sender.port.attribute] += (names[-1], answers)
         if owner:
-            self.ports[owner.index, owner.port.attribute] = (answers, *names)
+            self.ports[owner.index, owner.port.attribute] += (answers, *names)
 
     def _add(self, end: _End, line: Line) -> None:
         if end.name in (ANSWERS, OUTSIDE):

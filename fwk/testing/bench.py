@@ -3,11 +3,11 @@
 from typing import Any
 
 from fwk import messages
+from fwk.aspects.commands import ANSWERS
 from fwk.aspects.vision import Ring, VisionMaster
 from fwk.clock import US_PER_S
 from fwk.component import Component
 from fwk.declaration import Declaration, declaration
-from fwk.plan.command_lines import ANSWERS
 from fwk.port import Port
 from fwk.runner import Runner, Surroundings
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from fwk import CommandsEach, Component, ServesEach, channel
 from fwk.aspects.commands import QUEUE_MAX, CommandError
 from fwk.record.types import use_types_of
 from fwk.testing import Bench, MemorySystem
@@ -249,6 +250,30 @@ def test_a_call_has_its_reply(parts: Any) -> None:
     bench.iterate()
     assert call.done
     assert call.reply.sum == 12
+
+
+def test_one_carries_out_for_many_and_answers_each(parts: Any) -> None:
+    class Crane(Component):
+        stage = "act"
+        lifts: CommandsEach[parts.lift_t] = channel("*/lift")
+        sums: ServesEach[parts.sum_request_t, parts.sum_t] = channel("*/sum")
+
+        def loop(self) -> None:
+            for robot, lifts in self.lifts.items():
+                for command in lifts:
+                    command.reject(f"{robot} is too heavy")
+            for number, sums in enumerate(self.sums.values()):
+                for request in sums:
+                    request.reply.sum = number
+                    request.done()
+
+    bench = Bench(Crane, namespaces=("one", "two"))
+    bench.port("lifts", "two").put(height_m=1.0)
+    bench.port("sums", "two").put()
+    bench.iterate()
+    assert bench.port("lifts", "one").sent == []
+    assert [sent.answer.reason for sent in bench.port("lifts", "two").sent] == ["two is too heavy"]
+    assert [sent.sum for sent in bench.port("sums", "two").sent] == [1]
 
 
 def test_all_is_carried_out_once_and_in_order(parts: Any) -> None:

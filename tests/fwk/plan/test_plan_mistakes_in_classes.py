@@ -30,9 +30,10 @@ ROWS = {
     "ball: 'Reads[odometry_t'": "Odd: an annotation cannot be read: Forward reference must be an expression -- got "
     "'Reads[odometry_t'",
     "ball: 'Reads[ball_t]'": "Odd: an annotation cannot be read: name 'ball_t' is not defined",
-    "ball: Reads": "Odd.ball: Reads is no aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, Sends, "
-    "SendsEach, Serves, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
-    "numpy.random.Generator, TimeSource, MainLoop, PluginControl or an Aspect, and set plain attributes in init()",
+    "ball: Reads": "Odd.ball: Reads is no aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
+    "CommandsEach, Sends, SendsEach, Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, "
+    "VisionMaster, a Config, Clock, Logger, numpy.random.Generator, TimeSource, MainLoop, "
+    "PluginControl or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t does not begin with 'core.header_t header;'",
     "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) names no channel; write = channel('world/ball'), "

@@ -14,7 +14,7 @@ struct dig_t { core.header_t header; core.command_t command; double depth_m; }
 struct sow_t { core.header_t header; core.command_t command; string seed; }
 struct seen_t { core.header_t header; core.answer_t answer; double height_m; }
 --- garden_parts.py
-from fwk import Calls, CallsEach, Commands, Component, Sends, SendsEach, Serves
+from fwk import Calls, CallsEach, Commands, CommandsEach, Component, Sends, SendsEach, Serves
 from lcmtypes.core import acknowledgement_t
 from lcmtypes.garden import dig_t, seen_t, sow_t
 from lcmtypes.robot import odometry_t
@@ -34,6 +34,10 @@ class Sower(Component):
 class Bosses(Component):
     stage = "think"
     digs: SendsEach[dig_t]
+
+class Diggers(Component):
+    stage = "act"
+    digs: CommandsEach[dig_t]
 
 class Twice(Component):
     stage = "think"
@@ -75,6 +79,15 @@ def garden(broken: Broken) -> Broken:
         components:
           a/digger: {use: garden_parts:Digger}
           a/boss: {use: garden_parts:Boss, channels: {dig: digg}}
+        """,
+    ),
+    Broken(
+        "it.yaml:4: w/diggers: two components carry out 'a/dig': a/digger and w/diggers; keep one",
+        """
+        components:
+          a/digger: {use: garden_parts:Digger}
+          a/boss: {use: garden_parts:Boss}
+          w/diggers: {use: garden_parts:Diggers, channels: {digs: "*/dig"}}
         """,
     ),
     Broken(
@@ -189,6 +202,22 @@ def test_each_sender_has_a_channel_of_its_own(folder: Path, load: Callable[..., 
     }
     every = plan.components[names.index("w/all")].channels["digs"]
     assert every == ("a/dig@w/all", "a/dig@answers", "b/dig@w/all", "b/dig@answers")
+
+
+def test_one_may_carry_out_for_all_who_are_asked(folder: Path, load: Callable[..., Plan]) -> None:
+    written(folder)
+    plan = load("""
+        components:
+          b/boss: {use: garden_parts:Boss}
+          a/boss: {use: garden_parts:Boss}
+          w/boss: {use: garden_parts:Boss, channels: {dig: a/dig}}
+          w/other: {use: garden_parts:Bosses, channels: {digs: "*/dig"}}
+          w/diggers: {use: garden_parts:Diggers, channels: {digs: "*/dig"}}
+    """)
+    assert plan.components[4].channels["digs"] == (
+        *("a/dig@answers", "a/dig@outside", "a/dig@a/boss", "a/dig@w/boss", "a/dig@w/other"),
+        *("b/dig@answers", "b/dig@outside", "b/dig@b/boss", "b/dig@w/other"),
+    )
 
 
 def test_a_sender_may_be_left_without_its_owner_and_the_owner_without_its_senders(
