@@ -22,8 +22,7 @@ from fwk.cli.send import made
 from fwk.gateway.board import plain
 from fwk.messages import MessageError
 from tests.faults.faults_fuzz import HOSTILE_TEXT, all_types
-from tests.fwk.cli.cli_processes import free_bus_port
-from tests.system.system_runs import write_files
+from tests.system.system_runs import PortBlock, write_files
 
 TINY = {
     "tiny.py": """
@@ -129,9 +128,9 @@ def places(command: Any) -> Iterator[tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_argument_and_option_of_every_command(tiny: Path, command: str) -> None:
+def test_every_argument_and_option_of_every_command(tiny: Path, ports: PortBlock, command: str) -> None:
     made = COMMANDS[command]
-    nobody = ("--bus-port", free_bus_port())  # and not somebody else's run on this machine
+    nobody = ("--bus-port", str(ports.bus))  # and not somebody else's run on this machine
     has_port = any("--bus-port" in each.opts for each in made.params)
     for before in places(made):
         port = nobody if has_port and before[-1:] != ("--bus-port",) else ()
