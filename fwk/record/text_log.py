@@ -9,9 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from fwk.aspects.logging import LEVELS
+from fwk.clock import US_PER_S
 from fwk.plan.selection import matches
 from fwk.record.rotating import read_rotating
 from lcmtypes.core import log_t
+
+_WALL_US_MAX = 250_000_000_000 * US_PER_S  # what calendars know
 
 
 @dataclass(frozen=True)
@@ -54,11 +57,23 @@ class Filter:
 def read_lines(file: Path, goes_on: Callable[[], bool] = lambda: False) -> Iterator[dict[str, Any]]:
     """The lines of a log as dicts of the fields of `core.log_t`; waits for more as long as `goes_on()` is true.
 
-    A line that a killed run left unfinished is passed over.
+    What is no such line, as one that a killed run left unfinished, is passed over.
     """
     for text in read_rotating(file, goes_on):
-        with suppress(ValueError):
-            yield json.loads(text)
+        with suppress(ValueError, RecursionError):
+            line = json.loads(text)
+            if _is_line(line):
+                yield line
+
+
+def _is_line(line: Any) -> bool:
+    return (
+        isinstance(line, dict)
+        and all(isinstance(line.get(name), str) for name in ("level", "component", "file", "text"))
+        and all(type(line.get(name)) is int for name in ("tick", "time_us", "wall_us", "line"))
+        and 0 <= line["wall_us"] < _WALL_US_MAX
+        and abs(line["time_us"]) < _WALL_US_MAX
+    )
 
 
 def from_plain(line: dict[str, Any]) -> log_t:

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event, LogReader
 from fwk.record.types import header_of
@@ -52,7 +53,7 @@ class Recording:
                 does not begin with that fingerprint.
         """
         messages: dict[tuple[str, int, int], list[bytes]] = {}
-        types = types or {}
+        types = {RECORD: fingerprint(tick_record_t), **(types or {})}
         tick = 0
         for number, event in enumerate(self._reader):
             if event.number != number:
@@ -100,7 +101,8 @@ class Recording:
         return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
 
     def _type_of(self, name: str) -> str:
-        return next(channel.type_name for channel in self.plan.channels if channel.name == name)
+        types = {channel.name: channel.type_name for channel in self.plan.channels}
+        return types.get(name, "core.tick_record_t")
 
     def _record(self, event: Event) -> tick_record_t:
         try:

@@ -215,6 +215,12 @@ def test_a_type_that_was_changed_since_is_named(log: Path) -> None:
     assert (sensor.compared, sensor.differences) == (TICKS, [])
 
 
+def test_a_record_of_another_version_is_named(log: Path) -> None:
+    entries = [(channel, b"12345678" + data[8:] if channel == "fwk/record" else data) for channel, data in recorded()]
+    with pytest.raises(RecordingError, match=r"fwk/record has a message that is no core\.tick_record_t as it is now"):
+        replay(write(log, entries))
+
+
 def test_a_component_that_is_gone_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(f"{__name__}.Thinker")
     with pytest.raises(RecordingError, match=r"r/thinker: .*:Thinker cannot be had any more: AttributeError"):
