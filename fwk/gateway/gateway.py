@@ -18,6 +18,7 @@ from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
 from fwk.messages import Header, MessageError
 from fwk.plan.model import Plan
+from fwk.runner import AWAY_TICKS
 from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
 
 SUPERVISOR_CHANNEL = -1
@@ -59,8 +60,9 @@ class Gateway:
         self._records = multicast_receiver(self._ports.record)
         self._lines = multicast_receiver(self._ports.log)
         self._status = multicast_receiver(self._ports.status)
-        # Of each channel the newest message and all of the last two ticks: tick, sequence number, message.
-        self._recent: dict[int, list[tuple[int, int, bytes]]] = {}
+        # Of each channel the newest message and all of the last ticks that a reader may still want one of.
+        self._kept_ticks = AWAY_TICKS if plan.clock == "wall" else 1
+        self._recent: dict[int, list[tuple[int, int, bytes]]] = {}  # tick, sequence number, message
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
         self._open = True
@@ -132,7 +134,8 @@ class Gateway:
             arrived = box.take()
             if arrived:
                 recent = self._recent.get(box.plan.index, [])
-                self._recent[box.plan.index] = [each for each in recent if each[0] >= record.tick - 1]
+                since = record.tick - self._kept_ticks
+                self._recent[box.plan.index] = [each for each in recent if each[0] >= since]
             for data in arrived:
                 header = Header.of(data)
                 self._recent[box.plan.index].append((header.tick, header.sequence, data))
@@ -222,9 +225,9 @@ class Gateway:
     def _answer_for(self, fetch: fetch_t) -> None:
         """Answers in place of a writer that has left the run, or was started again and asked for what was before.
 
-        Here are the newest message of each channel, all of the last two recorded ticks, which nobody in lockstep is
-        further behind than, and all since. The answer is final: the tick that the reader
-        takes part in, and with it the next record, may be waiting for it.
+        Here are the newest message of each channel, all of the last two recorded ticks (in real time: 17), which nobody
+        who reads all is further behind than, and all since. The answer is final: the tick that the reader takes part
+        in, and with it the next record, may be waiting for it.
         """
         box = self._inputs.box(fetch.channel)
         found = self._outside.kept(fetch.channel, fetch.first_sequence, fetch.last_sequence)

@@ -13,6 +13,7 @@ from lcmtypes.core import fetch_t, gone_t, void_t
 FIRST_WAIT_US = 200  # on one machine a message is there before the tick that names it, unless it was lost
 SECOND_WAIT_US = 2_000
 LONGEST_WAIT_US = 100_000
+PATIENCE_US = 500_000  # in real time: who has not answered by then perhaps stands still
 
 
 class Inputs:
@@ -36,6 +37,7 @@ class Inputs:
         ports = Ports.of(plan)
         self._sender = sender
         self._ports = ports
+        self._patience_us = PATIENCE_US if plan.clock == "wall" else 0
         self._host = host
         self._run = run
         self._writer_host = {
@@ -93,6 +95,8 @@ class Inputs:
         """Waits until everything visible in `boxes` is here; false if `serve` says that waiting is over.
 
         `serve` is called whenever the process's own port has something, because who waits must still answer others.
+        In real time a writer that stands still is not waited for: after a while the gateway is asked, and what it does
+        not have is lost.
         """
         lacking = [box for box in boxes if not box.collect()]
         if not lacking:
@@ -102,7 +106,8 @@ class Inputs:
         for box in lacking:
             if isinstance(box, Inbox) and not box.closed:
                 waiting.add(box)
-        next_us, ask_us, asked = SECOND_WAIT_US, monotonic_us() + FIRST_WAIT_US, 0
+        began_us = monotonic_us()
+        next_us, ask_us, asked = SECOND_WAIT_US, began_us + FIRST_WAIT_US, 0
         while lacking:
             waiting.wait(ask_us - monotonic_us())
             if not serve():
@@ -110,8 +115,8 @@ class Inputs:
             lacking = [box for box in lacking if not box.collect()]
             if lacking and monotonic_us() >= ask_us:
                 asked = max(asked, sum(len(box.missing()) for box in lacking))
-                self._ask(lacking)
                 ask_us = monotonic_us() + next_us
+                self._ask(lacking, patient=not self._patience_us or ask_us < began_us + self._patience_us)
                 next_us = min(2 * next_us, LONGEST_WAIT_US)
         waiting.close()
         self.fetched += asked
@@ -133,7 +138,7 @@ class Inputs:
                 box.missed = []
         return found
 
-    def _ask(self, lacking: Sequence[Box]) -> None:
+    def _ask(self, lacking: Sequence[Box], *, patient: bool) -> None:
         for box in lacking:
             missing = box.missing()
             if not missing:
@@ -141,4 +146,5 @@ class Inputs:
             fetch = fetch_t()
             fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
             fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]
-            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(self._writer_host[box.plan.index]))
+            asked = self._writer_host[box.plan.index] if patient else self._ports.gateway
+            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(asked))

@@ -27,6 +27,8 @@ WAITS_US = 200_000  # a stage that takes longer is said to wait
 STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next boundary
 STANDS_US = 100_000  # how often to look after hosts while the run is paused
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
+REAL_TIME_WINDOW_US = 4_000_000  # in real time as many ticks as take so long: it goes on while somebody stands still
+FINISH_US = 2_000_000  # how long an interrupted run waits for the gateway
 
 
 class MainLoop:
@@ -68,6 +70,7 @@ class MainLoop:
         self._ports = Ports.of(plan)
         self._gateway = self._ports.gateway
         self._lockstep = plan.clock == "simulated"
+        self._window = WINDOW if self._lockstep else max(WINDOW, REAL_TIME_WINDOW_US // plan.period_us)
         self._stage_time_us = plan.stage_time_us or plan.period_us
         by_stage = [
             [entry for entry in hosts.table if any(stage in plan.components[i].stages for i in self._members(entry))]
@@ -116,7 +119,7 @@ class MainLoop:
     def run_tick(self) -> None:
         """Waits until the next tick may begin, then runs all its stages; while paused, does what is asked meanwhile."""
         self._wait()
-        self.records.wait_for(self.tick + 1 - WINDOW, self._interrupted)
+        self.records.wait_for(self.tick + 1 - self._window, self._interrupted)
         if self._interrupted():
             return
         stands = self.stands = self.pace.stands
@@ -149,8 +152,9 @@ class MainLoop:
         self.records.publish(self.tick, time_us, void_messages(self._ledger, self._step - 4 * len(self.turns.now)))
 
     def finish(self) -> None:
-        """Waits until the gateway has everything."""
-        self.records.wait_for(self.tick, self._interrupted)
+        """Waits until the gateway has everything; for one that is far behind not for ever if the run is interrupted."""
+        until_us = monotonic_us() + FINISH_US
+        self.records.wait_for(self.tick, lambda: self._interrupted() and monotonic_us() >= until_us)
 
     def _decide(self) -> None:
         """At the boundary: who has the main loop from the next tick on."""
@@ -265,7 +269,8 @@ class MainLoop:
     def _on_done(self, done: done_t) -> None:
         if done.host == self._gateway:
             self.records.taken = max(self.records.taken, done.tick)
-            self._came_in.update(zip(done.channel, done.sequence, strict=True))
+            for channel, sequence in zip(done.channel, done.sequence, strict=True):
+                self._came_in[channel] = max(sequence, self._came_in.get(channel, 0))
             return
         entry = self._hosts.table[done.host]
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already

@@ -15,7 +15,7 @@ from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.table import Change
 from lcmtypes.core import change_t, done_t, fetch_t, tick_event_t, tick_record_t, void_t
 
-KEPT = 64  # ticks; the loop is never that far ahead of the gateway
+KEPT = 64  # ticks at the least: all that the gateway has not taken yet
 FIRST_WAIT_US = 20_000
 LONGEST_WAIT_US = 100_000
 
@@ -29,7 +29,7 @@ class Records:
         self._run = run
         self._sender = sender
         self._mailbox = mailbox
-        self._kept: deque[tuple[int, bytes]] = deque(maxlen=KEPT)
+        self._kept: deque[tuple[int, bytes]] = deque()
         self._events: list[sync.Event] = []
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
@@ -64,6 +64,8 @@ class Records:
         data = sync.encode_record(record, self._events)
         self._events, self._marks, self._changes = [], {}, []
         self._kept.append((tick, data))
+        while len(self._kept) > KEPT and self._kept[0][0] <= self.taken:
+            self._kept.popleft()
         self._sender.publish(b"fwk/record", data, self._ports.record)
 
     def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> None:
@@ -77,9 +79,9 @@ class Records:
                 self.repeat(self.taken + 1, tick + KEPT)
 
     def repeat(self, first: int, last: int) -> None:
-        """Sends the records of these ticks again."""
+        """Sends the records of these ticks again, but not too many at once."""
         for tick, data in self._kept:
-            if first <= tick <= last:
+            if first <= tick <= min(last, first + KEPT):
                 self._sender.publish(b"fwk/record", data, self._ports.record)
 
     def _on_asked(self) -> None:

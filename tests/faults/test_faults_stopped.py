@@ -6,12 +6,15 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
+import psutil
 import pytest
 
+from lcmtypes.core import tick_event_t
 from tests.faults.conftest import RUN, TICKS
 from tests.faults.faults_after import Aftermath
 from tests.system.conftest import Launch
-from tests.system.system_runs import Launched, pause
+from tests.system.system_logs import Recording
+from tests.system.system_runs import Launched, pause, write_files
 
 pytestmark = pytest.mark.system
 
@@ -87,3 +90,87 @@ def test_who_stands_still_is_woken_to_end_well(launch: Launch, traced: Path, aft
     recording = after.check(run)
     assert recording.gaps() == {}
     assert "killed" not in run.text
+
+
+LOSING = '''
+"""A player whose messages get lost and who stands still before anybody can ask for them again."""
+
+import os
+import signal
+
+from fwk.host.outputs import Outputs
+
+
+def lose_and_stand_still():
+    publish = Outputs.publish
+
+    def publish_nothing(self, written):
+        sender, send = self._sender, self._sender.publish
+
+        def send_last(*done):
+            send(*done)
+            sender.publish = send
+            os.kill(os.getpid(), signal.SIGSTOP)
+
+        sender.publish = lambda *_: None
+        marks = publish(self, written)
+        sender.publish = send_last
+        Outputs.publish = publish
+        return marks
+
+    Outputs.publish = publish_nothing
+
+
+MORE = {"lose": lose_and_stand_still}
+'''
+
+
+@pytest.fixture
+def losing(traced: Path) -> list[str]:
+    """Settings with which `d/player` loses its messages of tick 5 and stands still."""
+    trouble = traced / "procs/trouble.py"
+    write_files(traced, {"procs/losing.py": LOSING})
+    trouble.write_text(trouble.read_text() + "\nfrom procs.losing import MORE  # noqa: E402\nMAKE |= MORE\n")
+    settings = {"trouble": "loop:lose", "trouble_tick": 5}
+    return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
+
+
+def until_still(run: Launched) -> int:
+    """Waits until `d/player` stands still; its process."""
+    run.until_ticks("d/player", 5)
+    process = psutil.Process(run.host("d/player"))
+    run.until_true(lambda: process.status() == psutil.STATUS_STOPPED, "d/player stands still")
+    return process.pid
+
+
+def test_in_lockstep_what_somebody_lost_who_stands_still_is_waited_for(
+    launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, losing: list[str]
+) -> None:
+    run = launch(*RUN, "--ticks", str(TICKS), *losing)
+    still = until_still(run)
+    after.note(run)
+    pause(2.0)
+    assert run.tick("a/player") == 5
+    os.kill(still, signal.SIGCONT)
+    recording = after.check(run)
+    assert recording.messages == Recording(undisturbed).messages
+    assert "lost 0" in run.text
+
+
+def test_in_real_time_it_is_lost_and_told_and_the_run_goes_on_and_replays(
+    launch: Launch, wall: Path, after: Aftermath, losing: list[str]
+) -> None:
+    run = launch(*RUN, *losing)
+    still = until_still(run)
+    after.note(run)
+    run.until_ticks("f/player", 120)  # more than the loop may be ahead of the gateway
+    assert psutil.Process(still).status() == psutil.STATUS_STOPPED
+    os.kill(still, signal.SIGCONT)
+    run.until_ticks("d/player", 5)
+    run.signal(signal.SIGINT)
+    recording = after.check(run)
+    assert {"d/note"} <= recording.gaps().keys() <= {"d/note", "d/burst"}
+    assert "gateway: d/note: 1 messages of 5 to 5 are lost and not in the recording" in run.text
+    assert "f/player: d/note: 1 messages of 5 to 5 lost" in run.text
+    missed = [event for record in recording.records for event in record.events if event.kind == tick_event_t.MISSED]
+    assert {(event.index, event.tick) for event in missed} >= {(host, 5) for host in (0, 1, 2, 4, 5)}
