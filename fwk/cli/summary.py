@@ -40,5 +40,6 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
         if component.state not in figures.WELL
     ]
     if options.record:
-        lines.append(f"recording: {options.record}")
+        lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
+        lines.append(f"recording: {options.record}{lacks}")
     return [*lines, f"run directory: {options.run_dir}"]

@@ -73,6 +73,11 @@ class Gateway:
         if public:
             self._poller.register(public, select.POLLIN)
 
+    @property
+    def lost(self) -> int:
+        """How many messages of the run never came here."""
+        return self._inputs.lost
+
     def watch(self, descriptor: int, handler: Callable[[], None]) -> None:
         """Calls `handler`, which must not wait, whenever something happens, also when there is something to read."""
         self._poller.register(descriptor, select.POLLIN)

@@ -98,10 +98,15 @@ class Display:
             return
 
 
-class Newest:
-    """Keeps the newest message of each channel and hands them to the supervisor at the end."""
+LOST = "fwk/lost"
+"""In what the supervisor is handed at the end: how many messages the gateway never got."""
 
-    def __init__(self, plan: Plan, connection: socket.socket) -> None:
+
+class Newest:
+    """Keeps the newest message of each channel; hands them to the supervisor at the end, and how many were lost."""
+
+    def __init__(self, plan: Plan, connection: socket.socket, lost: Callable[[], int]) -> None:
+        self._lost = lost
         self._wanted = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
         self._newest: dict[str, bytes] = {}
         self._connection = connection
@@ -117,7 +122,7 @@ class Newest:
     def close(self) -> None:
         """Hands them over."""
         self._connection.setblocking(True)
-        for channel, data in self._newest.items():
+        for channel, data in {**self._newest, LOST: str(self._lost()).encode()}.items():
             try:
                 self._connection.send(channel.encode() + b"\0" + data)
             except OSError:

@@ -66,6 +66,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         reason,
         status,
         newest,
+        children.lost,
     )
 
 

@@ -29,6 +29,8 @@ class Children:
     def __init__(self, plan: Plan, run: int, options: RunOptions) -> None:
         self.gave_up = ""
         """What could not be waited for at the end."""
+        self.lost = 0
+        """After the end: how many messages the gateway never got."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -60,13 +62,13 @@ class Children:
         pid, self._gateway = self._gateway, 0
         return wait_for_end(pid)
 
-    def stop(self) -> dict[str, object]:
-        """Lets both finish; returns the newest messages that the gateway saw, decoded."""
+    def stop(self) -> dict[str, bytes]:
+        """Lets both finish; returns the newest messages that the gateway saw."""
         if self._watcher:
             os.kill(self._watcher, signal.SIGTERM)
             end_child(self._watcher, 1.0)
         self.control.settimeout(_PATIENCE_S)
-        newest: dict[str, object] = {}
+        newest: dict[str, bytes] = {}
         for pid in filter(None, (self._gateway, self._display)):
             os.kill(pid, signal.SIGCONT)  # somebody may have stopped it
         try:
@@ -74,6 +76,7 @@ class Children:
             while packet := self.control.recv(_PACKET_MAX):
                 channel, _, data = packet.partition(b"\0")
                 newest[channel.decode()] = data
+            self.lost = int(newest.pop(sinks.LOST, 0))
         except OSError as error:
             if self._gateway:
                 os.kill(self._gateway, signal.SIGKILL)
@@ -117,7 +120,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
         board,
         calls,
         targets.above(sinks.Display(plan, display), plan.log.console),
-        sinks.Newest(plan, control),
+        sinks.Newest(plan, control, lambda: gateway.lost),
     ]
     if options.record:
         try:
@@ -129,13 +132,13 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     return 0
 
 
-def decoded(plan: Plan, newest: dict[str, object]) -> dict[str, object]:
+def decoded(plan: Plan, newest: dict[str, bytes]) -> dict[str, object]:
     """Decodes the newest messages of the plan's channels."""
     types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
     made: dict[str, object] = {}
     for channel, data in newest.items():
         try:
-            made[channel] = messages.decode(types[channel], data, channel)  # type: ignore[arg-type]
+            made[channel] = messages.decode(types[channel], data, channel)
         except MessageError:
             continue
     return made

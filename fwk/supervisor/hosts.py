@@ -221,7 +221,7 @@ class Hosts:
         entry = self.table[actual.host]
         if actual.incarnation != entry.incarnation:
             return
-        entry.components, entry.times = actual.components, actual.times
+        entry.heard(actual.components, actual.times)
         failed = [item.reason for item in actual.components if item.state == "failed"]
         if failed:
             entry.reason = failed[0]

@@ -54,3 +54,5 @@ class Outcome:
     """The supervisor's last view of all components."""
     newest: dict[str, Any] = field(default_factory=dict)
     """Newest message of each mirrored channel, decoded."""
+    unrecorded: int = 0
+    """Messages that were lost on their way to the recording."""

@@ -68,6 +68,7 @@ class HostEntry:
 
     def __post_init__(self) -> None:
         self._starts_us: deque[int] = deque()
+        self._earlier: dict[str, component_state_t] = {}  # what the processes before this one said last
 
     @property
     def alive(self) -> bool:
@@ -132,8 +133,19 @@ class HostEntry:
         """It has answered the newest tick, and with that taken over the changes that the tick told."""
         self.changes = [change for change in self.changes if change.step > self.seen]
 
+    def heard(self, components: list[component_state_t], times: list[histogram_t]) -> None:
+        """What it says of its components; what was lost stays lost when a process ends."""
+        for component in components:
+            earlier = self._earlier.get(component.name)
+            if earlier:
+                component.lost += earlier.lost
+                component.fetched += earlier.fetched
+                component.strangers += earlier.strangers
+        self.components, self.times = components, times
+
     def starting(self, now_us: int) -> int:
         """It is being started; returns its incarnation."""
+        self._earlier = {component.name: component for component in self.components}
         self.incarnation += 1
         self.actual_run, self.changes = self.desired_run, []
         self.state, self.since_us, self.reason = "starting", now_us, ""

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -172,5 +173,7 @@ def test_in_real_time_it_is_lost_and_told_and_the_run_goes_on_and_replays(
     assert {"d/note"} <= recording.gaps().keys() <= {"d/note", "d/burst"}
     assert "gateway: d/note: 1 messages of 5 to 5 are lost and not in the recording" in run.text
     assert "f/player: d/note: 1 messages of 5 to 5 lost" in run.text
+    assert re.search(r"messages and ticks: lost [1-9]", run.text), run.text
+    assert re.search(r"recording: .*log.lcm; \d messages were lost on their way there", run.text), run.text
     missed = [event for record in recording.records for event in record.events if event.kind == tick_event_t.MISSED]
     assert {(event.index, event.tick) for event in missed} >= {(host, 5) for host in (0, 1, 2, 4, 5)}

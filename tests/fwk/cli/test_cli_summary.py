@@ -57,6 +57,12 @@ def test_the_recording_is_named_only_if_there_is_one() -> None:
     assert not any(line.startswith("recording") for line in lines())
 
 
+def test_what_the_recording_lacks_is_said() -> None:
+    outcome = Outcome(0, 1200, 60.0, 30.0, "1200 ticks done", unrecorded=7)
+    said = summary(plan(), RunOptions(RUN_DIR, record=RUN_DIR / "log.lcm"), outcome)
+    assert "recording: runs/1/log.lcm; 7 messages were lost on their way there" in said
+
+
 def test_a_run_that_never_ticked_has_a_summary_too() -> None:
     outcome = Outcome(1, 0, 0.0, 0.0, "cyan1/base is not ready after 20 s: no battery")
     made = summary(plan(), RunOptions(RUN_DIR), outcome)

@@ -99,12 +99,12 @@ def test_a_display_that_does_not_read_holds_up_nobody() -> None:
 
 def test_the_newest_messages_are_handed_over_at_the_end() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-    newest = Newest(PLAN, ours)
+    newest = Newest(PLAN, ours, lambda: 7)
     for number in range(3):
         newest.message("world/truth", b"%d" % number, 0)
         newest.message("robot/other", b"x", 0)
     assert received(theirs) == []
     newest.close()
-    assert received(theirs) == [b"world/truth\x002"]
+    assert received(theirs) == [b"world/truth\x002", b"fwk/lost\x007"]
     for each in (ours, theirs):
         each.close()

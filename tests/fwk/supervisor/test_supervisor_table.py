@@ -4,6 +4,7 @@ import pytest
 
 from fwk.plan.model import RestartPolicy, RestartWhen
 from fwk.supervisor.table import Change, HostEntry
+from lcmtypes.core import component_state_t
 
 
 def entry(when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10, backoff_s: float = 0.5) -> HostEntry:
@@ -168,3 +169,18 @@ def test_changes_of_settings_wait_until_their_tick_is_answered() -> None:
     host.want_restart(10)
     host.leaving(20)
     assert host.changes == []  # the new process is started with them
+
+
+def test_what_was_lost_stays_lost_whoever_dies() -> None:
+    host = entry()
+    for lost in (2, 3):
+        host.starting(0)
+        for sofar in range(lost + 1):  # it says so again and again
+            said = component_state_t()
+            said.name, said.lost, said.fetched, said.iterations = "cyan1/base", sofar, 10 * sofar, 100
+            host.heard([said], [])
+        host.ended(-9, 0, stopping=False)
+    host.starting(0)  # and this one has not said anything yet
+    host.starting(0)
+    (component,) = host.components
+    assert (component.lost, component.fetched, component.iterations) == (5, 50, 100)
