@@ -67,6 +67,21 @@ def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
     run.end()
 
 
+def test_the_clock_on_the_wall_obeys_nobody(start: Start) -> None:
+    run = start("--set", "clock=wall")
+    asked = {
+        ("pause",): "paused",
+        ("resume",): "resumed",
+        ("step", "2"): "stepped",
+        ("speed", "2"): "run at another speed",
+    }
+    for words, what in asked.items():
+        assert f"the clock on the wall cannot be {what}, and this run follows it" in run.fwk(*words, code=2)
+    assert "goes on at speed" in run.fwk("speed")
+    run.ticks_pass(2)
+    run.end()
+
+
 def test_a_paused_run_is_steered_and_the_recording_replays(start: Start) -> None:
     run = start()
     tick = run.ask("pause")["tick"]

@@ -10,6 +10,21 @@ from lcmtypes.robot import imu_t
 STAGES = {"r/a": ["think"], "r/b": ["think", "act"]}
 
 
+@pytest.mark.parametrize(
+    ("order", "error"),
+    [
+        ([], "r/driver: a tick runs 1 to 1000 stages, not 0"),
+        (["think"] * 1001, "r/driver: a tick runs 1 to 1000 stages, not 1001"),
+        (["think", "thikn"], "r/driver: no stage 'thikn'; the stages are think, act"),
+    ],
+)
+def test_an_order_that_cannot_be_is_refused_at_once(order: list[str], error: str) -> None:
+    main_loop = MainLoop("r/driver", ("think", "act"))
+    with pytest.raises(ValueError, match=error):
+        main_loop.take_over(order)
+    assert main_loop.take() is None
+
+
 def test_the_first_gets_it_and_the_second_is_told_who_has_it() -> None:
     holding = Holding(STAGES)
     holding.ask(3, 5, "r/b", ["act", "act"])

@@ -64,9 +64,19 @@ def test_a_pattern_is_quoted() -> None:
     assert read(text) == {"config": {"*/camera": {"noise": 2}}}
 
 
-@pytest.mark.parametrize("text", ["config:\n  a/b: &x {gain: 1}\n  c/d: *x\n", "config: [\n", "a: 1\na: 2\n"])
-def test_what_would_be_spoiled_is_refused(text: str) -> None:
-    with pytest.raises(EditError):
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        (
+            "config:\n  a/b: &x {gain: 1}\n  c/d: *x\n",
+            "'config.a/b.gain' cannot be changed there without touching other",
+        ),
+        ("config: [\n", "it is no YAML; put it right first: fwk check says where"),
+        ("a: 1\na: 2\n", "it is no YAML; put it right first: fwk check says where"),
+    ],
+)
+def test_what_would_be_spoiled_is_refused(text: str, error: str) -> None:
+    with pytest.raises(EditError, match=error):
         with_value(text, GAIN, 0.5)
 
 

@@ -52,6 +52,12 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         "seed: !!int six\ncomponents: {it/a: {use: plan_parts:Odometer}}",
     ),
     Broken("it.yaml:1: it should be a mapping with keys such as 'name: value'", "[a, b]"),
+    Broken("it.yaml:1: values lie too deep in each other; a few levels are enough", f"name: {'[' * 3000}{']' * 3000}"),
+    Broken(
+        "it.yaml:1: more than 100000 values when its aliases are written out; use fewer",
+        "a0: &a0 [1, 2, 3, 4, 5, 6, 7, 8, 9]\n"
+        + "\n".join(f"a{number}: &a{number} [{', '.join([f'*a{number - 1}'] * 9)}]" for number in range(1, 9)),
+    ),
     Broken("it.yaml: there is no component in it; name one under 'components:'", "name: empty"),
 )
 def test_yaml(folder: Path, broken: Broken) -> None:
