@@ -2,11 +2,17 @@
 
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
+from typer.main import get_command
+
+from fwk.cli import launch, main
 
 ROOT = Path(__file__).parents[3]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+_TYPED = re.compile(r"`(fwk(?:-launch)? [^`]+)`|^(?:\$ )?(fwk(?:-launch)? [^`\n]+)$", re.M)
+_OPTION = re.compile(r"(?<!\S)-{1,2}[a-z][a-z-]*")
 _LINK = re.compile(r"\]\(([^)#:]+)\)")
 
 
@@ -27,3 +33,24 @@ def test_what_the_readme_launches_is_there() -> None:
     named = set(re.findall(r"[\w-]+\.yaml", (ROOT / "README.md").read_text()))
     assert named
     assert all((ROOT / "launch" / name).is_file() for name in named)
+
+
+def command_of(words: list[str]) -> Any:
+    """The command that the words begin with, or one of its groups."""
+    found: Any = get_command(launch.app if words[0] == "fwk-launch" else main.app)
+    for word in words[1:]:
+        below = getattr(found, "commands", {})
+        if word not in below:
+            return found
+        found = below[word]
+    return found
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_every_command_that_is_printed_exists_with_its_options(page: Path) -> None:
+    for typed in ("".join(groups) for groups in _TYPED.findall(page.read_text())):
+        found = command_of(typed.split())
+        assert not getattr(found, "commands", {}) or len(typed.split()) == 2, f"there is no '{typed}'"
+        known = {option for each in found.params for option in (*each.opts, *each.secondary_opts)}
+        unknown = set(_OPTION.findall(typed)) - known
+        assert not unknown, f"'{typed}': no {', '.join(unknown)}"

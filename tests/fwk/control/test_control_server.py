@@ -103,7 +103,7 @@ def test_what_is_no_request_is_refused_and_the_next_one_answered(
 
 
 @given(some.lists(some.binary(max_size=200), max_size=5))
-@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_no_bytes_break_a_request_reader(garbage: list[bytes]) -> None:
     for line in garbage:
         with pytest.raises(RequestError):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from fwk.record.compare import Comparison, compare
@@ -209,7 +209,6 @@ def test_a_torn_tail_is_a_missing_message(tmp_path: Path) -> None:
 
 
 @given(st.lists(st.tuples(st.integers(0, 12_000), st.integers(1, 255)), min_size=1, max_size=12), st.integers(0, 400))
-@settings(max_examples=60, deadline=None)
 def test_no_damage_makes_the_tools_crash(
     tmp_path_factory: pytest.TempPathFactory, flips: list[tuple[int, int]], cut: int
 ) -> None:
