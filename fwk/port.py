@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.aspects.blackboard import ChannelDefault, Reads, ReadsEach, Writes, WritesEach
 from fwk.aspects.commands import Commands
 from fwk.aspects.commands_each import CommandsEach, ServesEach
@@ -101,9 +101,8 @@ def declared_port(where: str, attribute: str, kind: PortKind, types: tuple[Any, 
     for message_type in types:
         if not hasattr(message_type, "_get_packed_fingerprint"):
             raise DeclarationError(f"{where}.{attribute}: {message_type!r} is no LCM type; import it from lcmtypes")
-        if not messages.has_header(message_type):
-            name = messages.type_name(message_type)
-            raise DeclarationError(f"{where}.{attribute}: {name} does not begin with 'core.header_t header;'")
+        if mistake := envelope.mistake_in(message_type):
+            raise DeclarationError(f"{where}.{attribute}: {mistake}")
     given = ChannelDefault("") if default is None else default
     if not isinstance(given, ChannelDefault) or not isinstance(given.name, str):
         said = f"channel({given.name!r})" if isinstance(given, ChannelDefault) else repr(given)
@@ -124,6 +123,12 @@ def declared_port(where: str, attribute: str, kind: PortKind, types: tuple[Any, 
 
 
 def _check_second(where: str, attribute: str, message_type: Any, member: str, what: str) -> None:
+    if not messages.has_header(message_type):
+        name = messages.type_name(message_type)
+        raise DeclarationError(
+            f"{where}.{attribute}: {name} is no {what}: it does not begin with 'core.header_t header;'; types of "
+            "devices go with Reads, ReadsEach, Writes and WritesEach"
+        )
     if not messages.has_second(message_type, member, f"core.{member}_t"):
         name = messages.type_name(message_type)
         raise DeclarationError(

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from fwk import messages
-from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach
+from fwk import envelope
+from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach, WritesPlain
 from fwk.aspects.commands import ANSWERS, Commands, Queue, Source
 from fwk.aspects.commands_each import CommandsEach, ServesEach
 from fwk.aspects.logging import LEVELS, Logger
@@ -23,7 +23,7 @@ from fwk.clock import Clock, TimeSource
 from fwk.component import DEFAULT_STAGES, Component
 from fwk.config import LOG_LEVEL, Config
 from fwk.declaration import Declaration
-from fwk.messages import Message
+from fwk.messages import Message, has_header
 from fwk.port import Port
 from lcmtypes.core import done_t, log_t
 
@@ -112,7 +112,7 @@ class Runner:
             aspect.init()
         self.component.init()
         early = [
-            (writer, messages.decode(writer.message_type, data, writer.channel))
+            (writer, envelope.decode(writer.message_type, data, writer.channel))
             for writer in self.writers.values()
             for data in writer.written
         ]
@@ -234,7 +234,8 @@ class Runner:
                 return (CallsEach if port.kind == "calls_each" else SendsEach)(_by_namespace(each))
             return made_each[channels[0]]
         if port.writes:
-            made: dict[str, Writes[Any]] = {name: Writes(name, port.message_type, self.stamp) for name in channels}
+            kind: type[Writes[Any]] = Writes if has_header(port.message_type) else WritesPlain
+            made = {name: kind(name, port.message_type, self.stamp) for name in channels}
             self.writers.update(made)
             if port.kind == "vision_master":
                 return VisionMaster(made[channels[0]], self._rings[channels[0]])

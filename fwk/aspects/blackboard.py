@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Callable, ItemsView, Iterator, Mapping, Sequence
 from typing import Any, Generic, TypeVar, cast, overload
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.messages import Header
 from lcmtypes.core import header_t
 
@@ -39,7 +39,7 @@ class Reads(Generic[T]):
         self._before: bytes | None = None
         self._value: T | None = None
         self._header: Header | None = None
-        self._decode: Callable[[bytes], T] = messages.decoder(cast(Any, message_type), channel)
+        self._decode: Callable[[bytes], T] = envelope.decoder(cast(Any, message_type), channel)
 
     def freeze(self, fresh: list[bytes]) -> None:
         """For the framework: begins an iteration; `fresh` became visible since the last one, oldest first."""
@@ -191,6 +191,20 @@ class Writes(Generic[T]):
     def drop(self) -> None:
         """For the framework: the iteration failed; nothing goes out."""
         self._buffer = []
+
+
+class WritesPlain(Writes[T]):
+    """The writer of a channel whose type has no header: the value stays as it is, its envelope is stamped."""
+
+    def write(self) -> None:
+        """Stamps the value as it is now; it goes out at the end of the iteration.
+
+        Raises:
+            MessageError: a field holds something that its type cannot.
+        """
+        stamp, sequence = self._stamp, self.sequence + len(self._buffer) + 1
+        plain = self._encode(self.value)
+        self._buffer.append(envelope.wrapped(plain, stamp.tick, sequence, stamp.time_us, stamp.stage, stamp.writer))
 
 
 class ReadsEach(Mapping[str, Reads[T]], Generic[T]):

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.bus import wire
 from fwk.bus.sockets import multicast_receiver
 from fwk.messages import Header, MessageError
@@ -97,7 +97,7 @@ class Inbox(Box):
         self._senders = senders  # ports that its messages may come from
         self._name = plan.name.encode()
         self._start = len(self._name) + 9  # of the data in a short message
-        self._fingerprint = messages.fingerprint(messages.type_named(plan.type_name))
+        self._fingerprint = envelope.fingerprint(messages.type_named(plan.type_name))
         self._usual = self._name + b"\0" + self._fingerprint  # what follows the number of a short message
         self._least = self._start + messages.HEADER_SIZE
         self._complain = complain

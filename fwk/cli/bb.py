@@ -92,10 +92,10 @@ def _message(answer: dict[str, Any]) -> Iterator[str]:
         return
     yield (
         f"{answer['channel']} ({answer['type']}) sequence {answer['sequence']}, tick {answer['tick']}, "
-        f"{answer['time_us'] / US_PER_S:.3f} s, by {answer['value']['header']['writer']}{skipped}"
+        f"{answer['time_us'] / US_PER_S:.3f} s, by {answer['by']}{skipped}"
     )
     for name, value in answer["value"].items():
-        if name != "header":
+        if name != "header" or answer["plain"]:
             yield from field_lines(name, value, "  ")
 
 

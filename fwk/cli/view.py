@@ -3,7 +3,7 @@
 from collections import deque
 from typing import Any
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.cli.figures import LoopTime, loop_times
 from fwk.cli.scoreboard import Scoreboard
 from fwk.plan.model import Plan
@@ -64,4 +64,4 @@ class View:
         data = self._raw.get(channel)
         if data is None or channel not in self._types:
             return None
-        return messages.decode(messages.type_named(self._types[channel]), data, channel)
+        return envelope.decode(messages.type_named(self._types[channel]), data, channel)

@@ -4,12 +4,13 @@ import contextlib
 from collections.abc import Callable
 from typing import Any
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import requests
 from fwk.control.address import gateway_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
+from fwk.gateway.apart import plain_channels
 from fwk.messages import Header, MessageError
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
@@ -24,6 +25,7 @@ class Board:
         self._plan = plan
         self._call = call
         self._channels = {channel.name: channel for channel in plan.channels}
+        self._plain = plain_channels(plan)
         self._newest: dict[str, bytes] = {}
         self._arrived_us: dict[str, int] = {}
         self._counts = dict.fromkeys(self._channels, 0)
@@ -86,6 +88,7 @@ class Board:
         outside = channel.name in self._plan.outside
         data = self._newest.get(channel.name)
         header = Header.of(data) if data else None
+        plain_type = channel.name in self._plain
         return {
             "channel": channel.name,
             "type": channel.type_name,
@@ -97,7 +100,9 @@ class Board:
             "tick": header.tick if header else 0,
             "time_us": header.time_us if header else 0,
             "age_s": (monotonic_us() - self._arrived_us[channel.name]) / US_PER_S if data else None,
-            "bytes": len(data) if data else 0,
+            "by": header.writer if header else "",
+            "plain": plain_type,
+            "bytes": 0 if not data or not header else len(data) - header.end * plain_type,
         }
 
     def _shown(self, name: str) -> dict[str, Any]:
@@ -105,7 +110,7 @@ class Board:
         if data is None:
             return {**row, "value": None}
         try:
-            value = plain(messages.decode(messages.type_named(row["type"]), data, name))
+            value = plain(envelope.decode(messages.type_named(row["type"]), data, name))
         except MessageError as error:
             raise RequestError(str(error)) from error
         return {**row, "value": value}

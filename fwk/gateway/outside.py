@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.bus.history import History
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
@@ -26,6 +26,10 @@ class Outside:
 
     def __init__(self, channels: list[ChannelPlan], ports: Ports, sender: Sender, inputs: Inputs, clock: Clock) -> None:
         self._channels = {channel.name: channel for channel in channels}
+        self._stamp = {
+            channel.index: envelope.stamper(messages.type_named(channel.type_name), channel.name)
+            for channel in channels
+        }
         self._histories = {channel.index: History() for channel in channels}
         self._sequences = {channel.index: 0 for channel in channels}
         self._visible = {channel.index: 0 for channel in channels}
@@ -45,12 +49,10 @@ class Outside:
         index = channel.index
         if self._sequences[index] - self._visible[index] >= WAITING_MAX:
             raise Full(f"{name}: {WAITING_MAX} messages wait for the next tick already")
-        sequence, header = self._sequences[index] + 1, message.header
-        header.tick, header.stage, header.sequence = self._clock.tick + 1, STAGE, sequence
-        header.time_us, header.writer = self._clock.now_us, WRITER
-        data = messages.encode(message, name)
+        sequence, tick = self._sequences[index] + 1, self._clock.tick + 1
+        data = self._stamp[index](message, tick, sequence, self._clock.now_us, STAGE, WRITER)
         self._sequences[index] = sequence
-        self._histories[index].add(header.tick, sequence, data)
+        self._histories[index].add(tick, sequence, data)
         self._inputs.box(index).put(sequence, data)
         self._sender.publish(name.encode(), data, self._ports.channel(index))
         return sequence

@@ -45,6 +45,8 @@ def checked(kind: type[messages.Message], data: bytes, channel: str) -> Any:
         raise MessageError(f"{channel}: {len(data)} bytes; from outside come at most {BYTES_MAX}")
     message = messages.decode(kind, data, channel)
     surplus = len(data) - len(message.encode())
+    if surplus < 0:
+        raise MessageError(f"{channel}: a text in this {messages.type_name(kind)} is no UTF-8")
     if surplus:
         raise MessageError(f"{channel}: {surplus} bytes more than a {messages.type_name(kind)} has")
     return message

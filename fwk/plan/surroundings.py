@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import lcmtypes
-from fwk import messages
+from fwk import envelope, messages
 from fwk.plan.classes import UnusableError, find_object
 from fwk.plan.errors import Problems, hint
 from fwk.plan.files import Files
@@ -49,11 +49,10 @@ def outside_of(files: Files, problems: Problems) -> dict[str, type[messages.Mess
             problems.add(places[channel], "", f"{channel}: {error}; {hint(type_name, _types())}")
             files.gaps.add(channel.rpartition("/")[0])
             continue
-        if messages.has_header(kind):
-            found[channel] = kind
+        if mistake := envelope.mistake_in(kind):
+            problems.add(places[channel], "", f"{channel}: {mistake}")
         else:
-            text = f"{channel}: {type_name} does not begin with 'core.header_t header;', so it is no interface"
-            problems.add(places[channel], "", text)
+            found[channel] = kind
     return found
 
 

@@ -27,6 +27,8 @@ class Wish:
         return self.name.rpartition("/")[0]
 
     def pattern(self, port: Port) -> str:
-        """The full channel name or pattern of a port."""
+        """The full channel name or pattern of a port; one that begins with a slash has no namespace."""
         name = self.channels.get(port.attribute, port.channel)
+        if name.startswith("/"):
+            return name[1:]
         return name if "/" in name or not self.namespace else f"{self.namespace}/{name}"

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from fwk.messages import HEADER_SIZE, sequence_of
 from fwk.record.difference import Difference, changed, missing
-from fwk.record.log import Event, LogError, LogReader
+from fwk.record.log import Event, LogError
+from fwk.record.stamped import StampedLog
 from fwk.record.types import header_of, is_interface
 
 FRAMEWORK = "fwk/"
@@ -40,7 +41,7 @@ class Comparison:
         self.channels = 0
         """Channels on which there was something to compare."""
         self._channels: dict[str, _Channel] = {}
-        readers = LogReader(a), LogReader(b)
+        readers = StampedLog(a), StampedLog(b)
         self._ranges = _common_ranges(readers) if common else None
         for pair in zip_longest(*readers):
             for side, event in enumerate(pair):
@@ -155,7 +156,7 @@ def _counts(channel: str) -> bool:
     return channel != _SELF_TEST and not channel.startswith(FRAMEWORK)
 
 
-def _common_ranges(readers: Iterable[LogReader]) -> dict[str, tuple[int, int]]:
+def _common_ranges(readers: Iterable[StampedLog]) -> dict[str, tuple[int, int]]:
     """For each channel of both logs the first and last sequence number that both ranges contain."""
     ranges: list[dict[str, tuple[int, int]]] = []
     for reader in readers:

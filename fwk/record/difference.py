@@ -5,7 +5,9 @@ from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from fwk import messages
-from fwk.record.types import header_of, types_of
+from fwk.envelope import marked
+from fwk.messages import Header
+from fwk.record.types import decoded, header_of, in_envelope, types_of
 
 _LAST = 1 << 63  # sorts what has no header behind everything else
 
@@ -55,6 +57,10 @@ def missing(channel: str, data: bytes, place: int, lacking: int, reason: str = "
 def changed(channel: str, a: bytes, b: bytes, place: int) -> Difference:
     """Two different messages in the same place."""
     kinds = [" or ".join(messages.type_name(kind) for kind in types_of(data)) for data in (a, b)]
+    if a[:8] == marked(b[:8]):
+        stamped_first = in_envelope(a)
+        stands = ("there", "missing") if stamped_first else ("missing", "there")
+        return _difference("type", channel, a if stamped_first else b, place, "its stamp", stands)
     if a[:8] != b[:8]:
         named = [kind or f"unknown (fingerprint {data[:8].hex()})" for kind, data in zip(kinds, (a, b), strict=True)]
         return _difference("type", channel, a, place, "type", (named[0], named[1]))
@@ -82,11 +88,19 @@ def _tick(data: bytes) -> tuple[int, int]:
 
 
 def _field(a: bytes, b: bytes) -> tuple[str, str, str] | None:
-    for message_type in types_of(a)[:1]:
-        try:
-            return _first(message_type.decode(a), message_type.decode(b), "")
-        except Exception:  # whatever generated code does with broken bytes
-            return None
+    try:
+        stamps = [Header.of(data) for data in (a, b)] if in_envelope(a) else []
+        return _stamps(*stamps) or _first(decoded(a), decoded(b), "")
+    except Exception:  # no type, or whatever generated code does with broken bytes
+        return None
+
+
+def _stamps(*stamps: Header) -> tuple[str, str, str] | None:
+    """In what the headers of two envelopes differ, as if they were the messages' own."""
+    for name in ("tick", "sequence", "time_us", "stage", "writer") if stamps else ():
+        values = [repr(getattr(stamp, name)) for stamp in stamps]
+        if values[0] != values[1]:
+            return f"header.{name}", values[0], values[1]
     return None
 
 

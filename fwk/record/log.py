@@ -30,6 +30,8 @@ class Event(NamedTuple):
     """Logical time in logs of this framework, time of receipt in those of lcm-logger."""
     channel: str
     data: bytes
+    in_envelope: bool = False
+    """Whether `data` is the message of a type without our header, joined with its stamp."""
 
 
 class LogWriter:

@@ -4,10 +4,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar
 
+from fwk import envelope
 from fwk.clock import US_PER_S
 from fwk.messages import HEADER_SIZE, Header, type_name
-from fwk.record.log import Event, LogError, LogReader
-from fwk.record.types import header_of, types_of
+from fwk.record.log import Event, LogError
+from fwk.record.stamped import StampedLog
+from fwk.record.types import decoded, header_of, types_of
 
 
 @dataclass
@@ -50,11 +52,12 @@ class ChannelInfo:
         self.messages += 1
         self.bytes += len(event.data)
         found = types_of(event.data)
-        name = " or ".join(map(type_name, found)) or f"unknown {event.data[:8].hex()}"
+        mark = envelope.marked(event.data[:8]) if event.in_envelope else event.data[:8]
+        name = " or ".join(map(type_name, found)) or f"unknown {mark.hex()}"
         if name not in self.types:
             self.types.append(name)
         try:
-            found[0].decode(event.data)
+            decoded(event.data)
         except Exception:  # no type, or whatever generated code does with broken bytes
             self.undecodable += 1
         else:
@@ -111,7 +114,7 @@ def log_info(path: Path) -> LogInfo:
     Raises:
         LogError: the file cannot be read or is no log.
     """
-    reader, info, channels = LogReader(path), LogInfo(path), dict[str, ChannelInfo]()
+    reader, info, channels = StampedLog(path), LogInfo(path), dict[str, ChannelInfo]()
     following = 0
     for event in reader:
         info.first_us = min(info.first_us, event.time_us) if info.events else event.time_us

@@ -5,9 +5,10 @@ import sys
 from functools import cache
 from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import lcmtypes
-from fwk import messages, typegen
+from fwk import envelope, messages, typegen
 
 MessageType = type[messages.Message]
 
@@ -24,6 +25,7 @@ def use_types_of(folder: Path) -> None:
             sys.path.append(str(folder.resolve()))
         by_fingerprint.cache_clear()
         _interfaces.cache_clear()
+        _in_envelopes.cache_clear()
 
 
 def source_folders() -> list[Path]:
@@ -44,18 +46,37 @@ def by_fingerprint() -> dict[bytes, tuple[MessageType, ...]]:
 
 
 def types_of(data: bytes) -> tuple[MessageType, ...]:
-    """The types that a message may be of; they all decode it to the same members. Empty: unknown."""
-    return by_fingerprint().get(data[:8], ())
+    """The types that a message may be of, also one in its envelope; they all decode it alike. Empty: unknown."""
+    return by_fingerprint().get(data[:8]) or _in_envelopes().get(data[:8], ())
+
+
+def decoded(data: bytes) -> Any:
+    """The message; that in an envelope without it. Raises whatever generated code raises, or `LookupError`."""
+    return types_of(data)[0].decode(envelope.content(data) if in_envelope(data) else data)
+
+
+def in_envelope(data: bytes) -> bool:
+    """Whether these bytes are the message of a known type without our header, in its envelope."""
+    return data[:8] in _in_envelopes()
 
 
 def is_interface(data: bytes) -> bool:
-    """Whether a message begins with a header, by its type."""
+    """Whether a message has a header, by its type: its own, or that of an envelope."""
     return data[:8] in _interfaces()
 
 
 @cache
 def _interfaces() -> frozenset[bytes]:
-    return frozenset(mark for mark, found in by_fingerprint().items() if messages.has_header(found[0]))
+    return frozenset(mark for mark, found in by_fingerprint().items() if messages.has_header(found[0])) | set(
+        _in_envelopes()
+    )
+
+
+@cache
+def _in_envelopes() -> dict[bytes, tuple[MessageType, ...]]:
+    return {
+        envelope.marked(mark): found for mark, found in by_fingerprint().items() if not messages.has_header(found[0])
+    }
 
 
 def header_of(data: bytes) -> messages.Header | None:

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fwk.clock import US_PER_S
-from fwk.record.log import LogReader
-from fwk.record.types import header_of, types_of
+from fwk.record.stamped import StampedLog
+from fwk.record.types import decoded, header_of
 
 Picture = NDArray[np.uint8]
 """Height x width x 3, blue green red; the same size all the time, both even."""
@@ -49,7 +49,7 @@ def render_video(log: Path, out: Path, draw: Draw) -> int:
         LogError: the log cannot be read.
         VideoError: there is nothing to show, the pictures differ in size, or the file cannot be written.
     """
-    reader, newest = LogReader(log), _Newest()
+    reader, newest = StampedLog(log), _Newest()
     writer: cv2.VideoWriter | None = None
     size, pictures = (0, 0), 0
     try:
@@ -93,13 +93,13 @@ class _Newest:
         if channel not in self._decoded and channel in self._raw:
             data = self._raw[channel]
             try:
-                self._decoded[channel] = types_of(data)[0].decode(data)
+                self._decoded[channel] = decoded(data)
             except Exception:  # no type, or whatever generated code does with broken bytes: as if it were not there
                 self._decoded[channel] = None
         return self._decoded.get(channel)
 
 
-def _ends_of_ticks(reader: LogReader, newest: _Newest) -> Iterator[int]:
+def _ends_of_ticks(reader: StampedLog, newest: _Newest) -> Iterator[int]:
     """Yields each tick when all its messages are in `newest`."""
     tick = None
     for event in reader:
@@ -114,7 +114,7 @@ def _ends_of_ticks(reader: LogReader, newest: _Newest) -> Iterator[int]:
         yield tick
 
 
-def _ticks_per_s(reader: LogReader) -> float:
+def _ticks_per_s(reader: StampedLog) -> float:
     """From the logical times of the first two ticks; one picture a second if there is only one."""
     heads = (header_of(event.data) for event in reader)
     first = None

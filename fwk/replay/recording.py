@@ -9,7 +9,8 @@ from pathlib import Path
 
 from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
-from fwk.record.log import Event, LogReader
+from fwk.record.log import Event
+from fwk.record.stamped import StampedLog
 from fwk.record.types import header_of
 from lcmtypes.core import plan_t, tick_event_t, tick_record_t
 
@@ -37,7 +38,7 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self._reader = LogReader(path)
+        self._reader = StampedLog(path)
         self.plan = self._plan()
 
     @property

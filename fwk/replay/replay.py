@@ -13,7 +13,8 @@ from typing import Any
 
 from fwk.aspects.vision import Frames, Ring
 from fwk.declaration import declaration
-from fwk.messages import MessageError, fingerprint, sequence_of, type_named
+from fwk.envelope import fingerprint
+from fwk.messages import MessageError, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor, ContinuousActor, Written

@@ -5,11 +5,12 @@ import signal
 import socket
 from functools import partial
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
 from fwk.control.watcher import Watcher
 from fwk.gateway import sinks, targets
+from fwk.gateway.apart import apart, plain_channels
 from fwk.gateway.board import Board
 from fwk.gateway.calls import Calls
 from fwk.gateway.gateway import Gateway
@@ -113,8 +114,10 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     calls = Calls(plan, gateway.take_in, gateway.clock)
     board = Board(plan, calls.call)
     gateway.watch(board.fileno(), board.handle)
+    plain = plain_channels(plan)
+    ours = plain - set(plan.outside)  # what came from the public bus stands there already
     gateway.sinks += [
-        *([targets.above(sinks.Mirror(plan, public), plan.log.bus)] if public else []),
+        *([targets.above(apart(sinks.Mirror(plan, public), ours), plan.log.bus)] if public else []),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         *targets.syslog(plan.log, plan.name, gateway.log.error),
         board,
@@ -125,7 +128,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     if options.record:
         try:
             recorder = sinks.Recorder(plan, options.record, gateway.log.error)
-            gateway.sinks.insert(0, targets.above(recorder, plan.log.recording))
+            gateway.sinks.insert(0, targets.above(apart(recorder, plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     gateway.serve()
@@ -138,7 +141,7 @@ def decoded(plan: Plan, newest: dict[str, bytes]) -> dict[str, object]:
     made: dict[str, object] = {}
     for channel, data in newest.items():
         try:
-            made[channel] = messages.decode(types[channel], data, channel)
+            made[channel] = envelope.decode(types[channel], data, channel)
         except MessageError:
             continue
     return made

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fwk import messages
+from fwk import envelope
 from fwk.aspects.commands import ANSWERS
 from fwk.aspects.vision import Ring, VisionMaster
 from fwk.clock import US_PER_S
@@ -118,11 +118,11 @@ class Bench:
             for step in stages:
                 for channel, data in self.runner.iterate(self.tick, 0, step, self.time_us, fresh):
                     port = self._ports[channel]
-                    port.sent.append(messages.decode(port.message_type, data, channel))
+                    port.sent.append(envelope.decode(port.message_type, data, channel))
                 fresh = {}
 
     def finalize(self) -> None:
         """Ends the component; what it writes is found as sent."""
         for channel, data in self.runner.finalize(self.tick, self.time_us):
             port = self._ports[channel]
-            port.sent.append(messages.decode(port.message_type, data, channel))
+            port.sent.append(envelope.decode(port.message_type, data, channel))

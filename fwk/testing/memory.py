@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.aspects.main_loop import Holding
 from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
@@ -95,15 +95,14 @@ class MemorySystem:
 
     def come_in(self, channel: str, message: Any) -> None:
         """Between two ticks: a program outside writes a message, visible from the next tick on."""
-        header = message.header
-        header.tick, header.stage, header.time_us, header.writer = self.ticks + 1, STAGE, self.now_us, WRITER
-        header.sequence = len(self.sent[channel]) + 1
-        self.sent[channel].append(messages.encode(message, channel))
+        stamp = envelope.stamper(self._types[channel], channel)
+        sent = self.sent[channel]
+        sent.append(stamp(message, self.ticks + 1, len(sent) + 1, self.now_us, STAGE, WRITER))
 
     def newest(self, channel: str) -> Any:
         """The newest message of a channel, decoded; the type's zero before the first."""
         sent = self.sent[channel]
-        return messages.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
+        return envelope.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
 
     def _due(self) -> list[Runner]:
         """Continuous components whose time has come: here it is logical time, and they are done at the tick's end."""

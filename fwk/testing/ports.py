@@ -2,9 +2,9 @@
 
 from typing import Any, cast
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.clock import US_PER_S
-from lcmtypes.core import answer_t, command_t
+from lcmtypes.core import answer_t, command_t, header_t
 
 
 class PortBench:
@@ -16,17 +16,22 @@ class PortBench:
         self.waiting: list[bytes] = []
         self.sent: list[Any] = []
         self._sequence = 0
+        self._stamp = envelope.stamper(message_type, channel)
 
-    def put(self, message: Any = None, **fields: Any) -> None:
-        """Makes a message visible to the next iteration: a whole one, or some fields of one that is otherwise zero."""
+    def put(self, message: Any = None, header: Any = None, **fields: Any) -> None:
+        """Makes a message visible to the next iteration: a whole one, or some fields of one that is otherwise zero.
+
+        Its header, or the stamp of one whose type has none, is `header` or the message's own; all but the number.
+        """
         made = cast(Any, message if message is not None else self.message_type())
         for name, value in fields.items():
             if name not in self.message_type.__slots__:
                 raise AttributeError(f"{messages.type_name(self.message_type)} has no field '{name}'")
             setattr(made, name, value)
         self._sequence += 1
-        made.header.sequence = self._sequence
-        self.waiting.append(messages.encode(made, self.channel))
+        given = header or (made.header if messages.has_header(self.message_type) else header_t())
+        numbers = given.tick, self._sequence, given.time_us, given.stage
+        self.waiting.append(self._stamp(made, *numbers, given.writer))
 
 
 class OtherSender(PortBench):
@@ -36,12 +41,12 @@ class OtherSender(PortBench):
         super().__init__(channel, message_type)
         self.sent = answers.sent
 
-    def put(self, message: Any = None, expires_s: float | None = None, **fields: Any) -> None:
+    def put(self, message: Any = None, header: Any = None, expires_s: float | None = None, **fields: Any) -> None:
         """Sends a command, which is not to be begun after `expires_s` of logical time on the bench's clock."""
         if expires_s is not None:
             fields["command"] = command_t()
             fields["command"].expires_us = round(expires_s * US_PER_S)
-        super().put(message, **fields)
+        super().put(message, header, **fields)
 
 
 class OtherOwner(PortBench):

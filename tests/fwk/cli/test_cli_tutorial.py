@@ -34,7 +34,12 @@ def shows(output: str, line: str) -> bool:
 @pytest.mark.system
 @pytest.mark.parametrize(
     ("name", "n_files", "n_commands"),
-    [("first-component.md", 5, 7), ("commands-between-components.md", 5, 4), ("porting.md", 7, 4)],
+    [
+        ("first-component.md", 5, 7),
+        ("commands-between-components.md", 5, 4),
+        ("porting.md", 7, 4),
+        ("devices.md", 3, 3),
+    ],
 )
 def test_the_page_does_what_it_says(tmp_path: Path, ports: PortBlock, name: str, n_files: int, n_commands: int) -> None:
     page = (DOCS / name).read_text()

@@ -35,7 +35,8 @@ ROWS = {
     "VisionMaster, a Config, Clock, Logger, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
-    "ball: Reads[command_t]": "Odd.ball: core.command_t does not begin with 'core.header_t header;'",
+    "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
+    "does not begin with 'core.header_t header;'",
     "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) names no channel; write = channel('world/ball'), "
     "or nothing for 'ball'",
     "ball: Reads[odometry_t] = 'world/ball'": "Odd.ball: 'world/ball' names no channel; write = "

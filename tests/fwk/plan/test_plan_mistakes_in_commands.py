@@ -18,6 +18,7 @@ from fwk import Calls, CallsEach, Commands, CommandsEach, Component, Sends, Send
 from lcmtypes.core import acknowledgement_t
 from lcmtypes.garden import dig_t, seen_t, sow_t
 from lcmtypes.robot import odometry_t
+from lcmtypes.soccer import obstacle_t
 
 class Digger(Component):
     stage = "act"
@@ -51,6 +52,14 @@ class Asker(Component):
 class Plain(Component):
     stage = "think"
     dig: Sends[odometry_t]
+
+class Device(Component):
+    stage = "think"
+    dig: Sends[obstacle_t]
+
+class Devices(Component):
+    stage = "think"
+    dig: Serves[dig_t, obstacle_t]
 
 class Replyless(Component):
     stage = "think"
@@ -130,6 +139,22 @@ def garden(broken: Broken) -> Broken:
         """
         components:
           a/plain: {use: garden_parts:Plain}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: a/device: garden_parts.Device.dig: soccer.obstacle_t is no command: it does not begin with "
+        "'core.header_t header;'; types of devices go with Reads, ReadsEach, Writes and WritesEach",
+        """
+        components:
+          a/device: {use: garden_parts:Device}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: a/device: garden_parts.Devices.dig: soccer.obstacle_t is no reply: it does not begin with "
+        "'core.header_t header;'; types of devices go with Reads, ReadsEach, Writes and WritesEach",
+        """
+        components:
+          a/device: {use: garden_parts:Devices}
         """,
     ),
     Broken(

@@ -101,13 +101,13 @@ LONG = "x" * 60
     Broken(
         """
         it.yaml:2: a/b: no LCM type 'robot.odometri_t' in lcmtypes/; did you mean 'robot.odometry_t'?
-        it.yaml:3: a/c: soccer.obstacle_t does not begin with 'core.header_t header;', so it is no interface
+        it.yaml:3: a/c: core.answer_t is the framework's own and does not begin with 'core.header_t header;'
         it.yaml:4: 'a d' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
         """,
         """
         outside:
           a/b: robot.odometri_t
-          a/c: soccer.obstacle_t
+          a/c: core.answer_t
           a d: robot.odometry_t
         components: {a/one: {use: plan_parts:Odometer}}
         """,
