@@ -30,7 +30,10 @@ class RecordedPicture:
 
     def pixels(self) -> NDArray[np.uint8] | None:
         """Height x width (x 3, blue green red); None if the data are damaged."""
-        found = cv2.imdecode(np.frombuffer(self.data, np.uint8), cv2.IMREAD_UNCHANGED) if self.data else None
+        try:
+            found = cv2.imdecode(np.frombuffer(self.data, np.uint8), cv2.IMREAD_UNCHANGED) if self.data else None
+        except cv2.error:  # a picture that says it is larger than any
+            return None
         return None if found is None else np.asarray(found, np.uint8)
 
 

@@ -7,12 +7,12 @@ import pytest
 from pydantic import BaseModel
 
 from fwk.component import DEFAULT_STAGES
-from fwk.plan.schema import ComponentEntry, LaunchFile, RestartEntry, RobotEntry
+from fwk.plan.schema import ComponentEntry, LaunchFile, LogEntry, RestartEntry, RobotEntry
 
 TEXT = (Path(__file__).parents[3] / "docs" / "launch-file.md").read_text()
 
 
-@pytest.mark.parametrize("model", [LaunchFile, ComponentEntry, RobotEntry, RestartEntry])
+@pytest.mark.parametrize("model", [LaunchFile, ComponentEntry, RobotEntry, RestartEntry, LogEntry])
 def test_every_key_is_there(model: type[BaseModel]) -> None:
     words = set(re.findall(r"`(\w+)`", TEXT))
     assert set(model.model_fields) <= words
