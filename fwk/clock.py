@@ -1,8 +1,10 @@
 """The one module that asks for the time and waits: logical time for components, wall time for the framework."""
 
+import operator
 import time
 
 US_PER_S = 1_000_000
+_TIME_MAX_US = 10**18  # of logical time: 30,000 years, so that periods can be added
 SECONDS_MAX = 1e9
 """The longest duration that anybody may ask for, 30 years."""
 SPEED_MIN, SPEED_MAX = 1e-6, 1e6
@@ -44,7 +46,23 @@ class TimeSource:
     """
 
     def __init__(self) -> None:
-        self.next_us = -1
+        self.said_us = -1
+        """For the framework: what was said in this iteration; -1: nothing."""
+
+    @property
+    def next_us(self) -> int:
+        """Logical time of the next tick, if it was said in this iteration; else -1."""
+        return self.said_us
+
+    @next_us.setter
+    def next_us(self, value: int) -> None:
+        try:
+            said_us = operator.index(value)
+        except TypeError:
+            said_us = -1
+        if not 0 <= said_us <= _TIME_MAX_US:
+            raise ValueError(f"next_us is {value!r}; it should be whole microseconds, from 0 to {_TIME_MAX_US}")
+        self.said_us = said_us
 
 
 def rate_word(rate_hz: float) -> str:

@@ -155,7 +155,7 @@ class Runner:
         self._refreshed = [self.readers[channel] for channel in fresh]
         for reader, arrived in zip(self._refreshed, fresh.values(), strict=True):
             reader.freeze(arrived)
-        self.time_source.next_us = -1
+        self.time_source.said_us = -1
         try:
             for port in self._command_ports:
                 port.begin()

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk import messages
+from fwk.aspects.commands import ANSWERS
 from fwk.cli.arguments import seconds
 from fwk.cli.asking import FAILED, BusPort, Json, ask, asking
 from fwk.cli.bb import field_lines
@@ -72,7 +73,16 @@ def _called(
             last = {"reply": {}, "reason": "", **answer, "timed_out": False}
             if last["state"] not in ("sent", "accepted") or (accepted and last["state"] == "accepted"):
                 return last
-    return {**last, "timed_out": True}
+    return {**last, "timed_out": True, "owner": _owner(name, bus_port)}
+
+
+def _owner(name: str, bus_port: int | None) -> str:
+    """Who carries the commands out, and how that is."""
+    with client.gateway(bus_port) as gateway:
+        rows = gateway.ask("channels")["channels"]
+    owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
+    (component,) = ask(bus_port, "status", names=[owner])["components"]
+    return f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
 
 
 def _encoded(gateway: client.Client, name: str, fields: list[str], bus_port: int | None) -> bytes:
@@ -91,7 +101,8 @@ def _encoded(gateway: client.Client, name: str, fields: list[str], bus_port: int
 
 def _sentence(last: dict[str, Any], timeout_s: float) -> str:
     if last["timed_out"]:
-        return f"error: {last['name']}: {last['state']}, and no {_LACKING[last['state']]} within {timeout_s:g} s"
+        lacking = f"no {_LACKING[last['state']]} within {timeout_s:g} s"
+        return f"error: {last['name']}: {last['state']}, and {lacking}; {last['owner']}"
     return f"{last['name']}: {last['state']}, tick {last['tick']}{': ' if last['reason'] else ''}{last['reason']}"
 
 

@@ -120,7 +120,7 @@ class Members:
             end_us = monotonic_us()
             self.figures[name].ran(end_us - start_us)
             start_us = end_us
-            next_us = max(next_us, runner.time_source.next_us)
+            next_us = max(next_us, runner.time_source.said_us)
         if self._progress:
             self._works(NOBODY)
         return written, next_us, start_us - began_us

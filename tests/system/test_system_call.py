@@ -101,7 +101,7 @@ def test_what_was_sent_to_one_who_did_not_run_is_not_begun_later(
     run = started(launch, ports)
     run.fwk("stop", "r/lifter")
     said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "0.5", "--expires", "1000", code=1)
-    assert "error: r/lift: sent, and no answer within 0.5 s" in said
+    assert "error: r/lift: sent, and no answer within 0.5 s; r/lifter is stopped" in said
     run.fwk("start", "r/lifter")
     assert "r/lift: done" in run.fwk("call", "r/lift", "height_m=2")
     log = run.end()
