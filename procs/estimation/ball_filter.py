@@ -1,9 +1,9 @@
 """Kalman filter of the ball: position and velocity on the ground, slowed down by friction."""
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
 from procs.estimation.frames import Floats
+from procs.estimation.library_parts import KalmanFilter
 
 _UNKNOWN_SPEED_M_S = 4.0
 _STEADY_M_S2 = 0.25  # unmodelled acceleration of a ball at rest

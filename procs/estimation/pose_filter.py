@@ -1,9 +1,9 @@
 """Kalman filter of a robot's pose: driven by odometry, corrected by what the lines say."""
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
 from procs.estimation.frames import Floats, rotation, wrap
+from procs.estimation.library_parts import KalmanFilter
 
 _PATH_ERROR = 0.1  # of the way driven since the last frame: wheel scale, encoder noise, slip
 _STANDING_M = 0.002

@@ -1,9 +1,9 @@
 """Follows the robots that are seen as obstacles: one Kalman filter each, all of them computed together."""
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from procs.estimation.frames import Flags, Floats, Indices
+from procs.estimation.library_parts import linear_sum_assignment
 
 _ACCELERATION_M_S2 = 2.5
 _UNKNOWN_SPEED_M_S = 1.5
