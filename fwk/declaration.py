@@ -2,6 +2,7 @@
 
 import typing
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any, ClassVar, get_args, get_origin
 
 import numpy as np
@@ -49,8 +50,9 @@ _ASPECTS: dict[Any, str] = {
 }
 
 
+@cache
 def declaration(component: type[Component]) -> Declaration:
-    """Reads a component's class.
+    """Reads a component's class, once.
 
     Raises:
         DeclarationError: no stage, or an annotation that is no aspect.

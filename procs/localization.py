@@ -11,6 +11,7 @@ from fwk.config import Config
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import line_points_t, pose_t
 from procs.estimation.frames import Floats, plausible, rotation, wrap
+from procs.estimation.global_search import global_search
 from procs.estimation.line_map import line_map
 from procs.estimation.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.field import Field
@@ -56,8 +57,8 @@ class Localization(Component):
 
     @classmethod
     def preload(cls, config: LocalizationConfig) -> None:
-        """The table of the field's lines is the same for all robots."""
-        line_map(config.field)
+        """The tables of the field's lines are the same for all robots."""
+        global_search(line_map(config.field), config.reach_m)
 
     def init(self) -> None:
         """Makes the table of the field's lines.

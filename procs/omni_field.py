@@ -51,6 +51,12 @@ class OmniField(Detector):
     obstacle_percepts: Writes[obstacle_percepts_t]
     config: OmniFieldConfig
 
+    @classmethod
+    def preload(cls, config: OmniFieldConfig) -> None:
+        """The scan lines are the same for all robots."""
+        _star(config)
+        _rings(config)
+
     def detect(self, pixels: Picture) -> None:
         self._write(*self._find(pixels))
 
@@ -63,8 +69,7 @@ class OmniField(Detector):
         green = ColourRange(config.green_low, config.green_high)
         white = ColourRange(config.white_low, config.white_high)
         black = ColourRange(config.black_low, config.black_high)
-        self._star = Scan.star(mirror, config.rays, config.nearest_m, config.farthest_m)
-        self._rings = Scan.rings(mirror, config.ring_distances_m)
+        self._star, self._rings = _star(config), _rings(config)
         self._lines = LineFinder(green, white)
         self._obstacles = ObstacleFinder(
             mirror, self._star, black, (green, white), config.robot_radius_m, config.deviation_px
@@ -90,3 +95,11 @@ class OmniField(Detector):
         message.radius_m = self.config.robot_radius_m
         message.covariance_m2 = obstacle.covariance_m2.tolist()
         return message
+
+
+def _star(config: OmniFieldConfig) -> Scan:
+    return Scan.star(config.mirror.mirror(), config.rays, config.nearest_m, config.farthest_m)
+
+
+def _rings(config: OmniFieldConfig) -> Scan:
+    return Scan.rings(config.mirror.mirror(), config.ring_distances_m)

@@ -49,7 +49,7 @@ class Host:
         self._complaints = Complaints(self.log)
         indices = {component.index for component in self._members.plans}
         written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
-        read = [channel for channel in plan.channels if indices & set(channel.readers)]
+        read = [channel for channel in plan.channels if not indices.isdisjoint(channel.readers)]
         local = [channel for channel in read if channel.name in written]
         self.inputs = Inputs(
             plan,

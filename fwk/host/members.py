@@ -48,10 +48,11 @@ class Members:
         self._takers: list[Runner] = []  # those that may take over the main loop
         self._wishing: list[Runner] = []  # those that may ask something of the main loop
         self._waiting: dict[str, dict[str, list[bytes]]] = {}  # what each component has not seen yet, by channel
+        own = set(self._own)
         self._readers: dict[int, list[str]] = {
-            channel.index: [plan.components[reader].name for reader in channel.readers if reader in set(self._own)]
+            channel.index: [plan.components[reader].name for reader in channel.readers if reader in own]
             for channel in plan.channels
-            if set(self._own) & set(channel.readers)
+            if not own.isdisjoint(channel.readers)
         }
         self._configured = 0  # number of the newest change of settings taken over
 

@@ -4,13 +4,18 @@ import json
 from contextlib import suppress
 from importlib import import_module
 
+from fwk import codec
 from fwk.component import Component
 from fwk.declaration import declaration
+from fwk.messages import type_named
 from fwk.plan.model import Plan
 
 
 def preload(plan: Plan) -> None:
-    """Calls `preload` of every component class that has one, once for each of its different settings."""
+    """Makes the codecs of all channels, and calls `preload` of every component class, once a class and settings."""
+    for type_name in sorted({channel.type_name for channel in plan.channels}):
+        codec.encoder(type_named(type_name))
+        codec.decoder(type_named(type_name))
     done = set()
     for planned in plan.components:
         key = (planned.module, planned.class_name, json.dumps(planned.config, sort_keys=True, default=str))

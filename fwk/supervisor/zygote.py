@@ -20,7 +20,7 @@ from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.memory import limit_memory
-from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
+from fwk.host.process import StopSignal, die_with_parent, end_child, give_memory_back, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest
 from fwk.host.progress import Progress
 from fwk.host.uncaught import log_uncaught
@@ -167,6 +167,7 @@ class _Forker:
     def serve(self, stop: StopSignal) -> int:
         preload(self._plan)
         gc.collect()
+        give_memory_back()  # what a fork costs, and what hosts would fill with other things
         gc.freeze()
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake us
         poller = select.poll()

@@ -5,6 +5,8 @@ cells of one table, so that a position's score is a sum of table entries and the
 millisecond. Turned by half a turn the field looks the same; that is why the compass has to say the heading.
 """
 
+from functools import lru_cache
+
 import numpy as np
 
 from procs.estimation.frames import Floats
@@ -53,3 +55,9 @@ class GlobalSearch:
         row = np.rint((sine * points.x_m + cosine * points.y_m) / _CELL_M).astype(np.intp)
         entries = self._table.take((row * self._width + column)[:, None] + self._starts)
         return np.asarray(points.trust.astype(np.float32) @ entries, dtype=np.float64)
+
+
+@lru_cache(maxsize=4)
+def global_search(lines: LineMap, reach_m: float) -> GlobalSearch:
+    """The search in one table of lines, made once a process."""
+    return GlobalSearch(lines, reach_m)

@@ -1,8 +1,8 @@
 """The two things that estimation needs of filterpy and scipy, loaded without the rest of these libraries.
 
-`filterpy.kalman` and `scipy.optimize` import each other's neighbours by the hundred: more than a second at each start. A
-Kalman filter and the assignment problem need none of them, so here their files are executed alone. Where a library is
-loaded already, or is laid out otherwise than expected, its ordinary import takes place.
+`filterpy.kalman` and `scipy.optimize` import hundreds of modules beside them: more than a second at each start.
+A Kalman filter and the assignment problem need none of those, so here their files are executed alone. Where a library
+has been imported already, or is laid out otherwise than expected, its ordinary import takes place.
 """
 
 import sys

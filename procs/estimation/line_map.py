@@ -5,7 +5,8 @@ are signed and each cell is a plane, distance and unit normal at its middle. So 
 exact beside a straight one, with cells as large as 5 cm.
 """
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from procs.estimation.frames import Floats
 from procs.field import Arc, Field, Point, Segment
 
+_BLOCK_M = 0.5
 _MARGIN_M = 1.5  # beyond the field, so that points there still pull towards the touch lines
 
 
@@ -57,14 +59,27 @@ def _clipped(cells: Floats, count: int) -> NDArray[np.intp]:
 
 
 def _nearest(field: Field, places_m: Floats) -> Floats:
-    """Signed distance and unit normal (n, 3) of the line or mark that is nearest to each place (n, 2)."""
+    """Signed distance and unit normal (n, 3) of the line or mark that is nearest to each place (n, 2).
+
+    Places lie in square blocks. Only those lines are looked at in a block that can be nearest somewhere in it: their
+    distance to its middle is at most that of the nearest one, and twice the way from the middle to a corner.
+    """
+    shapes: list[Callable[[Floats], Floats]] = [partial(_to_segment, segment) for segment in field.segments()]
+    shapes += [partial(_to_arc, arc) for arc in field.arcs()]
+    shapes += [partial(_from_point, mark) for mark in field.marks()]
+    first_m = places_m.min(axis=0)
+    in_column, in_row = ((places_m - first_m) / _BLOCK_M).astype(np.intp).T
+    columns, rows = in_column.max() + 1, in_row.max() + 1
+    middles_m = first_m + (np.indices((columns, rows)).reshape(2, -1).T + 0.5) * _BLOCK_M
+    from_middle_m = np.stack([np.abs(shape(middles_m)[:, 0]) for shape in shapes])
+    candidates = from_middle_m <= from_middle_m.min(axis=0) + 1.01 * np.sqrt(2) * _BLOCK_M
+    block = in_column * rows + in_row
     best = np.full((len(places_m), 3), np.inf)
-    found = [_to_segment(segment, places_m) for segment in field.segments()]
-    found += [_to_arc(arc, places_m) for arc in field.arcs()]
-    found += [_from_point(mark, places_m) for mark in field.marks()]
-    for other in found:
-        nearer = np.abs(other[:, 0]) < np.abs(best[:, 0])
-        best[nearer] = other[nearer]
+    for shape, in_blocks in zip(shapes, candidates, strict=True):
+        here = np.flatnonzero(in_blocks[block])
+        other = shape(places_m[here])
+        nearer = np.abs(other[:, 0]) < np.abs(best[here, 0])
+        best[here[nearer]] = other[nearer]
     return best
 
 

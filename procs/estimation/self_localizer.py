@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from procs.estimation.frames import Floats, wrap
-from procs.estimation.global_search import GlobalSearch
+from procs.estimation.global_search import global_search
 from procs.estimation.hypotheses import Hypotheses
 from procs.estimation.line_map import LineMap
 from procs.estimation.line_matching import LinePoints, Matches, match
@@ -63,7 +63,7 @@ class SelfLocalizer:
         """`start` is the pose (3) from which the robot is known to begin, within some 0.3 m."""
         self._lines = lines
         self._settings = settings
-        self._search = GlobalSearch(lines, settings.reach_m)
+        self._search = global_search(lines, settings.reach_m)
         self._hypotheses = Hypotheses()
         self._filter = PoseFilter(np.zeros(3) if start is None else start, _LOST_DEVIATIONS)
         self.localized = False

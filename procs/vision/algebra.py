@@ -8,7 +8,10 @@ Floats = NDArray[np.float64]
 
 def product(rows: Floats, matrix: Floats) -> Floats:
     """`rows @ matrix` for rows (n, k) and a small matrix (k, m)."""
-    return np.asarray((rows[:, :, None] * matrix).sum(axis=1))
+    made: Floats = rows[:, :1] * matrix[0]
+    for k in range(1, len(matrix)):
+        made += rows[:, k : k + 1] * matrix[k]
+    return made
 
 
 def weighted_mean(values: Floats, weights: Floats) -> float:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -47,12 +48,7 @@ class Renderer:
         self._ground = GroundView(mirror, lay_carpet(field))
         self._posts_m = np.array([post for side in SIDES for post in field.goal_posts(side)])
         self._post_size_m = (field.post_diameter_m / 2, field.goal_height_m)
-        # What never changes: the robot's own body in the middle, nothing outside the round mirror.
-        from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
-        radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
-        seen = (radius_px >= mirror.radius_px(bodies.robot_radius_m)) & (radius_px <= mirror.size_px / 2)
-        self._seen = np.repeat(np.where(seen, 255, 0).astype(np.uint8)[..., None], 3, axis=2)
-        self._unseen = np.where(self._seen > 0, 0, BLACK).astype(np.uint8)
+        self._seen, self._unseen = _masks(mirror, bodies.robot_radius_m)
 
     def render(self, scene: Scene, shake_px: tuple[float, float] = (0.0, 0.0)) -> Picture:
         """The picture, size x size x 3, without noise; equal scenes give equal bytes.
@@ -108,6 +104,16 @@ class Renderer:
         cover = np.clip(radius_px + 0.5 - distance_px, 0.0, 1.0)[..., None]
         window = frame[top:bottom, left:right]
         window[:] = np.round(window * (1.0 - cover) + np.array(ORANGE) * cover)
+
+
+@lru_cache(maxsize=4)
+def _masks(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, Picture]:
+    """What never changes: the robot's own body in the middle, nothing outside the round mirror; made once a process."""
+    from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
+    radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
+    bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)
+    seen = np.repeat(np.where(bare, 255, 0).astype(np.uint8)[..., None], 3, axis=2)
+    return seen, np.where(seen > 0, 0, BLACK).astype(np.uint8)
 
 
 def _seen_from(own: Pose, points_m: Floats) -> Floats:

@@ -1,7 +1,7 @@
 """Scan lines: the pixels of a picture along rays from the robot and along rings around it."""
 
 import math
-from collections.abc import Sequence
+from functools import lru_cache
 
 import cv2
 import numpy as np
@@ -13,7 +13,7 @@ from procs.vision.mirror import Mirror
 
 
 class Scan:
-    """A set of equally long scan lines.
+    """A set of equally long scan lines; equal ones are made once a process.
 
     `ground_m` (lines, samples, 2) is where the middle of each looked-up pixel meets the ground, robot frame; NaN above
     the horizon. The pixel, not the ideal place on the line: what is found in a pixel lies where that pixel looks.
@@ -27,6 +27,7 @@ class Scan:
         self.ground_m = mirror.ground(pixels).reshape(*columns.shape, 2)
 
     @classmethod
+    @lru_cache(maxsize=4)
     def star(cls, mirror: Mirror, rays: int, from_m: float, to_m: float) -> "Scan":
         """Rays in equal angles, counter-clockwise from straight ahead, a sample a pixel, from near to far."""
         angles = np.linspace(0.0, 2 * math.pi, rays, endpoint=False)
@@ -34,7 +35,8 @@ class Scan:
         return cls(mirror, *_around(mirror, angles[:, None], radii_px[None]))
 
     @classmethod
-    def rings(cls, mirror: Mirror, distances_m: Sequence[float]) -> "Scan":
+    @lru_cache(maxsize=4)
+    def rings(cls, mirror: Mirror, distances_m: tuple[float, ...]) -> "Scan":
         """Circles on the ground, counter-clockwise from straight behind, the largest with a sample a pixel."""
         radii_px = np.array([mirror.radius_px(distance_m) for distance_m in distances_m])
         samples = math.ceil(2 * math.pi * max(radii_px))

@@ -1,4 +1,4 @@
-"""What estimation takes out of filterpy and scipy: the same as the whole libraries have, at a fraction of the imports."""
+"""What estimation takes out of filterpy and scipy: the same as in the whole libraries, at a fraction of the imports."""
 
 import subprocess
 import sys

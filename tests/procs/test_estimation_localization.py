@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fwk.testing import Bench
 from procs.estimation.frames import rotation, wrap
 from procs.estimation.global_search import GlobalSearch
-from procs.estimation.line_map import line_map
+from procs.estimation.line_map import LineMap, line_map
 from procs.estimation.line_matching import LinePoints, match
 from procs.field import Field
 from procs.localization import Localization
@@ -170,6 +170,13 @@ def test_a_line_says_nothing_about_the_place_along_it() -> None:
     information = found.information[0]
     assert information[1, 1] < 0.01 * information[0, 0]
     assert found.poses[0] == pytest.approx((0.0, 4.5, 0.0), abs=0.02)
+
+
+def test_table_made_block_by_block_is_that_of_all_lines_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+    places_m = np.random.default_rng(1).uniform((-11.0, -8.0), (11.0, 8.0), (5000, 2))
+    by_blocks = LineMap(FIELD).look_up(*places_m.T)
+    monkeypatch.setattr("procs.estimation.line_map._BLOCK_M", 100.0)  # one block, to which all lines are near
+    assert np.array_equal(by_blocks, LineMap(FIELD).look_up(*places_m.T))
 
 
 def test_the_search_finds_the_place_among_its_first_guesses() -> None:
