@@ -50,13 +50,18 @@ _ASPECTS: dict[Any, str] = {
 }
 
 
-@cache
 def declaration(component: type[Component]) -> Declaration:
     """Reads a component's class, once.
 
     Raises:
         DeclarationError: no stage, or an annotation that is no aspect.
     """
+    kind: type[Any] = component  # mypy takes no class with annotations for hashable
+    return _read(kind)
+
+
+@cache
+def _read(component: type[Any]) -> Declaration:
     where = f"{component.__module__}.{component.__qualname__}"
     stages, rate_hz = _stages(component, where), component.rate_hz
     if stages and rate_hz is not None:
