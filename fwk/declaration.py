@@ -56,12 +56,11 @@ def declaration(component: type[Component]) -> Declaration:
     Raises:
         DeclarationError: no stage, or an annotation that is no aspect.
     """
-    kind: type[Any] = component  # mypy takes no class with annotations for hashable
-    return _read(kind)
+    return _read(component)  # type: ignore[arg-type]  # mypy takes classes for something that cannot be hashed
 
 
 @cache
-def _read(component: type[Any]) -> Declaration:
+def _read(component: type[Component]) -> Declaration:
     where = f"{component.__module__}.{component.__qualname__}"
     stages, rate_hz = _stages(component, where), component.rate_hz
     if stages and rate_hz is not None:
