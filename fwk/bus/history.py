@@ -28,6 +28,11 @@ class History:
                 return
             self._bytes -= len(kept.popleft()[2])
 
+    @property
+    def newest(self) -> int:
+        """The newest number; 0: none."""
+        return self._kept[-1][1] if self._kept else 0
+
     def between(self, first: int, last: int) -> list[tuple[int, bytes]]:
         """The kept messages with these numbers, oldest first."""
         return [(sequence, data) for _, sequence, data in self._kept if first <= sequence <= last]

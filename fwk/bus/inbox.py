@@ -48,6 +48,10 @@ class Box:
         held = self._held
         return [number for number in range(self.floor + 1, self.mark + 1) if number not in held]
 
+    def lacks(self, sequence: int) -> list[int]:
+        """Sequence numbers up to this one, visible or not, that are not here."""
+        return [number for number in range(self.floor + 1, sequence + 1) if number not in self._held]
+
     def take(self) -> list[bytes]:
         """The messages that became visible since the last time, oldest first."""
         held, floor = self._held, self.floor
@@ -130,6 +134,11 @@ class Inbox(Box):
         """What is here and was not taken yet, of these numbers, oldest first; also what waits in the socket."""
         self._drain()
         return super().held(first, last)
+
+    def lacks(self, sequence: int) -> list[int]:
+        """Sequence numbers up to this one, visible or not, that are not here; what waits in the socket is."""
+        self._drain()
+        return super().lacks(sequence)
 
     def give_up(self, first: int, last: int) -> int:
         """The writer no longer has these; what waits in the socket is not lost."""

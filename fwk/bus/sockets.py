@@ -2,10 +2,11 @@
 
 import itertools
 import secrets
+import select
 import socket
 
 from fwk.bus import wire
-from fwk.clock import sleep_s
+from fwk.clock import US_PER_S, sleep_s
 from fwk.messages import MessageError
 
 GROUP = "239.255.76.67"  # LCM's default group
@@ -59,6 +60,10 @@ class Sender:
     def send(self, channel: bytes, data: bytes, port: int) -> None:
         """Sends a message to the one process that has `port`."""
         self._send(channel, data, (LOOPBACK, port))
+
+    def wait(self, timeout_us: int) -> None:
+        """Waits until something is there to be received, but not for longer."""
+        select.select([self.socket], [], [], timeout_us / US_PER_S)
 
     def receive(self, members: range) -> tuple[bytes, bytes] | None:
         """The next message that was sent to this port alone, as (channel, data); None when nothing is waiting.

@@ -210,12 +210,14 @@ class Gateway:
                     gone = gone_t.decode(data)
                     if gone.run == self._run:
                         self._give_up(gone)
+                elif name == sync.DONE:
+                    self._see_off(sync.decode_done(data))
                 elif name == b"fwk/fetch":
                     fetch = fetch_t.decode(data)
                     if fetch.run == self._run and 0 <= fetch.channel < len(self._plan.channels):
                         self._answer_for(fetch)
                 else:
-                    raise MessageError("neither gone nor fetch")
+                    raise MessageError("neither gone, fetch nor done")
             except (MessageError, ValueError, struct.error) as error:
                 self._complaints("fwk/fetch", f"{error}; refused")
         try:
@@ -226,6 +228,18 @@ class Gateway:
         except OSError:
             self._open = False
         return self._open
+
+    def _see_off(self, done: done_t) -> None:
+        """A host leaves as soon as everything that it has sent is here; it repeats itself until it is."""
+        if done.run != self._run or not 0 <= done.host < len(self._plan.hosts):
+            return
+        marks = [
+            pair for pair in zip(done.channel, done.sequence, strict=True) if 0 <= pair[0] < len(self._plan.channels)
+        ]
+        if self._inputs.have(marks):
+            port = self._ports.host(done.host)
+            done.host = self._ports.gateway
+            self._sender.send(sync.DONE, sync.encode_done(done), port)
 
     def _answer_for(self, fetch: fetch_t) -> None:
         """Answers in place of a writer that has left the run, or was started again and asked for what was before.

@@ -85,6 +85,8 @@ class ContinuousHost(Host):
         elif channel == sync.DONE:
             done: done_t = sync.decode_done(data)
             self._taken = self._taken or (done.tick, done.stage) == self._answered
+            if self._leaving:
+                self._leaving.heard(done)
         else:
             super()._handle_message(channel, data)
 

@@ -13,6 +13,7 @@ from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.clock import US_PER_S, Clock, monotonic_us
 from fwk.host.assignment import Assignment
 from fwk.host.inputs import Inputs
+from fwk.host.leaving import Leaving
 from fwk.host.members import Members
 from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
@@ -74,6 +75,7 @@ class Host:
         ]
         self._answered = (0, -1)  # the newest (tick, stage) done
         self._done = b""
+        self._leaving: Leaving | None = None
         self._message = done_t()  # the next done; what stays the same in it is written once
         self._message.run, self._message.host = assignment.run, assignment.host
         self._message.incarnation = assignment.incarnation
@@ -117,7 +119,10 @@ class Host:
     def _finalize(self) -> None:
         """Finalizes the components and sends what they wrote, with a last done: it counts if the run goes on."""
         written, tick = self._members.finalize()
+        before = self._done
         self._publish(written, tick, done_t.FINAL, -1, 0, self._members.missed_frames())
+        self._leaving = Leaving(self._ports, self._sender, before, self._message, self._outputs.sent)
+        self._leaving.wait(self._handle_own)
 
     def _receive_tick(self, source: socket.socket) -> tick_t | None:
         try:
@@ -195,6 +200,8 @@ class Host:
             fetch = fetch_t.decode(data)
             if fetch.run == self._assignment.run:
                 self._outputs.answer(fetch)
+        elif channel == sync.DONE and self._leaving:
+            self._leaving.heard(sync.decode_done(data))
         elif channel == b"fwk/gone":
             gone = gone_t.decode(data)
             if gone.run == self._assignment.run:

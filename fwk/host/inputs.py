@@ -129,6 +129,17 @@ class Inputs:
         self.lost += lost
         return lost
 
+    def have(self, marks: Sequence[tuple[int, int]]) -> bool:
+        """Whether everything up to these numbers of channels is here, visible or not; asks for what is not."""
+        lacking = []
+        for index, sequence in marks:
+            missing = self._boxes[index].lacks(sequence)
+            if missing:
+                lacking.append((self._boxes[index], missing))
+        for box, missing in lacking:
+            self._fetch(box, missing, self._writer_host[box.plan.index])
+        return not lacking
+
     def missed(self) -> list[tuple[int, int]]:
         """Channel and sequence number of visible messages that never came, each once."""
         found = []
@@ -141,10 +152,11 @@ class Inputs:
     def _ask(self, lacking: Sequence[Box], *, patient: bool) -> None:
         for box in lacking:
             missing = box.missing()
-            if not missing:
-                continue
-            fetch = fetch_t()
-            fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
-            fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]
-            asked = self._writer_host[box.plan.index] if patient else self._ports.gateway
-            self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(asked))
+            if missing:
+                self._fetch(box, missing, self._writer_host[box.plan.index] if patient else self._ports.gateway)
+
+    def _fetch(self, box: Box, missing: Sequence[int], host: int) -> None:
+        fetch = fetch_t()
+        fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
+        fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]
+        self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(host))

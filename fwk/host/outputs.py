@@ -36,6 +36,11 @@ class Outputs:
         self._ports = ports
         self._local = local
 
+    @property
+    def sent(self) -> dict[int, int]:
+        """The newest number of each channel index that this process has sent."""
+        return {index: history.newest for index, (_, _, history) in self._by_index.items() if history.newest}
+
     def publish(self, written: list[tuple[str, bytes]]) -> dict[int, int]:
         """Sends messages; returns the new mark of each channel index."""
         marks = {}

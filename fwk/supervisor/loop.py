@@ -273,6 +273,9 @@ class MainLoop:
                 self._came_in[channel] = max(sequence, self._came_in.get(channel, 0))
             return
         entry = self._hosts.table[done.host]
+        if done.stage == done_t.FINAL:
+            self._on_final_done(entry, done)
+            return
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
             if done.incarnation == entry.incarnation and entry.state == "stopping":
                 self._on_last_done(entry, done)
@@ -291,14 +294,24 @@ class MainLoop:
         self._take(done)
 
     def _on_last_done(self, entry: HostEntry, done: done_t) -> None:
-        """Of one that leaves the loop: of the iteration that it was late with, then of what it wrote in finalize."""
+        """Of one that leaves the loop: of the iteration that it was late with."""
         if entry.busy == (done.tick, done.stage):
             entry.busy = None
-        elif done.stage == done_t.FINAL and entry.index in self._hosts.leaving:
-            self._hosts.leaving.discard(entry.index)
-        elif not self._continuous or done.stage == done_t.FINAL or not self._continuous.take(entry, done):
+        elif not self._continuous or not self._continuous.take(entry, done):
             return
         self._take(done)
+
+    def _on_final_done(self, entry: HostEntry, done: done_t) -> None:
+        """Of what one that leaves wrote in finalize: taken once, and sent back as a sign that it was.
+
+        One that was late has its last iteration taken first, if it ran it.
+        """
+        if done.incarnation != entry.incarnation or (entry.busy and entry.busy[0] <= done.tick):
+            return
+        self._sender.send(sync.DONE, sync.encode_done(done), self._ports.host(entry.index))
+        if entry.state == "stopping" and entry.index in self._hosts.leaving:
+            self._hosts.leaving.discard(entry.index)
+            self._take(done)
 
     def _take(self, done: done_t) -> None:
         """What it says becomes visible with the next stage."""
