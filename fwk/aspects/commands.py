@@ -1,5 +1,6 @@
 """The commands aspect, the side that carries out: a queue of typed commands and an answer to each."""
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Iterator, Mapping
 from enum import StrEnum
@@ -126,7 +127,7 @@ class Command(Generic[T]):
 C = TypeVar("C", bound=Command[Any])
 
 
-class Queue(Generic[C]):
+class Queue(ABC, Generic[C]):
     """What `Commands` and `Serves` have in common. Iterating over it takes out the commands, each of them once.
 
     They come in the order of the contract: tick, stage, sender, sequence. What is not taken out stays for the next
@@ -201,8 +202,9 @@ class Queue(Generic[C]):
         self._unfinished[command.sender] -= 1
         self.open = [each for each in self.open if each is not command]
 
+    @abstractmethod
     def _command(self, source: Source[Any], header: Header, data: bytes) -> C:
-        raise NotImplementedError
+        """What has come, for the owner."""
 
     def _miss(self, source: Source[Any], sequence: int) -> None:
         """Tells the sender of what did not come: the owner was away for too long, or it was lost for good."""

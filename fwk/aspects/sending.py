@@ -1,5 +1,6 @@
 """The commands aspect, the side that wants something done: sends commands and sees what becomes of them."""
 
+from abc import ABC, abstractmethod
 from collections.abc import ItemsView, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
@@ -52,7 +53,7 @@ class Future:
 F = TypeVar("F", bound=Future)
 
 
-class Outbox(Generic[T, F]):
+class Outbox(ABC, Generic[T, F]):
     """What `Sends` and `Calls` have in common: change `value`, send it, keep the future."""
 
     def __init__(self, name: str, sender: str, clock: Clock, writes: Writes[T], answers: Reads[Any]) -> None:
@@ -89,8 +90,9 @@ class Outbox(Generic[T, F]):
         """For the framework: an answer without content."""
         return self._answers.message_type()
 
+    @abstractmethod
     def _future(self, sequence: int, timeout_us: int) -> F:
-        raise NotImplementedError
+        """What becomes of the message with this number."""
 
     def _send(self, timeout_s: float, expires_s: float | None) -> F:
         now_us = self._clock.now_us

@@ -23,9 +23,9 @@ class History:
         kept = self._kept
         kept.append((tick, sequence, data))
         self._bytes += len(data)
-        while len(kept) > MESSAGES_MAX or self._bytes > BYTES_MAX:
-            if not self._spare(tick - kept[0][0]):
-                return
+        while (len(kept) > MESSAGES_MAX and tick - kept[0][0] > TICKS) or (
+            self._bytes > BYTES_MAX and tick - kept[0][0] > 1
+        ):
             self._bytes -= len(kept.popleft()[2])
 
     @property
@@ -36,7 +36,3 @@ class History:
     def between(self, first: int, last: int) -> list[tuple[int, bytes]]:
         """The kept messages with these numbers, oldest first."""
         return [(sequence, data) for _, sequence, data in self._kept if first <= sequence <= last]
-
-    def _spare(self, age_ticks: int) -> bool:
-        """Whether the oldest message can go."""
-        return (age_ticks > TICKS and len(self._kept) > MESSAGES_MAX) or (age_ticks > 1 and self._bytes > BYTES_MAX)

@@ -13,6 +13,7 @@ from tests.system.system_runs import PortBlock
 pytestmark = pytest.mark.system
 
 
+@pytest.mark.core
 def test_what_lcm_logger_heard_of_lcm_logplayer_is_what_we_wrote(tmp_path: Path, ports: PortBlock) -> None:
     bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=40))
     with bus.logger(tmp_path / "heard"):

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 TESTS = """
 def test_lacks_something(needs):
     needs("sh", "no-such-program", "Xvfb-of-the-future")
@@ -15,10 +17,12 @@ def test_has_everything(needs):
 """
 
 
-def test_a_test_without_its_program_is_skipped_and_listed(tmp_path: Path) -> None:
+@pytest.mark.slow
+@pytest.mark.parametrize("workers", [[], ["--numprocesses", "2"]], ids=["serial", "parallel"])
+def test_a_test_without_its_program_is_skipped_and_listed(tmp_path: Path, workers: list[str]) -> None:
     shutil.copy(Path(__file__).parents[1] / "conftest.py", tmp_path)
     (tmp_path / "test_it.py").write_text(TESTS)
-    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", str(tmp_path)]
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", *workers, str(tmp_path)]
     result = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
     assert result.returncode == 0
     assert "1 passed, 1 skipped" in result.stdout

@@ -4,6 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import pytest
+
 from fwk.component import Component
 from fwk.testing import MemorySystem
 from lcmtypes.soccer import game_state_t, match_event_t
@@ -59,6 +61,7 @@ def test_two_alone_both_score() -> None:
     assert states[-1].score_magenta > 0
 
 
+@pytest.mark.slow
 def test_ten_robots_play_by_the_rules_and_score() -> None:
     system = match(team("cyan", 5) + team("magenta", 5), 7, NOISE)
     stopped, _ = play(system, 6.0)

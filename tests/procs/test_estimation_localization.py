@@ -228,6 +228,7 @@ def test_driving_robot_stays_localized_within_10_cm() -> None:
     assert 0.5 < np.mean(nees) < 6.0, "3 for an honest covariance"
 
 
+@pytest.mark.slow
 def test_kidnapped_robot_finds_itself_within_5_s_a_hundred_times_in_a_row() -> None:
     robot = FakeRobot(seed=7)
     robot.place()

@@ -234,6 +234,7 @@ def ball_errors(loss: float, blind: bool, seeds: int = 6) -> tuple[float, list[f
     return float(np.sqrt(np.nanmean(fused**2))), np.sqrt(np.nanmean(alone**2, axis=0)).tolist()
 
 
+@pytest.mark.slow
 def test_the_teams_ball_is_half_as_wrong_as_the_median_robots_and_no_worse_than_the_best_ones() -> None:
     fused, alone = ball_errors(loss=0.03, blind=False)
     assert fused <= 0.5 * np.median(alone)
@@ -262,6 +263,7 @@ def ball_nees(robots: int, runs: int = 20) -> float:
 
 
 @pytest.mark.parametrize("robots", [1, 4])
+@pytest.mark.slow
 def test_the_balls_covariance_covers_the_error_of_the_own_pose(robots: int) -> None:
     assert 0.5 < ball_nees(robots) < 3.5
 

@@ -238,6 +238,7 @@ def test_ten_robots_wander_and_touch_the_ball_and_each_other() -> None:
     assert system.now_us == 200 * 50_000
 
 
+@pytest.mark.slow
 def test_fresh_processes_send_the_same_bytes() -> None:
     here = Path(__file__)
     code = (

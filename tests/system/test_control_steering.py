@@ -54,6 +54,7 @@ def test_stopped_it_leaves_its_last_value_started_it_goes_on_counting_messages(r
     assert set(frozen) == {float(stopped - 1)}
 
 
+@pytest.mark.core
 def test_a_restart_misses_no_tick_in_lockstep(run: Steered) -> None:
     for _ in range(2):
         run.steer("restart", "r/counter", "r/finder")

@@ -117,6 +117,7 @@ FINAL_WORDS = """
 
 
 @pytest.mark.parametrize("clock", ["simulated", "wall"])
+@pytest.mark.core
 def test_what_finalize_writes_is_seen_recorded_and_replayed(
     launch: Launch, ports: PortBlock, tmp_path: Path, clock: str
 ) -> None:

@@ -20,6 +20,7 @@ RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")
 KILLS = 20
 
 
+@pytest.mark.core
 def test_every_iteration_sees_what_the_contract_says(launch: Launch, folder: Path) -> None:
     run = launch(*RUN, "--ticks", "40", env={"FWK_TEST_LOSS": "0.1"})
     assert run.wait() == 0, run.text

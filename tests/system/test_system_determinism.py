@@ -37,6 +37,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder / "log.lcm"
 
 
+@pytest.mark.core
 def test_everything_is_in_the_recording(reference: Path) -> None:
     recording = Recording(reference)
     assert recording.gaps() == {}
@@ -73,6 +74,7 @@ def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, r
         pytest.param({"FWK_TEST_BUFFER_BYTES": "70000"}, id="small buffers"),
     ],
 )
+@pytest.mark.core
 def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, weather: dict[str, str]) -> None:
     run = launch(*RUN, *RECORD, env=weather)
     assert run.wait() == 0, run.text

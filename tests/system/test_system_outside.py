@@ -110,6 +110,7 @@ def test_a_flood_is_bounded_and_said_and_the_run_goes_on(launch: Launch, tmp_pat
     checked(run, run.end(), 65)
 
 
+@pytest.mark.core
 def test_fwk_send_is_such_a_program(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)

@@ -39,6 +39,7 @@ def late_ticks(recording: Recording) -> dict[int, int]:
     return found
 
 
+@pytest.mark.core
 def test_who_is_late_is_counted_and_named_and_its_outputs_come_after_its_done(launch: Launch, wall: Path) -> None:
     sets = ("--set", "d/player.trouble=loop:wait", "--set", "d/player.trouble_tick=5")
     run = launch(*RUN, *sets)

@@ -55,6 +55,7 @@ def test_bad_input_is_refused_with_what_would_be_right(typed: str, answer: str) 
 
 
 @pytest.mark.system
+@pytest.mark.core
 def test_a_run_ends_by_itself_and_says_what_came_of_it(folder: Path) -> None:
     result = launch(folder, *FAST, "--ticks", "30", "--record", "mine.log")
     assert result.returncode == 0, result.stdout
@@ -157,6 +158,7 @@ def test_a_run_that_would_collide_says_so(folder: Path, ports: PortBlock) -> Non
 
 
 @pytest.mark.system
+@pytest.mark.core
 def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path, ports: PortBlock) -> None:
     screen, terminal = pty.openpty()
     arguments = ["fwk-launch", CARDS, "--bus-port", str(ports.bus)]
