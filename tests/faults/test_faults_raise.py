@@ -133,7 +133,7 @@ def test_who_spins_does_not_keep_a_run_in_lockstep_from_ending(launch: Launch, f
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player spins")
     after.note(run)
     run.signal(signal.SIGINT)
-    after.check(run, replays=False)
+    after.check(run)
     assert "d/player did not stop when asked; killed" in run.text
 
 
@@ -143,7 +143,7 @@ def test_who_spins_is_left_behind_in_real_time(launch: Launch, wall: Path, after
     after.note(run)
     run.until_ticks("f/player", 10)
     run.signal(signal.SIGINT)
-    recording = after.check(run, replays=False)
+    recording = after.check(run)
     assert recording.gaps() == {}
     assert len(recording.messages["f/note"]) >= len(recording.messages["d/note"]) + 10
 
