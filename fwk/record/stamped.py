@@ -2,10 +2,13 @@
 
 from collections.abc import Iterator
 
-from fwk import envelope
+from fwk import envelope, messages
 from fwk.envelope import STAMP
+from fwk.messages import MessageError
 from fwk.record.log import Event, LogReader
 from lcmtypes.core import header_t, stamp_t
+
+_decode = messages.decoder(stamp_t, STAMP)
 
 
 class StampedLog(LogReader):
@@ -35,7 +38,9 @@ class StampedLog(LogReader):
 
 
 def _stamp(data: bytes) -> stamp_t | None:
+    """The stamp; None if it is broken: what follows has none then."""
     try:
-        return stamp_t.decode(data)
-    except Exception:  # whatever generated code does with broken bytes: what follows has no stamp then
+        stamp: stamp_t = _decode(data)
+    except MessageError:
         return None
+    return stamp

@@ -7,6 +7,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from fwk.envelope import marked
 from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event
@@ -60,11 +61,7 @@ class Recording:
             if event.number != number:
                 raise RecordingError(self._gap(event.number - number, tick))
             if event.data[:8] != types.get(event.channel, event.data[:8]):
-                raise RecordingError(
-                    f"{self.path}: {event.channel} has a message that is no {self._type_of(event.channel)} as it is "
-                    "now; the .lcm file was changed since (the run directory keeps the one of the run), or the log is "
-                    "damaged"
-                )
+                raise RecordingError(self._other_type(event, types[event.channel]))
             if event.channel == RECORD:
                 record = self._record(event)
                 yield RecordedTick(record, messages)
@@ -75,6 +72,8 @@ class Recording:
                 header = header_of(event.data)
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
+                elif event.channel in types:  # passed over, it would be taken for lost and never be compared
+                    raise RecordingError(f"{self.path}: damaged: {event.channel} has a message without a whole header")
 
     def missed_frames(self) -> dict[tuple[int, int], dict[str, set[int]]]:
         """Numbers of the frames that were gone when a start of a component came to read them, by channel.
@@ -100,6 +99,17 @@ class Recording:
         cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or somebody took them out"
         before = f"; replay what is before it with --to-tick {tick}" if tick else ""
         return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
+
+    def _other_type(self, event: Event, expected: bytes) -> str:
+        if marked(event.data[:8]) == expected:
+            return (
+                f"{self.path}: {event.channel} has a message without the stamp that says what readers saw of it when; "
+                "it was not in a run of ours, or somebody took the stamp out"
+            )
+        return (
+            f"{self.path}: {event.channel} has a message that is no {self._type_of(event.channel)} as it is now; the "
+            ".lcm file was changed since (the run directory keeps the one of the run), or the log is damaged"
+        )
 
     def _type_of(self, name: str) -> str:
         types = {channel.name: channel.type_name for channel in self.plan.channels}

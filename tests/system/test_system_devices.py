@@ -11,8 +11,9 @@ from typing import Any
 import lcm
 import pytest
 
+from fwk.envelope import STAMP
 from fwk.messages import Header, type_named
-from fwk.record.log import LogReader
+from fwk.record.log import LogReader, LogWriter
 from fwk.record.stamped import StampedLog
 from fwk.record.types import use_types_of
 from fwk.replay.recording import Recording
@@ -158,6 +159,24 @@ def test_a_changed_component_is_found_by_the_replay(alone: Callable[..., Launche
     assert "left/parts: tick 1, stage 5, message 2 by r/driver: there in" in fwk(
         tmp_path, "replay", "log.lcm", "--verify", code=1
     )
+
+
+@pytest.mark.parametrize(
+    ("kept", "said"),
+    [
+        pytest.param(slice(0), "MOTORS has a message without the stamp that says what readers saw", id="no stamp"),
+        pytest.param(slice(-2), "MOTORS has a message without the stamp that says what readers saw", id="half a stamp"),
+    ],
+)
+def test_a_recording_whose_stamps_are_not_there_is_refused(
+    alone: Callable[..., Launched], tmp_path: Path, kept: slice, said: str
+) -> None:
+    alone("log.lcm")
+    with LogWriter(tmp_path / "without.lcm", pytest.fail) as log:
+        for event in LogReader(tmp_path / "log.lcm"):
+            data = event.data[kept] if event.channel == STAMP else event.data
+            log.append(event.channel, data, event.time_us)
+    assert said in fwk(tmp_path, "replay", "without.lcm", "--verify", code=2)
 
 
 def test_every_layout_of_processes_gives_the_same_and_another_setting_does_not(
