@@ -14,6 +14,7 @@ from fwk.aspects.commands import Command, CommandError, Commands, CommandState  
 from fwk.aspects.commands_each import CommandsEach, ServesEach  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
+from fwk.aspects.opening import Blackboard, NotOpen  # noqa: E402
 from fwk.aspects.plugins import PluginControl  # noqa: E402
 from fwk.aspects.provided import Aspect  # noqa: E402
 from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
@@ -22,9 +23,12 @@ from fwk.aspects.vision import Image, ImagesEach, VisionMaster  # noqa: E402
 from fwk.clock import Clock, TimeSource  # noqa: E402
 from fwk.component import Component  # noqa: E402
 from fwk.config import Config  # noqa: E402
+from fwk.instances import BlackboardEvent  # noqa: E402
 
 __all__ = [
     "Aspect",
+    "Blackboard",
+    "BlackboardEvent",
     "Call",
     "Calls",
     "CallsEach",
@@ -42,6 +46,7 @@ __all__ = [
     "ImagesEach",
     "Logger",
     "MainLoop",
+    "NotOpen",
     "PluginControl",
     "Reads",
     "ReadsEach",

@@ -40,6 +40,7 @@ class Component:
     | `rng: np.random.Generator` | random numbers, seeded from the run's seed and the component's name |
     | `time_source: TimeSource` | says when the next tick happens; one a system |
     | `main_loop: MainLoop` | takes over the main loop, and gives it back; one at a time |
+    | `blackboard: Blackboard` | opens channels while it runs, and tells who is there |
     | `plugins: PluginControl` | starts, stops and exchanges other components |
     | `tf: Transforms`, any class derived from `Aspect` | what another component provides |
     """

@@ -10,6 +10,7 @@ import numpy as np
 from fwk.aspects.blackboard import Reads, ReadsEach
 from fwk.aspects.logging import Logger
 from fwk.aspects.main_loop import MainLoop
+from fwk.aspects.opening import Blackboard
 from fwk.aspects.plugins import PluginControl
 from fwk.aspects.provided import Aspect
 from fwk.aspects.vision import Image
@@ -32,7 +33,7 @@ class Declaration:
     config: type[Config]
     """With `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
-    """Attribute to aspect name: clock, log, rng, time_source, main_loop, plugins."""
+    """Attribute to aspect name: clock, log, rng, time_source, main_loop, plugins, blackboard."""
     asks: dict[str, type[Aspect]] = field(default_factory=dict)
     """Attribute to an aspect that another component provides; its own attributes are `attribute.own` above."""
     provides: tuple[type[Aspect], ...] = ()
@@ -47,6 +48,7 @@ _ASPECTS: dict[Any, str] = {
     TimeSource: "time_source",
     MainLoop: "main_loop",
     PluginControl: "plugins",
+    Blackboard: "blackboard",
 }
 
 
@@ -96,10 +98,10 @@ def _read(component: type[Component]) -> Declaration:
         elif get_origin(wish) is not ClassVar and default is None:
             raise DeclarationError(
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
-                f"annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, "
-                "Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
-                "numpy.random.Generator, TimeSource, MainLoop, PluginControl or an Aspect, and set plain attributes "
-                "in init()"
+                "annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, Serves, "
+                "ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
+                "numpy.random.Generator, TimeSource, MainLoop, PluginControl, Blackboard or an Aspect, and set plain "
+                "attributes in init()"
             )
     if rate_hz is not None:
         _check_continuous(where, rate_hz, ports, aspects)
@@ -180,3 +182,8 @@ def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict
     for attribute, aspect in aspects.items():
         if aspect == "time_source":
             raise DeclarationError(f"{where}.{attribute}: a continuous component is no time source; give it a stage")
+        if aspect == "blackboard":
+            raise DeclarationError(
+                f"{where}.{attribute}: a continuous component opens no channels while it runs; declare them, or give "
+                "it a stage"
+            )

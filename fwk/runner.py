@@ -14,6 +14,7 @@ from fwk.aspects.commands import ANSWERS, Commands, Queue, Source
 from fwk.aspects.commands_each import CommandsEach, ServesEach
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.main_loop import MainLoop
+from fwk.aspects.opening import Blackboard
 from fwk.aspects.plugins import PluginControl
 from fwk.aspects.rate_limit import RateLimit
 from fwk.aspects.rpc import Calls, CallsEach, Serves
@@ -100,11 +101,18 @@ class Runner:
         self._provided = [kind() for kind in declaration.asks.values()]
         for attribute, made in zip(declaration.asks, self._provided, strict=True):
             setattr(self.component, attribute, made)
-        for attribute, aspect in declaration.aspects.items():
-            self._put(attribute, self._aspect(aspect, surroundings.seed))
         setattr(self.component, "config", self._config)  # noqa: B010 - not every component declares one
         for port in declaration.ports:
             self._put(port.attribute, self._port(port, channels[port.attribute]))
+        self.blackboard = Blackboard(name, self.stamp, self.readers, self.writers)
+        self.has_blackboard = "blackboard" in declaration.aspects.values()
+        """Whether the component may open channels while it runs."""
+        self._begin = [port.begin for port in self._command_ports]  # what has to be done before an iteration
+        self._begin += [aspect.begin for aspect in self._provided]
+        if self.has_blackboard:
+            self._begin.append(self.blackboard.begin)
+        for attribute, aspect in declaration.aspects.items():
+            self._put(attribute, self._aspect(aspect, surroundings.seed))
 
     def init(self) -> None:
         """Prepares the component, and before it the aspects that other components provide it with."""
@@ -157,10 +165,8 @@ class Runner:
             reader.freeze(arrived)
         self.time_source.said_us = -1
         try:
-            for port in self._command_ports:
-                port.begin()
-            for aspect in self._provided:
-                aspect.begin()
+            for begin in self._begin:
+                begin()
             self.component.loop()
         except BaseException:
             for writer in self.writers.values():
@@ -190,13 +196,15 @@ class Runner:
         return LEVELS[getattr(self._config, LOG_LEVEL)]
 
     def wishes(self) -> dict[str, Any]:
-        """What the iteration asked of the main loop, by aspect, and which frames it missed."""
-        order, plugins, missed = self.main_loop.take(), self.plugins.take(), self.missed_frames()
-        return (
-            ({} if order is None else {"main_loop": order})
-            | ({"plugins": plugins} if plugins else {})
-            | ({MISSED_FRAMES: missed} if missed else {})
-        )
+        """What the iteration asked of the main loop and the blackboard, by aspect, and which frames it missed."""
+        order = self.main_loop.take()
+        asked = {
+            "plugins": self.plugins.take(),
+            "blackboard": self.blackboard.take(),
+            MISSED_FRAMES: self.missed_frames(),
+        }
+        made: dict[str, Any] = {aspect: wishes for aspect, wishes in asked.items() if wishes}
+        return made if order is None else {**made, "main_loop": order}
 
     def missed_frames(self) -> dict[str, list[int]]:
         """Frames that were overwritten before the component read them, by channel; mostly nothing."""
@@ -216,6 +224,7 @@ class Runner:
             "time_source": self.time_source,
             "main_loop": self.main_loop,
             "plugins": self.plugins,
+            "blackboard": self.blackboard,
         }[aspect]
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:

@@ -52,6 +52,11 @@ class Reads(Generic[T]):
             self._header = None
 
     @property
+    def raw(self) -> bytes | None:
+        """For the framework: the newest message as it came."""
+        return self._raw
+
+    @property
     def has_value(self) -> bool:
         """Whether the channel was ever written."""
         return self._raw is not None

@@ -26,7 +26,7 @@ class Ports:
     @classmethod
     def of(cls, plan: Plan) -> "Ports":
         """The ports of a plan."""
-        return cls(plan.bus_port, len(plan.hosts), len(plan.channels))
+        return cls(plan.bus_port, len(plan.hosts), len(plan.channels) + plan.spare_channels)
 
     @property
     def sync(self) -> int:

@@ -12,6 +12,7 @@ from fwk.host.blame import Failure
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
 from fwk.plan.errors import hint
+from fwk.record.difference import Difference
 from fwk.record.types import use_types_of
 from fwk.replay.recording import Recording, RecordingError
 from fwk.replay.replay import Replay
@@ -58,7 +59,7 @@ def replay(
     first = min(found, key=lambda difference: difference.key)
     typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
     named = replace(first, names=("the recording", "the replay"))
-    typer.echo(f"  {_component(done, first.channel)}: {named}")
+    typer.echo(f"  {_component(done, first)}: {named}")
     raise typer.Exit(DIFFERENT)
 
 
@@ -99,6 +100,8 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
         raise typer.Exit(0)
 
 
-def _component(done: Replay, channel: str) -> str:
+def _component(done: Replay, difference: Difference) -> str:
+    """Whose message differs; the header says it of a channel that was opened at run time."""
     plan = done.recording.plan
-    return next(plan.components[item.writer].name for item in plan.channels if item.name == channel)
+    declared = [plan.components[item.writer].name for item in plan.channels if item.name == difference.channel]
+    return declared[0] if declared else difference.writer.partition("#")[0]

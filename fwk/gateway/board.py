@@ -11,6 +11,7 @@ from fwk.control.address import gateway_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.gateway.apart import plain_channels
+from fwk.instances import Instance, Instances
 from fwk.messages import Header, MessageError
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
@@ -21,8 +22,9 @@ _BYTES_SHOWN = 64
 class Board:
     """A sink of the gateway that answers questions."""
 
-    def __init__(self, plan: Plan, call: Callable[[requests.Call, Connection], None]) -> None:
+    def __init__(self, plan: Plan, instances: Instances, call: Callable[[requests.Call, Connection], None]) -> None:
         self._plan = plan
+        self._instances = instances
         self._call = call
         self._channels = {channel.name: channel for channel in plan.channels}
         self._plain = plain_channels(plan)
@@ -42,10 +44,10 @@ class Board:
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Takes a message."""
-        if channel not in self._channels:
+        if channel not in self._channels and not self._instances.find(channel):
             return
         self._newest[channel], self._arrived_us[channel] = data, monotonic_us()
-        self._counts[channel] += 1
+        self._counts[channel] = self._counts.get(channel, 0) + 1
         if channel in self._watching:
             watching = [connection for connection in self._watching[channel] if connection.open]
             self._watching[channel] = watching
@@ -64,7 +66,7 @@ class Board:
         try:
             request = requests.parsed(requests.to_gateway, line)
             if isinstance(request, requests.Channels):
-                connection.reply({"ok": True, "channels": [self._row(each) for each in self._plan.channels]})
+                connection.reply({"ok": True, "channels": [self._row(each) for each in self._all()]})
                 return
             if isinstance(request, requests.Call):
                 self._call(request, connection)
@@ -79,9 +81,19 @@ class Board:
             connection.refuse(f"the gateway cannot answer this: {type(error).__name__}: {error}")
 
     def _known(self, channel: str) -> str:
-        if channel not in self._channels:
-            raise RequestError(f"no channel '{channel}'; {hint(channel, self._channels)}")
+        names = [each.name for each in self._all()]
+        if channel not in names:
+            raise RequestError(f"no channel '{channel}'; {hint(channel, names)}")
         return channel
+
+    def _all(self) -> list[ChannelPlan]:
+        """The plan's channels, and after them those that were opened while the run goes on."""
+        opened = [instance for instance in self._instances.matching("*") if not instance.declared]
+        return [*self._plan.channels, *(self._opened(instance) for instance in opened)]
+
+    def _opened(self, instance: Instance) -> ChannelPlan:
+        writer = instance.writer[0] if instance.writer else NOBODY
+        return ChannelPlan(instance.index, instance.name, instance.type_name, writer, ())
 
     def _row(self, channel: ChannelPlan) -> dict[str, Any]:
         names = [component.name for component in self._plan.components]
@@ -94,8 +106,9 @@ class Board:
             "type": channel.type_name,
             "writer": names[channel.writer] if channel.writer != NOBODY else _stranger(channel, outside),
             "outside": outside,
-            "readers": [names[index] for index in channel.readers],
-            "messages": self._counts[channel.name],
+            "readers": [names[index] for index in self._readers(channel)],
+            "opened": channel.name not in self._channels,
+            "messages": self._counts.get(channel.name, 0),
             "sequence": header.sequence if header else 0,
             "tick": header.tick if header else 0,
             "time_us": header.time_us if header else 0,
@@ -105,8 +118,17 @@ class Board:
             "bytes": 0 if not data or not header else len(data) - header.end * plain_type,
         }
 
+    def _readers(self, channel: ChannelPlan) -> list[int]:
+        """Those of the plan, then those who opened it at run time."""
+        instance = self._instances.find(channel.name)
+        opened = sorted({component for component, _ in instance.readers}) if instance else []
+        return list(dict.fromkeys([*channel.readers, *opened]))
+
     def _shown(self, name: str) -> dict[str, Any]:
-        row, data = self._row(self._channels[name]), self._newest.get(name)
+        channel = next((each for each in self._all() if each.name == name), None)
+        if channel is None:
+            raise RequestError(f"'{name}' is closed meanwhile")
+        row, data = self._row(channel), self._newest.get(name)
         if data is None:
             return {**row, "value": None}
         try:

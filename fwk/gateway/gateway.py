@@ -16,10 +16,11 @@ from fwk.gateway.outside import Outside
 from fwk.gateway.strangers import Strangers
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
+from fwk.instances import Instances, facts_of
 from fwk.messages import Header, MessageError
-from fwk.plan.model import Plan
+from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from fwk.runner import AWAY_TICKS
-from lcmtypes.core import done_t, fetch_t, gone_t, log_t, tick_record_t
+from lcmtypes.core import change_t, done_t, fetch_t, gone_t, log_t, tick_record_t
 
 SUPERVISOR_CHANNEL = -1
 """In a fetch: the tick records themselves, numbered by tick."""
@@ -44,6 +45,8 @@ class Gateway:
 
     def __init__(self, plan: Plan, run: int, control: socket.socket, public: PublicBus | None) -> None:
         self.sinks: list[Sink] = []
+        self.instances = Instances(plan)
+        """Which channels there are, those too that were opened while the run goes on."""
         self._plan = plan
         self._run = run
         self._control = control
@@ -131,6 +134,9 @@ class Gateway:
 
     def _take(self, record: tick_record_t, recorded: bytes) -> bool:
         self.clock.tick, self.clock.now_us = record.tick, record.time_us
+        for change in record.changes:
+            if change.component == NOBODY:
+                self._open_channels(change)
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         if not self._inputs.wait(moved, self._handle_own):
             return False
@@ -153,6 +159,18 @@ class Gateway:
             sink.message("fwk/record", recorded, record.time_us)
             sink.tick()
         return True
+
+    def _open_channels(self, change: change_t) -> None:
+        """What components opened at run time is collected as everything else."""
+        facts = facts_of(change.settings)
+        self.instances.apply(facts)
+        for fact in facts:
+            opening = fact.opening
+            if opening and opening.channel >= len(self._plan.channels):
+                if opening.channel not in self._inputs:
+                    self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
+                if fact.kind == "write":
+                    self._inputs.comes_from(opening.channel, self._plan.components[fact.component].host)
 
     def _acknowledge(self) -> None:
         done = done_t()
@@ -214,7 +232,7 @@ class Gateway:
                     self._see_off(sync.decode_done(data))
                 elif name == b"fwk/fetch":
                     fetch = fetch_t.decode(data)
-                    if fetch.run == self._run and 0 <= fetch.channel < len(self._plan.channels):
+                    if fetch.run == self._run and fetch.channel in self._inputs:
                         self._answer_for(fetch)
                 else:
                     raise MessageError("neither gone, fetch nor done")
@@ -273,7 +291,7 @@ class Gateway:
     def _give_up(self, gone: gone_t) -> None:
         lost = self._inputs.gone(gone)
         if lost:
-            channel = self._plan.channels[gone.channel].name
+            channel = self._inputs.box(gone.channel).plan.name
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
 

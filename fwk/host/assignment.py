@@ -10,18 +10,27 @@ from fwk.plan.model import Plan
 
 
 @dataclass(frozen=True)
+class Start:
+    """What differs from start to start of a host."""
+
+    incarnation: int
+    sequences: Mapping[str, int]
+    """Sequence numbers that its channels have reached, for one that was restarted."""
+    settings: Mapping[str, str]
+    """Settings of its components that were changed since the run began, by name, as JSON."""
+    blackboard: str = "[]"
+    """What was opened at run time, as facts in JSON."""
+
+
+@dataclass(frozen=True)
 class Assignment:
     """What a host process is told when it starts."""
 
     plan: Plan
     host: int
     run: int
-    incarnation: int
-    sequences: Mapping[str, int]
-    """Sequence numbers that its channels have reached, for one that was restarted."""
+    start: Start
     rings: Mapping[str, Ring]
-    settings: Mapping[str, str] = field(default_factory=dict)
-    """Settings of its components that were changed since the run began, by name, as JSON."""
     fresh_code: bool = False
     """Whether it imports the application's modules anew."""
     progress: Progress | None = None

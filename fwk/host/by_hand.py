@@ -10,7 +10,7 @@ from importlib import import_module
 from typing import Any
 
 from fwk.aspects.vision import Ring
-from fwk.host.assignment import Assignment
+from fwk.host.assignment import Assignment, Start
 from fwk.host.blame import Failure
 from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
@@ -83,8 +83,6 @@ class Place:
             self.plan,
             self.component.host,
             told["run"],
-            told["incarnation"],
-            told["sequences"],
+            Start(**told["start"]),
             {channel: Ring(os.open(path, os.O_RDWR)) for channel, path in told["rings"].items()},
-            told["settings"],
         )

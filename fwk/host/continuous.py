@@ -131,7 +131,7 @@ class ContinuousHost(Host):
             ran = self._members.run(self._names, "", tick)
         self._answered, self._taken = (tick.tick, tick.stage), False
         self._sent_us, self._repeat_us = monotonic_us(), REPEAT_US
-        self._finish(tick, *ran)
+        self._finish(tick, self._names, *ran)
 
     def _see_taken(self) -> None:
         """Before the last done: the one before it has to be taken, or its messages would be seen without it."""

@@ -4,7 +4,7 @@ import json
 import select
 import socket
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from fwk.aspects.logging import Logger
 from fwk.bus import sync, wire
@@ -15,9 +15,11 @@ from fwk.host.assignment import Assignment
 from fwk.host.inputs import Inputs
 from fwk.host.leaving import Leaving
 from fwk.host.members import Members
+from fwk.host.opened import Opened
 from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
 from fwk.host.report import Complaints
+from fwk.instances import facts_of
 from fwk.messages import MessageError
 from fwk.runner import AWAY_TICKS, Runner
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
@@ -60,9 +62,13 @@ class Host:
             assignment.run,
             self._sender,
             self._complaints,
-            restarted=assignment.incarnation > 1,
+            restarted=assignment.start.incarnation > 1,
         )
-        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.sequences)
+        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.start.sequences)
+        self._opened: Opened | None = None
+        if any(component.opens for component in self._members.plans):
+            before = facts_of(assignment.start.blackboard)
+            self._opened = Opened(plan, assignment.host, self._members, self.inputs, self._outputs, before)
         stages = sorted({stage for component in self._members.plans for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
         self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
@@ -78,7 +84,7 @@ class Host:
         self._leaving: Leaving | None = None
         self._message = done_t()  # the next done; what stays the same in it is written once
         self._message.run, self._message.host = assignment.run, assignment.host
-        self._message.incarnation = assignment.incarnation
+        self._message.incarnation = assignment.start.incarnation
         self._report_us = 0
 
     def serve(self) -> None:
@@ -147,7 +153,10 @@ class Host:
                 self._sender.publish(sync.DONE, self._done, self._ports.sync)
             return
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
+        new = self._opened.take_over(tick.changes) if self._opened and tick.changes else ()
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
+        for box in new:
+            box.skip_to(box.mark - 1)
         if tick.tick > (self._answered[0] + AWAY_TICKS if self._answered[0] else 1):
             self.inputs.newest_only()
         if not self.inputs.wait(moved, self._handle_own):
@@ -158,12 +167,15 @@ class Host:
         if tick.changes:
             self._members.configure(tick.changes)
         self._members.tell_holder(tick.main_loop)
-        self._finish(tick, *self._members.run(self._takes_part[stage], self._plan.stages[stage], tick))
+        names = self._takes_part[stage]
+        self._finish(tick, names, *self._members.run(names, self._plan.stages[stage], tick))
         self._answered = this
 
-    def _finish(self, tick: tick_t, written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
-        """Sends what was written, and the done."""
-        wishes = self._members.wishes()
+    def _finish(
+        self, tick: tick_t, names: Sequence[str], written: list[tuple[str, bytes]], next_us: int, busy_us: int
+    ) -> None:
+        """Sends what these components wrote, and the done."""
+        wishes = self._members.wishes(names)
         if self.inputs.lost:
             wishes = self._with_missed(wishes)
         self._publish(written, tick.tick, tick.stage, next_us, busy_us, wishes)
@@ -212,7 +224,7 @@ class Host:
     def _give_up(self, gone: gone_t) -> None:
         lost = self.inputs.gone(gone)
         if lost:
-            channel = self._plan.channels[gone.channel].name
+            channel = self.inputs.box(gone.channel).plan.name
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.warning(f"{channel}: {lost} messages of {numbers} lost: their writer no longer has them")
 
@@ -221,7 +233,7 @@ class Host:
         runners, figures = self._members.runners, self._members.figures.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host
-        actual.incarnation = self._assignment.incarnation
+        actual.incarnation = self._assignment.start.incarnation
         actual.components = [each.message() for each in figures]
         actual.times = [each.histogram() for each in figures]
         actual.n = len(actual.components)

@@ -40,10 +40,9 @@ class Inputs:
         self._patience_us = PATIENCE_US if plan.clock == "wall" else 0
         self._host = host
         self._run = run
-        self._writer_host = {
-            channel.index: ports.gateway if channel.writer == NOBODY else plan.components[channel.writer].host
-            for channel in read
-        }
+        self._plan = plan
+        self._complain = complain
+        self._writer_host = {channel.index: self._host_of(channel.writer) for channel in read}
         own = {channel.name for channel in local}
         self._boxes: dict[int, Box] = {}
         for channel in read:
@@ -75,6 +74,36 @@ class Inputs:
                 box.mark = sequence
                 moved.append(box)
         return moved
+
+    def open(self, channel: ChannelPlan, writer_host: int | None = None) -> Box:
+        """From now on a channel is read that was not.
+
+        Its messages come from that host; without one from where the plan says.
+        """
+        if writer_host is None:
+            writer_host = self._host_of(channel.writer)
+        self._writer_host[channel.index] = writer_host
+        # Its writer may change, sooner than this process hears of it: whatever comes from the run is taken.
+        box = Inbox(channel, self._ports.channel(channel.index), self._ports.members, self._complain)
+        self._boxes[channel.index] = box
+        return box
+
+    def comes_from(self, channel: int, writer_host: int) -> None:
+        """Another process writes a channel from now on, and is asked for what is lost of it."""
+        if channel in self._boxes:
+            self._writer_host[channel] = writer_host
+
+    def close_channel(self, channel: int) -> None:
+        """Nobody here reads a channel any more."""
+        box = self._boxes.pop(channel)
+        if isinstance(box, Inbox):
+            box.close()
+
+    def __contains__(self, channel: int) -> bool:
+        return channel in self._boxes
+
+    def _host_of(self, writer: int) -> int:
+        return self._ports.gateway if writer == NOBODY else self._plan.components[writer].host
 
     def box(self, channel: int) -> Box:
         """The channel with that index."""

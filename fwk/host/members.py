@@ -14,6 +14,7 @@ from fwk.host.assignment import Assignment
 from fwk.host.blame import Blame
 from fwk.host.fresh import check_unchanged
 from fwk.host.report import Figures
+from fwk.instances import Fact, Instances, Opening, facts_of
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.plan.starting import start_order
 from fwk.port import DeclarationError
@@ -54,6 +55,9 @@ class Members:
             for channel in plan.channels
             if not own.isdisjoint(channel.readers)
         }
+        self._instances = Instances(plan) if any(each.opens for each in self.plans) else None
+        if self._instances:
+            self._instances.apply(facts_of(assignment.start.blackboard))
         self._configured = 0  # number of the newest change of settings taken over
 
     @property
@@ -73,8 +77,11 @@ class Members:
                 self._waiting[plan.name] = {}
                 if runner.has_main_loop:
                     self._takers.append(runner)
-                if runner.has_main_loop or runner.has_plugins or (runner.images and self._plan.clock == "wall"):
-                    self._wishing.append(runner)  # in lockstep no frame is missed
+                if self._instances:
+                    runner.blackboard.first(self._instances)
+                misses = runner.images and self._plan.clock == "wall"  # in lockstep no frame is missed
+                if runner.has_main_loop or runner.has_plugins or runner.has_blackboard or misses:
+                    self._wishing.append(runner)
                 runner.init()
             self.figures[plan.name].state = "running"
         self._works(NOBODY)
@@ -90,11 +97,42 @@ class Members:
     def configure(self, changes: Sequence[change_t]) -> None:
         """Takes over changes of settings, each once."""
         for change in changes:
+            if change.component == NOBODY:
+                continue
             plan = self._plan.components[change.component]
             if plan.name in self.runners and change.number > self._configured:
                 with self._blame.guard(plan.name, "config_changed"):
                     self.runners[plan.name].configure(json.loads(change.settings))
         self._configured = max(self._configured, *(change.number for change in changes))
+
+    def news(self, changes: Sequence[change_t]) -> list[Fact]:
+        """What changed on the blackboard and was not taken over yet."""
+        new = [change for change in changes if change.component == NOBODY and change.number > self._configured]
+        return [fact for change in new for fact in facts_of(change.settings)]
+
+    def take_over(self, fact: Fact) -> bool:
+        """Takes over what was decided on the blackboard; whether somebody here reads the fact's channel after that."""
+        assert self._instances
+        events = self._instances.apply([fact])
+        for plan in self.plans:
+            if plan.opens:
+                runner = self.runners[plan.name]
+                done = runner.blackboard.take_over(self._instances, plan.index, fact, events)
+                if fact.opening and done == "opened":
+                    self._begin_reading(plan.name, fact.opening)
+                elif fact.opening and done == "closed":
+                    self._readers[fact.opening.channel].remove(plan.name)
+                    self._waiting[plan.name].pop(fact.opening.name, None)
+        return fact.opening is not None and bool(self._readers.get(fact.opening.channel))
+
+    def _begin_reading(self, own: str, opening: Opening) -> None:
+        """If somebody else here reads the channel already, a component begins with what that one has."""
+        readers = self._readers.setdefault(opening.channel, [])
+        if readers:
+            other, name = readers[0], opening.name
+            newest = [*filter(None, [self.runners[other].readers[name].raw]), *self._waiting[other].get(name, [])]
+            self._waiting[own][name] = newest[-1:]
+        readers.append(own)
 
     def tell_holder(self, component: int) -> None:
         """Says to who cares which component has the main loop."""
@@ -126,10 +164,12 @@ class Members:
             self._works(NOBODY)
         return written, next_us, start_us - began_us
 
-    def wishes(self) -> str:
-        """What the iterations asked for, in a done's words; mostly empty."""
+    def wishes(self, names: Sequence[str]) -> str:
+        """What the iterations of these asked for, in a done's words; mostly empty."""
         asked: dict[str, dict[str, object]] = {}
         for runner in self._wishing:
+            if runner.name not in names:  # its stage comes later, as it would alone in its process
+                continue
             for aspect, wish in runner.wishes().items():
                 asked.setdefault(aspect, {})[runner.name] = wish
         return json.dumps(asked) if asked else ""
@@ -180,7 +220,7 @@ class Members:
             check_unchanged(plan, stages, before, declared)
         if {port.attribute for port in declared.ports} != set(plan.channels):
             raise DeclarationError(f"{plan.module}: its ports are no longer those of the plan; start the run again")
-        changed = self._assignment.settings.get(plan.name)
+        changed = self._assignment.start.settings.get(plan.name)
         settings = json.loads(changed) if changed else plan.config
         try:
             config = declared.config.model_validate(settings)
@@ -188,8 +228,8 @@ class Members:
             first = error.errors(include_url=False)[0]
             wrong = f"'{'.'.join(map(str, first['loc']))}': {first['msg']}"
             raise DeclarationError(f"{plan.module}: the run's settings do not fit its class: {wrong}") from error
-        incarnation = self._assignment.incarnation
+        incarnation = self._assignment.start.incarnation
         runner = self._make_runner(declared, plan.name, config, plan.channels, surroundings, incarnation)
         for channel, writer in runner.writers.items():
-            writer.sequence = self._assignment.sequences.get(channel, 0)
+            writer.sequence = self._assignment.start.sequences.get(channel, 0)
         return runner

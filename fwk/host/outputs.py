@@ -31,6 +31,7 @@ class Outputs:
         }
         self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
+        self._opened: set[int] = set()  # at run time
         self._repeated: dict[int, tuple[int, int]] = {}  # by channel: a large message, until when it is not sent again
         self._sender = sender
         self._ports = ports
@@ -55,12 +56,21 @@ class Outputs:
             marks[index] = sequence
         return marks
 
+    def open(self, index: int, channel: str, sequence: int) -> None:
+        """From now on this process writes a channel, beginning after that number."""
+        if index not in self._by_index:
+            self._by_index[index] = (channel.encode(), self._ports.channel(index), History())
+            self._opened.add(index)
+        self._written[channel] = (index, *self._by_index[index])
+        self._before[index] = sequence
+
     def answer(self, fetch: fetch_t) -> None:
         """Sends again what a reader lacks, or tells it that this is no longer to be had.
 
         What a predecessor had sent, before this process was started in its place, the gateway may still have.
         """
-        if fetch.channel not in self._by_index:
+        if fetch.channel not in self._by_index:  # written by a predecessor, and not opened again
+            self._pass_on(fetch, fetch.last_sequence)
             return
         before = self._before[fetch.channel]
         if fetch.first_sequence <= before:
@@ -71,7 +81,9 @@ class Outputs:
         for sequence, data in kept:
             self._repeat(fetch.channel, sequence, data)
         oldest = kept[0][0] if kept else fetch.last_sequence + 1
-        if oldest > fetch.first_sequence:
+        if oldest > fetch.first_sequence and fetch.channel in self._opened:
+            self._pass_on(fetch, oldest - 1)  # others wrote it, too
+        elif oldest > fetch.first_sequence:
             gone = gone_t()
             gone.run, gone.channel = fetch.run, fetch.channel
             gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1

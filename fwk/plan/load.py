@@ -22,6 +22,7 @@ from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of,
 from fwk.plan.wiring import Wiring, wire
 
 _PORTS_END = 65536
+SPARE_CHANNELS = 64
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,7 @@ class _Loading:
             stages=stages,
             components=_component_plans(components, whole, host_of, needs),
             channels=whole.channels,
+            spare_channels=last(files, "spare_channels", SPARE_CHANNELS) if any(map(_opens, components)) else 0,
             hosts=hosts,
             outside={channel.name: channel.type_name for channel in whole.channels if channel.name in outside},
             **shared,
@@ -151,6 +153,10 @@ class _Loading:
             self.problems.add("--bus-port", "", text)
 
 
+def _opens(component: Resolved) -> bool:
+    return "blackboard" in component.declaration.aspects.values()
+
+
 def _component_plans(
     components: Sequence[Resolved], wiring: Wiring, host_of: Mapping[int, int], needs: Mapping[str, Sequence[str]]
 ) -> tuple[ComponentPlan, ...]:
@@ -172,6 +178,7 @@ def _component_plans(
             memory_limit_mb=each.asked.entry.memory_limit_mb,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
             start=each.asked.entry.start,
+            opens=_opens(each),
         )
         for index, each in enumerate(components)
     )

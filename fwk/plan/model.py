@@ -47,6 +47,9 @@ class ComponentPlan:
     memory_limit_mb: float | None = None
     """Memory that it may take beyond what its process begins with; None: as much as there is."""
 
+    opens: bool = False
+    """Whether it may open channels while it runs."""
+
     @property
     def namespace(self) -> str:
         """Everything before the last slash of the name."""
@@ -131,6 +134,8 @@ class Plan:
     loop_time_warnings: bool = True
     """Whether a tick that takes longer is said, and a component that takes longer than a stage may."""
     bus_port: int = 17700
+    spare_channels: int = 0
+    """How many channels can be opened while the run goes on, besides those of the plan."""
     public_url: str = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304"
     outside: dict[str, str] = field(default_factory=dict)
     """Channels that may be written on the public bus: name to type."""

@@ -151,6 +151,8 @@ class HostFile(_Entry):
     """How long a tick should take; 0: the period."""
     loop_time_warnings: bool | None = None
     """Whether it is said when ticks take longer."""
+    spare_channels: int | None = Field(None, ge=0, le=1000)
+    """How many channels components can open while the run goes on."""
     public_url: str | None = None
     """Where ordinary LCM programs listen and write."""
     log: LogEntry = LogEntry()

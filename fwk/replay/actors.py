@@ -8,6 +8,7 @@ from typing import Any
 
 from fwk.aspects.vision import Frames, Ring
 from fwk.declaration import declaration
+from fwk.instances import Fact, Instances
 from fwk.messages import sequence_of
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.runner import Runner, Surroundings
@@ -41,6 +42,8 @@ class Actor:
         )
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {}
+        self._instances = Instances(plan)
+        self._facts: list[Fact] = []  # of the blackboard, which it is told with its next iteration
         self._missed: set[tuple[str, int]] = set()  # channel and number of messages that it never saw
         self._changes: list[Mapping[str, Any]] = []  # of settings, which it is told with its next iteration
         self.runner.init()
@@ -62,6 +65,27 @@ class Actor:
     def miss(self, channel: str, sequence: int) -> None:
         """A message that is there in the recording never came to its process."""
         self._missed.add((channel, sequence))
+
+    def begin(self, instances: Instances) -> None:
+        """What is open when it is started."""
+        self._instances.apply(instances.snapshot())
+        self.runner.blackboard.first(self._instances)
+
+    def open(self, fact: Fact) -> None:
+        """Something was decided on the blackboard, which it hears of with the next tick that it is told."""
+        self._facts.append(fact)
+
+    def take_over(self, newest: Mapping[str, bytes]) -> None:
+        """A tick tells it what was decided; a channel that is new to it begins with its newest message."""
+        facts, self._facts = self._facts, []
+        for fact in facts:
+            events = self._instances.apply([fact])
+            done = self.runner.blackboard.take_over(self._instances, self.plan.index, fact, events)
+            name = fact.opening.name if fact.opening else ""
+            if done == "opened" and name in newest:
+                self._waiting[name] = [newest[name]]
+            elif done == "closed":
+                self._waiting.pop(name, None)
 
     def iteration(self, tick: int, place: int, stage: int, time_us: int, holder: str) -> Callable[[], Written | None]:
         """What its host does in a stage, when the result is called: takes over settings, iterates if it takes part.

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fwk.envelope import marked
+from fwk.instances import facts_of
 from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event
 from fwk.record.stamped import StampedLog
 from fwk.record.types import header_of
-from lcmtypes.core import plan_t, tick_event_t, tick_record_t
+from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t
 
 PLAN = "fwk/plan"
 RECORD = "fwk/record"
@@ -118,9 +119,8 @@ class Recording:
     def _record(self, event: Event) -> tick_record_t:
         try:
             record = tick_record_t.decode(event.data)
-            for change in record.changes:
-                json.loads(change.settings)
-            sound = all(map(self._possible, record.events))
+            told = {change.number for change in record.changes if self._readable(change)}
+            sound = all(self._possible(event, told) for event in record.events)
         except _BROKEN:
             sound = False
         if not sound:
@@ -130,15 +130,26 @@ class Recording:
             )
         return record
 
-    def _possible(self, event: tick_event_t) -> bool:
+    def _readable(self, change: change_t) -> bool:
+        """Whether it is a change of the blackboard; what cannot be read raises."""
+        if change.component != NOBODY:
+            json.loads(change.settings)
+            return False
+        for fact in facts_of(change.settings):
+            self.plan.components[fact.component].name  # noqa: B018 - it raises if there is none
+        return True
+
+    def _possible(self, event: tick_event_t, told: set[int]) -> bool:
         plan = self.plan
+        if event.kind == tick_event_t.OPENED:
+            return event.tick in told
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
         if event.kind == tick_event_t.FRAME_MISSED:
             return 0 <= event.index < len(plan.components) and 0 <= event.stage < len(plan.channels)
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
-        if event.kind == tick_event_t.MISSED and not 0 <= event.stage < len(plan.channels):
+        if event.kind == tick_event_t.MISSED and not 0 <= event.stage < len(plan.channels) + plan.spare_channels:
             return False
         return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 

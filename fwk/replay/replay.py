@@ -14,6 +14,7 @@ from typing import Any
 from fwk.aspects.vision import Frames, Ring
 from fwk.declaration import declaration
 from fwk.envelope import fingerprint
+from fwk.instances import Fact, Instances, facts_of
 from fwk.messages import MessageError, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
@@ -51,6 +52,8 @@ class Replay:
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
+        self._instances = Instances(plan)
+        self._names = {channel.index: channel.name for channel in plan.channels}  # and of channels opened at run time
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
         self._actors: dict[int, list[Actor]] = {}
         self._holder = ""  # component that has the main loop
@@ -58,7 +61,7 @@ class Replay:
         self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
         self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
         self._newest: dict[str, bytes] = {}
-        self._marks: dict[str, int] = {}
+        self._marks: dict[int, int] = {}
         self._sequences: dict[str, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
         self._revealed: list[tuple[str, list[bytes]]] = []  # visible from the next stage on
@@ -87,10 +90,14 @@ class Replay:
 
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
-        self._lose(tick)
         record, stage, place = tick.record, -1, -1
+        decided = {each.number: facts_of(each.settings) for each in record.changes if each.component == NOBODY}
+        for facts in decided.values():
+            self._names |= {fact.opening.channel: fact.opening.name for fact in facts if fact.opening}
+        self._lose(tick)
         for change in record.changes:
-            self._change(change)
+            if change.component != NOBODY:
+                self._change(change)
         events = deque(record.events)
         while events:
             event = events.popleft()
@@ -99,6 +106,8 @@ class Replay:
                 self._show()
             elif event.kind == tick_event_t.MAIN_LOOP:
                 self._holder = self._plan.components[event.tick].name if event.tick != NOBODY else ""
+            elif event.kind == tick_event_t.OPENED:
+                self._open(decided[event.tick])
             elif event.kind == tick_event_t.STARTED:
                 self._start(event.index, event.stage, event.tick)
             elif event.kind == tick_event_t.STOPPED:
@@ -109,7 +118,7 @@ class Replay:
                 self._begin(event.index, record.tick, place, stage, record.time_us, late=True)
             elif event.kind == tick_event_t.MISSED:
                 for actor in [*self._actors.get(event.index, []), *self._leaving.get(event.index, [])]:
-                    actor.miss(self._plan.channels[event.stage].name, event.tick)
+                    actor.miss(self._names[event.stage], event.tick)
             elif event.kind == tick_event_t.TOLD:
                 self._show()
                 for actor in self._continuous():
@@ -133,8 +142,8 @@ class Replay:
         for (channel, _, _), data in tick.messages.items():
             here.setdefault(channel, []).extend(map(sequence_of, data))
         for index, mark in zip(tick.record.channel, tick.record.sequence, strict=True):
-            channel = self._plan.channels[index].name
-            before, self._marks[channel] = self._marks.get(channel, 0), mark
+            channel = self._names[index]
+            before, self._marks[index] = self._marks.get(index, 0), mark
             if len(here.get(channel, ())) < mark - before:
                 self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
 
@@ -144,6 +153,20 @@ class Replay:
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
                 actor.configure(settings)
+
+    def _open(self, facts: Sequence[Fact]) -> None:
+        """What components asked of the blackboard was decided."""
+        for fact in facts:
+            self._instances.apply([fact])
+            if fact.kind == "write" and fact.opening:
+                for channels in self._host_channels:
+                    if fact.opening.name in channels:
+                        channels.remove(fact.opening.name)
+                self._host_channels[self._plan.components[fact.component].host].append(fact.opening.name)
+            for actors in self._actors.values():
+                for actor in actors:
+                    if actor.plan.opens:
+                        actor.open(fact)
 
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings after that change, then takes over what was changed since."""
@@ -160,6 +183,8 @@ class Replay:
                 actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1], frames)
             for _, settings in changes[len(before) :]:
                 actor.configure(settings)
+            if component.opens:
+                actor.begin(self._instances)
             for channel, data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():
@@ -183,6 +208,7 @@ class Replay:
         """
         owed: list[tuple[Actor, Iteration]] = []
         for actor in self._actors.get(host, []):
+            actor.take_over(self._newest)
             iteration = actor.iteration(tick, place, stage, time_us, self._holder)
             if late and actor.runner.images:
                 with self._failing(actor.plan, f"tick {tick}"):

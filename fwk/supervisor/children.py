@@ -112,7 +112,7 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     public = PublicBus(plan.public_url) if plan.public_url else None
     gateway = Gateway(plan, run, control, public)
     calls = Calls(plan, gateway.take_in, gateway.clock)
-    board = Board(plan, calls.call)
+    board = Board(plan, gateway.instances, calls.call)
     gateway.watch(board.fileno(), board.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already

@@ -63,7 +63,6 @@ class Control:
         self._clock = ClockControl(loop, log)
         self._status = status_t()
         self._status_us = 0
-        self._number = 0  # of the newest change of settings
         self._new: list[tuple[NewSettings, str]] = []
         self._waiting: list[_Waiting] = []
         self._watching: list[tuple[Connection, list[str]]] = []
@@ -206,7 +205,7 @@ class Control:
         for new in found:
             self.settings.ask(new)
             self._new.append((new, request.origin))
-        newest = self._number + len(self._new)
+        newest = self._loop.newest_change + len(self._new)
         self._wait(connection, lambda: self._taken_over(found, newest))
         return None
 
@@ -215,7 +214,7 @@ class Control:
 
     def _taken_over(self, found: list[NewSettings], number: int) -> dict[str, Any] | None:
         entries = [self._hosts.table[self._plan.components[new.component].host] for new in found]
-        if self._number < number:
+        if self._loop.newest_change < number:
             return None
         stands = self._loop.stands  # then they have them before they do anything else
         if not stands and any(change.number <= number for entry in entries for change in entry.changes):
@@ -251,9 +250,8 @@ class Control:
         self._directing.decide()
         new, self._new = self._new, []
         for each, origin in new:
-            self._number += 1
             self.settings.take(each, f"{origin}, tick {tick}")
-            self._loop.change(each.component, self._number, each.text)
+            self._loop.change(each.component, each.text)
             name = self._plan.components[each.component].name
             self._log.info(f"{name}: {', '.join(f'{key} = {value}' for key, value in each.said.items())} ({origin})")
         if new:
@@ -267,5 +265,5 @@ class Control:
                 connection.stream({"ok": True, "tick": self._loop.tick + 1, "settings": rows})
 
     def _settings_of(self, entry: HostEntry) -> dict[str, str]:
-        entry.started_with = self._number
+        entry.started_with = self._loop.newest_change
         return self.settings.changed(self._plan.hosts[entry.index].components)

@@ -3,21 +3,10 @@
 import contextlib
 import os
 import signal
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 
+from fwk.host.assignment import Start
 from fwk.supervisor.mailbox import Mailbox
-
-
-@dataclass(frozen=True)
-class Start:
-    """What differs from start to start of a host."""
-
-    incarnation: int
-    sequences: Mapping[str, int]
-    """Where its channels go on."""
-    settings: Mapping[str, str]
-    """Settings of its components that differ from the plan's, by name, as JSON."""
 
 
 class Hand:

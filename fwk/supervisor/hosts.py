@@ -6,9 +6,10 @@ from functools import partial
 
 from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S, monotonic_us
+from fwk.host.assignment import Start
 from fwk.host.debugger import LEFT
 from fwk.plan.model import NOBODY, Plan
-from fwk.supervisor.hand import Hand, Start
+from fwk.supervisor.hand import Hand
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import RunBroken
@@ -42,6 +43,8 @@ class Hosts:
         self.leaving: set[int] = set()
         """Hosts that were asked to stop and have not finalized yet."""
         self.settings_of: Callable[[HostEntry], dict[str, str]] = lambda _: {}
+        self.blackboard: Callable[[], str] = lambda: "[]"
+        """What is open that was opened at run time."""
         self._plan = plan
         self._zygote = zygote
         self._ledger = ledger
@@ -190,13 +193,14 @@ class Hosts:
         self._told.discard(entry.index)
         incarnation = entry.starting(monotonic_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
+        start = Start(incarnation, sequences, settings, self.blackboard())
         hand = self._hands.get(entry.index)
         if hand:
             entry.pid, entry.held = hand.pid, hand.held
-            hand.begin(Start(incarnation, sequences, settings))
+            hand.begin(start)
         else:
             entry.held = incarnation == 1 and self._zygote.debugs(entry.index)
-            self._zygote.start(entry.index, incarnation, sequences, settings, entry.fresh_code)
+            self._zygote.start(entry.index, start, entry.fresh_code)
 
     def _signal(self, entry: HostEntry, number: int) -> None:
         hand = self._hands.get(entry.index)

@@ -1,7 +1,9 @@
 """The ledger of marks: which sequence number of each channel is visible, and what a stage has to be told of it."""
 
+from bisect import insort
 from dataclasses import dataclass
 
+from fwk.instances import Instances
 from fwk.plan.model import Plan
 
 
@@ -26,15 +28,18 @@ class Ledger:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.step = 0
-        self.marks = [0] * len(plan.channels)
+        channels = len(plan.channels) + plan.spare_channels
+        self.marks = [0] * channels
         """Highest visible sequence number of each channel."""
         self.voids: list[Void] = []
-        self._latest = [0] * len(plan.channels)  # published, visible from the next step on
+        self._latest = [0] * channels  # published, visible from the next step on
         self._dirty: list[int] = []
-        self._changed = [-1] * len(plan.channels)  # step at which the mark moved last; -1: never
+        self._changed = [-1] * channels  # step at which the mark moved last; -1: never
         self._interest: list[list[int]] = []
+        self._hosts: list[set[int]] = []  # that take part in each stage
         for stage in range(len(plan.stages)):
             hosts = {component.host for component in plan.components if stage in component.stages}
+            self._hosts.append(hosts)
             # All components of these hosts, not only those of the stage: what a host was told last is one step for all.
             members = {component.index for component in plan.components if component.host in hosts}
             self._interest.append([channel.index for channel in plan.channels if members & set(channel.readers)])
@@ -45,6 +50,8 @@ class Ledger:
         self._written: list[list[int]] = [
             [channel.index for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
+        self._declared_interest = [list(channels) for channels in self._interest]
+        self._declared_read = [list(channels) for channels in self._read]
 
     def begin(self) -> int:
         """Begins a stage; everything published so far is visible to it. Returns its step."""
@@ -63,6 +70,10 @@ class Ledger:
         self._dirty.append(channel)
         return True
 
+    def latest(self, channel: int) -> int:
+        """Number of the newest message of a channel that a done has told."""
+        return self._latest[channel]
+
     def news(self, stage: int, since: int) -> tuple[list[int], list[int]]:
         """Channels read in a stage whose marks moved after step `since`, and the marks."""
         changed, marks = self._changed, self.marks
@@ -74,6 +85,31 @@ class Ledger:
         channels = [channel for channel in self._read[host] if self._changed[channel] > since]
         return channels, [self.marks[channel] for channel in channels]
 
+    def opened(self, instances: Instances) -> None:
+        """Who reads and writes what was opened at run time; each stage is told of it from the next step on."""
+        for lists, before in ((self._interest, self._declared_interest), (self._read, self._declared_read)):
+            for place, channels in enumerate(before):
+                lists[place] = list(channels)
+        for instance in instances.matching("*"):
+            for component in dict.fromkeys(component for component, _ in instance.readers):
+                self._opened_by(instance.index, component)
+            if instance.writer:
+                host = self.plan.components[instance.writer[0]].host
+                for channels in self._written:
+                    if instance.index in channels:
+                        channels.remove(instance.index)
+                self._written[host].append(instance.index)
+
+    def _opened_by(self, channel: int, component: int) -> None:
+        host = self.plan.components[component].host
+        concerned = [self._read[host]]
+        concerned += [self._interest[stage] for stage, hosts in enumerate(self._hosts) if host in hosts]
+        for channels in concerned:
+            if channel not in channels:
+                insort(channels, channel)
+        if self.marks[channel]:
+            self._changed[channel] = self.step + 1  # whoever reads it already has it; who is new has not
+
     def void(self, host: int, incarnation: int) -> None:
         """A host died; its next start is `incarnation`."""
         self.voids += [Void(channel, self._latest[channel], incarnation, self.step) for channel in self._written[host]]
@@ -84,4 +120,5 @@ class Ledger:
 
     def sequences(self, host: int) -> dict[str, int]:
         """Where a restarted host's channels go on."""
-        return {self.plan.channels[channel].name: self._latest[channel] for channel in self._written[host]}
+        declared = [channel for channel in self._written[host] if channel < len(self.plan.channels)]
+        return {self.plan.channels[channel].name: self._latest[channel] for channel in declared}

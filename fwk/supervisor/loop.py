@@ -14,6 +14,7 @@ from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.missed import Missed
+from fwk.supervisor.opening import Opening
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.patience import Patience
 from fwk.supervisor.records import Records, change_message, void_messages
@@ -89,6 +90,12 @@ class MainLoop:
         self._missed = Missed(plan, self.records)
         continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
         self._continuous = continuous if continuous.entries else None
+        opens = any(component.opens for component in plan.components)
+        self.opening = Opening(plan, hosts, ledger, self._change_blackboard, log) if opens else None
+        if self.opening:
+            hosts.blackboard = self.opening.snapshot
+        self.newest_change = 0
+        """Number of the newest change of settings, or of the blackboard."""
         self._told = b""  # the newest tick as it was sent
         self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
         mailbox.on_done = self._on_done
@@ -108,13 +115,23 @@ class MainLoop:
             return []
         return [self._hosts.table[index].name for index in sorted(self._outstanding)]
 
-    def change(self, component: int, number: int, settings: str) -> None:
+    def change(self, component: int, settings: str) -> None:
         """At a tick boundary: new settings of a component, which its next iteration has."""
-        entry = self._hosts.table[self._plan.components[component].host]
-        change = Change(component, number, settings, self._step + 1)
+        self._tell(component, settings, [self._hosts.table[self._plan.components[component].host]])
+
+    def _change_blackboard(self, facts: str) -> None:
+        """At a tick boundary: what is open from the next tick on."""
+        concerned = [self._hosts.table[host] for host in {each.host for each in self._plan.components if each.opens}]
+        self._tell(NOBODY, facts, concerned)
+        self.records.event(tick_event_t.OPENED, 0, self.newest_change)
+
+    def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> None:
+        self.newest_change += 1
+        change = Change(component, self.newest_change, text, self._step + 1)
         self.records.change(change)
-        if entry.alive:
-            entry.changes.append(change)
+        for entry in concerned:
+            if entry.alive:
+                entry.changes.append(change)
 
     def run_tick(self) -> None:
         """Waits until the next tick may begin, then runs all its stages; while paused, does what is asked meanwhile."""
@@ -136,6 +153,8 @@ class MainLoop:
         self._remind()
         if self.turns.asked:
             self._decide()
+        if self.opening and self.opening.asked:
+            self.opening.decide()
         self.tick += 1
         if self._came_in:
             self._take_in()
@@ -235,7 +254,8 @@ class MainLoop:
         tick.n_voids = len(tick.voids)
         tick.absent = [entry.index for entry in members if entry not in told]
         tick.n_absent = len(tick.absent)
-        tick.changes = [change_message(change) for entry in told for change in entry.changes]
+        changes = {change.number: change for entry in told for change in entry.changes}
+        tick.changes = [change_message(changes[number]) for number in sorted(changes)]
         tick.n_changes = len(tick.changes)
         self._told = sync.encode_tick(tick)
         self._sender.publish(sync.TICK, self._told, self._ports.stage(self._stage))
@@ -323,6 +343,8 @@ class MainLoop:
         if done.wishes:
             self.records.missed(done)
             self.turns.ask(done)
+            if self.opening:
+                self.opening.ask(done)
             self.on_wishes(done)
             self._missed.take(done)
         self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
@@ -349,16 +371,23 @@ class MainLoop:
         if entry.incarnation > 1:
             self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
         self._again = True
+        if self.opening:
+            self.opening.came(entry)
 
     def _on_lost(self, entry: HostEntry) -> None:
         self.records.event(tick_event_t.LOST, entry.index)
-        self.turns.left(entry.index)
+        self._left(entry)
         if not self._lockstep or not entry.expected:
             self._outstanding.discard(entry.index)
 
     def _on_stopped(self, entry: HostEntry) -> None:
         self.records.event(tick_event_t.STOPPED, entry.index)
+        self._left(entry)
+
+    def _left(self, entry: HostEntry) -> None:
         self.turns.left(entry.index)
+        if self.opening:
+            self.opening.left(entry)
 
     def _wait(self) -> None:
         """Waits until it is time for the next tick, or none may begin."""

@@ -1,13 +1,15 @@
 """Gives the places of hosts to processes that somebody started by hand."""
 
+import dataclasses
 import os
 from collections.abc import Mapping
 
 from fwk.aspects.vision import Ring
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection
+from fwk.host.assignment import Start
 from fwk.plan.model import Plan
-from fwk.supervisor.hand import Hand, Start
+from fwk.supervisor.hand import Hand
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.mailbox import Mailbox
 
@@ -41,9 +43,7 @@ class Places:
     def _begin(self, host: int, connection: Connection, start: Start) -> None:
         told = {
             "run": self._run,
-            "incarnation": start.incarnation,
-            "sequences": dict(start.sequences),
-            "settings": dict(start.settings),
+            "start": dataclasses.asdict(start),
             "rings": self._rings_of(host),
         }
         connection.reply({"ok": True, **told})

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.aspects.vision import Ring
-from fwk.host.assignment import Assignment
+from fwk.host.assignment import Assignment, Start
 from fwk.host.blame import Failure
 from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
@@ -86,16 +86,12 @@ class Zygote:
         """Whether the first process of a host runs under a debugger."""
         return host == self._debugged
 
-    def start(
-        self, host: int, incarnation: int, sequences: Mapping[str, int], settings: Mapping[str, str], fresh_code: bool
-    ) -> None:
+    def start(self, host: int, start: Start, fresh_code: bool) -> None:
         """Asks for a host process; `Started` comes with the events.
 
-        `settings` are those of its components that differ from the plan's, by name, as JSON; with `fresh_code` the
-        application's modules are imported anew.
+        With `fresh_code` the application's modules are imported anew.
         """
-        assignment = {"host": host, "incarnation": incarnation, "sequences": dict(sequences)}
-        self._send({"start": {**assignment, "settings": dict(settings), "fresh_code": fresh_code}})
+        self._send({"start": dataclasses.asdict(start), "host": host, "fresh_code": fresh_code})
 
     def signal(self, pid: int, number: int) -> None:
         """Signals a host process; one that has ended meanwhile is left alone."""
@@ -190,14 +186,13 @@ class _Forker:
             return False
         request = json.loads(packet)
         if "start" in request:
-            self._fork(**request["start"])
+            self._fork(request["host"], Start(**request["start"]), request["fresh_code"])
         elif request["pid"] in self._children:
             os.kill(request["pid"], request["signal"])
         return True
 
-    def _fork(
-        self, host: int, incarnation: int, sequences: dict[str, int], settings: dict[str, str], fresh_code: bool
-    ) -> None:
+    def _fork(self, host: int, start: Start, fresh_code: bool) -> None:
+        incarnation = start.incarnation
         debugged = self._debug if self._debug and self._debug.host == host and incarnation == 1 else None
         profiled = self._profile if self._profile and self._profile.component.host == host else None
         output, output_write = os.pipe()
@@ -216,9 +211,7 @@ class _Forker:
                 os.dup2(errors_write, 2)
             for descriptor in (output, output_write, errors, errors_write):
                 os.close(descriptor)
-            assignment = Assignment(
-                self._plan, host, self._run, incarnation, sequences, self._rings, settings, fresh_code, self._progress
-            )
+            assignment = Assignment(self._plan, host, self._run, start, self._rings, fresh_code, self._progress)
             run_forked(lambda stop: _serve_host(assignment, stop, debugged, profiled))
         os.close(output_write)
         os.close(errors_write)
@@ -252,7 +245,7 @@ def _serve_host(
     limit = assignment.plan.memory_limit_mb(assignment.host)
     if limit:
         limit_memory(limit)
-    profile = Profile(profiled, assignment.incarnation) if profiled else None
+    profile = Profile(profiled, assignment.start.incarnation) if profiled else None
     host = host_of(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
     log_uncaught(host.log)
     try:

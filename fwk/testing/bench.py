@@ -10,6 +10,8 @@ from fwk.component import Component
 from fwk.declaration import Declaration, declaration
 from fwk.port import Port
 from fwk.runner import Runner, Surroundings
+from fwk.testing.opening import Opening
+from fwk.testing.plans import alone
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench
 from lcmtypes.core import log_t
 
@@ -66,6 +68,10 @@ class Bench:
         surroundings = Surroundings(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
         self.runner = Runner(self.declaration, name, config, channels, surroundings)
         self.component: Any = self.runner.component
+        self._sent: dict[str, list[bytes]] = {}
+        self._opening: Opening | None = None
+        if self.runner.has_blackboard:
+            self._opening = Opening(alone(component, name), {name: self.runner}, self._sent)
         self.runner.init()
 
     def _command_ports(self, port: Port, target: str, name: str) -> tuple[str, str]:
@@ -111,15 +117,32 @@ class Bench:
         for _ in range(times):
             self.tick += 1
             self.time_us += self.runner.clock.period_us
-            fresh = {name: port.waiting for name, port in self._ports.items() if port.waiting}
+            closed = self._open() if self._opening else set()
+            fresh = {name: port.waiting for name, port in self._ports.items() if port.waiting and name not in closed}
             for name in fresh:
                 self._ports[name].waiting = []
             stages = [stage] if stage else self.declaration.stages or ("",)
             for step in stages:
                 for channel, data in self.runner.iterate(self.tick, 0, step, self.time_us, fresh):
                     port = self._ports[channel]
+                    self._sent.setdefault(channel, []).append(data)
                     port.sent.append(envelope.decode(port.message_type, data, channel))
                 fresh = {}
+            if self._opening:
+                self._opening.ask(self.tick, 0, self.runner)
+
+    def opened(self, channel: str) -> PortBench:
+        """The outside of a channel that the component opened, or wants to open, at run time."""
+        full = channel if "/" in channel else f"{self.runner.name.rpartition('/')[0]}/{channel}"
+        return self._ports[full]
+
+    def _open(self) -> set[str]:
+        """Grants what was asked in the last iteration; returns opened channels that the component does not read now."""
+        assert self._opening
+        list(self._opening.decide())
+        for channel, kind in self._opening.types.items():
+            self._ports.setdefault(channel, PortBench(channel, kind))
+        return set(self._opening.types) - set(self.runner.readers)
 
     def finalize(self) -> None:
         """Ends the component; what it writes is found as sent."""

@@ -1,6 +1,7 @@
 """A whole system in one process and one thread: the iteration contract without buses, for tests of many components."""
 
-from collections.abc import Mapping, Sequence
+from collections import ChainMap
+from collections.abc import Mapping, MutableMapping, Sequence
 from typing import Any
 
 from fwk import envelope, messages
@@ -13,6 +14,8 @@ from fwk.gateway.outside import STAGE, WRITER
 from fwk.plan.wiring import wire
 from fwk.plan.wish import Wish
 from fwk.runner import Runner, Surroundings
+from fwk.testing.opening import Opening
+from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t
 
 
@@ -45,7 +48,9 @@ class MemorySystem:
         self.logged: list[log_t] = []
         self.sent: dict[str, list[bytes]] = {channel.name: [] for channel in wiring.channels}
         """Every message so far, by channel."""
-        self._types = {channel.name: messages.type_named(channel.type_name) for channel in wiring.channels}
+        self._types: MutableMapping[str, type[messages.Message]] = {
+            channel.name: messages.type_named(channel.type_name) for channel in wiring.channels
+        }
         self._period_us = round(period_s * US_PER_S)
         self._stages = stages
         self._time_source: Runner | None = None
@@ -73,6 +78,17 @@ class MemorySystem:
                 self._due_us[wish.name] = 0
             if "time_source" in wish.declaration.aspects.values():
                 self._time_source = runner
+        self._opening: Opening | None = None
+        if any(runner.has_blackboard for runner in self.runners.values()):
+            plan = plan_of(
+                components,
+                settings,
+                channels,
+                stages=stages,
+                outside={name: messages.type_name(kind) for name, kind in (outside or {}).items()},
+            )
+            self._opening = Opening(plan, self.runners, self.sent)
+            self._types = ChainMap(self._types, self._opening.types)
         for runner in self.runners.values():
             runner.init()
 
@@ -85,6 +101,8 @@ class MemorySystem:
             else:
                 self.now_us += self._period_us
             self._holding.decide()
+            if self._opening:
+                self._open(self._opening)
             visible = {channel: len(sent) for channel, sent in self.sent.items()}
             done = [made for runner in self._due() for made in self._run(runner, 1, "", visible)]
             for number, stage in enumerate(self._holding.order or self._stages):
@@ -92,6 +110,13 @@ class MemorySystem:
                 for runner in self._by_stage[stage]:
                     self._publish(self._run(runner, number, stage, visible))
             self._publish(done)
+
+    def _open(self, opening: Opening) -> None:
+        for name, channel, done in opening.decide():
+            if done == "closed":
+                del self._seen[name][channel]
+            else:
+                self._seen[name][channel] = max(0, len(self.sent[channel]) - 1)
 
     def come_in(self, channel: str, message: Any) -> None:
         """Between two ticks: a program outside writes a message, visible from the next tick on."""
@@ -124,6 +149,8 @@ class MemorySystem:
             seen[channel] = visible[channel]
         runner.main_loop.holder = self._holding.holder
         written = runner.iterate(self.ticks, number, stage, self.now_us, fresh)
+        if self._opening:
+            self._opening.ask(self.ticks, number, runner)
         wish = runner.main_loop.take()
         if wish is not None:
             self._holding.ask(self.ticks, number, runner.name, wish)

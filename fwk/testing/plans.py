@@ -7,6 +7,7 @@ from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component
 from fwk.declaration import declaration
 from fwk.messages import type_named
+from fwk.plan.load import SPARE_CHANNELS
 from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
 from fwk.plan.needs import granted_by
 from fwk.plan.wiring import wire
@@ -56,6 +57,7 @@ def plan_of(
                 host=host_of[wish.name],
                 restart=restart or RestartPolicy(),
                 rate_hz=wish.declaration.rate_hz,
+                opens="blackboard" in wish.declaration.aspects.values(),
                 needs=tuple(sorted(map(names.index, granted.get(wish.name, ())))),
             )
         )
@@ -77,6 +79,37 @@ def plan_of(
             "hosts": tuple(hosts),
             "speed": 0.0,
             "public_url": "",
+            "spare_channels": SPARE_CHANNELS if any(each.opens for each in planned) else 0,
             **fields,
         }
+    )
+
+
+def alone(component: type[Component], name: str) -> Plan:
+    """The plan of one component without its channels: whatever it opens at run time is its own."""
+    declared = declaration(component)
+    only = ComponentPlan(
+        index=0,
+        name=name,
+        module=component.__module__,
+        class_name=component.__qualname__,
+        stages=(0,),
+        config={},
+        origins={},
+        channels={},
+        host=0,
+        opens="blackboard" in declared.aspects.values(),
+    )
+    return Plan(
+        "bench",
+        "",
+        (),
+        ("loop",),
+        US_PER_S,
+        "simulated",
+        1,
+        (only,),
+        (),
+        (HostPlan(0, name, (0,)),),
+        spare_channels=SPARE_CHANNELS,
     )

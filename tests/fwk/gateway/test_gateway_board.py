@@ -14,6 +14,7 @@ from fwk import Component, Reads, Writes, messages
 from fwk.control.address import gateway_address
 from fwk.gateway.board import Board, plain
 from fwk.gateway.json_log import JsonLog
+from fwk.instances import Instances
 from fwk.record.rotating import RotatingFile
 from fwk.record.text_log import Filter, from_plain, read_lines
 from fwk.testing.plans import plan_of
@@ -38,7 +39,8 @@ PORT = 100_000 + os.getpid()  # names a socket, is none
 
 @pytest.fixture
 def board() -> Iterator[Board]:
-    made = Board(plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT), lambda request, connection: None)
+    plan = plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT)
+    made = Board(plan, Instances(plan), lambda request, connection: None)
     yield made
     made.close()
 

@@ -1,0 +1,54 @@
+"""Channels that components of this process open and close while the run goes on."""
+
+from collections.abc import Sequence
+
+from fwk.bus.inbox import Box
+from fwk.host.inputs import Inputs
+from fwk.host.members import Members
+from fwk.host.outputs import Outputs
+from fwk.instances import Fact, Opening
+from fwk.plan.model import NOBODY, ChannelPlan, Plan
+from lcmtypes.core import change_t
+
+
+class Opened:
+    """Brings inputs and outputs of a process up to what is open; `before` makes the table as the process starts."""
+
+    def __init__(
+        self, plan: Plan, host: int, members: Members, inputs: Inputs, outputs: Outputs, before: Sequence[Fact]
+    ) -> None:
+        self._plan = plan
+        self._own = set(plan.hosts[host].components)
+        self._members = members
+        self._inputs = inputs
+        self._outputs = outputs
+        # Of each channel that was opened at run time: the host that writes it.
+        self._writer = {
+            fact.opening.channel: plan.components[fact.component].host
+            for fact in before
+            if fact.kind == "write" and fact.opening
+        }
+
+    def take_over(self, changes: Sequence[change_t]) -> list[Box]:
+        """Before an iteration: what changed on the blackboard; returns boxes that are new."""
+        new: list[Box] = []
+        for fact in self._members.news(changes):
+            read, opening = self._members.take_over(fact), fact.opening
+            if opening is None:
+                continue
+            if fact.kind == "write":
+                self._writer[opening.channel] = self._plan.components[fact.component].host
+                self._inputs.comes_from(opening.channel, self._writer[opening.channel])
+                if fact.component in self._own:
+                    self._outputs.open(opening.channel, opening.name, opening.sequence)
+            elif read and opening.channel not in self._inputs:
+                new.append(self._inputs.open(self._channel(opening), self._writer.get(opening.channel)))
+            elif not read and opening.channel in self._inputs:
+                self._inputs.close_channel(opening.channel)
+                new = [box for box in new if box.plan.index != opening.channel]
+        return new
+
+    def _channel(self, opening: Opening) -> ChannelPlan:
+        if opening.channel < len(self._plan.channels):
+            return self._plan.channels[opening.channel]
+        return ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ())

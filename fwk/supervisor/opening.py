@@ -1,0 +1,67 @@
+"""What components ask of the blackboard on its way into the run: decided between two ticks, told, recorded."""
+
+import json
+from collections.abc import Callable
+
+from fwk.aspects.logging import Logger
+from fwk.instances import Fact, text_of
+from fwk.openings import Openings
+from fwk.plan.model import Plan
+from fwk.supervisor.hosts import Hosts
+from fwk.supervisor.ledger import Ledger
+from fwk.supervisor.table import HostEntry
+from lcmtypes.core import done_t
+
+
+class Opening:
+    """Of a run in which components may open channels; `change` makes a decision part of the tick that is to begin."""
+
+    def __init__(self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str], None], log: Logger) -> None:
+        self._plan = plan
+        self._hosts = hosts
+        self._ledger = ledger
+        self._change = change
+        self._log = log
+        self._openings = Openings(plan)
+
+    @property
+    def asked(self) -> bool:
+        """Whether there is something to decide."""
+        return self._openings.asked
+
+    def snapshot(self) -> str:
+        """The blackboard as it is, for a host that starts."""
+        return text_of(self._openings.instances.snapshot())
+
+    def ask(self, done: done_t) -> None:
+        """Takes what components of a host ask for."""
+        for name, wishes in json.loads(done.wishes).get("blackboard", {}).items():
+            self._openings.ask(done.tick, done.stage, name, wishes)
+
+    def came(self, entry: HostEntry) -> None:
+        """A host takes part in the run from now on."""
+        for component in self._plan.hosts[entry.index].components:
+            self._openings.came(component, entry.incarnation)
+
+    def left(self, entry: HostEntry) -> None:
+        """A host ended or leaves the loop; what its components had opened is closed."""
+        for component in self._plan.hosts[entry.index].components:
+            self._openings.left(component)
+
+    def decide(self) -> None:
+        """At the boundary between two ticks."""
+        facts, _ = self._openings.decide(self._busy)
+        if facts:
+            self._change(text_of(map(self._numbered, facts)))
+            self._ledger.opened(self._openings.instances)
+        for fact in facts:
+            if fact.kind == "refuse":
+                self._log.warning(f"{self._plan.components[fact.component].name}: {fact.reason}; refused")
+
+    def _numbered(self, fact: Fact) -> Fact:
+        """A writer goes on where the channel is."""
+        return fact.numbered(self._ledger.latest(fact.opening.channel)) if fact.opening else fact
+
+    def _busy(self, component: int) -> bool:
+        entry = self._hosts.table[self._plan.components[component].host]
+        return entry.busy is not None or entry.index in self._hosts.leaving

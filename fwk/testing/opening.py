@@ -1,0 +1,57 @@
+"""Channels opened at run time where there are no processes: wishes are granted between two ticks, as in a run."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Literal
+
+from fwk import messages
+from fwk.instances import Fact, Instances
+from fwk.openings import Openings
+from fwk.plan.model import Plan
+from fwk.runner import Runner
+
+
+class Opening:
+    """Grants what the components of a plan ask for; `sent` has every message so far, by channel."""
+
+    def __init__(self, plan: Plan, runners: Mapping[str, Runner], sent: dict[str, list[bytes]]) -> None:
+        self._runners = {each.index: runners[each.name] for each in plan.components if each.opens}
+        self._sent = sent
+        self._openings = Openings(plan)
+        self._table = Instances(plan)
+        self.types: dict[str, type[messages.Message]] = {}
+        """Of the channels that were opened."""
+        for component in plan.components:
+            self._openings.came(component.index, 1)
+        for runner in self._runners.values():
+            runner.blackboard.first(self._table)
+
+    def ask(self, tick: int, place: int, runner: Runner) -> None:
+        """Takes what an iteration asked for."""
+        wishes = runner.blackboard.take()
+        if wishes:
+            self._openings.ask(tick, place, runner.name, wishes)
+
+    def decide(self) -> Iterator[tuple[str, str, Literal["opened", "closed"]]]:
+        """Between two ticks: which component reads a channel that it did not, or does not any more."""
+        if not self._openings.asked:
+            return
+        facts, _ = self._openings.decide()
+        for fact in map(self._numbered, facts):
+            events = self._table.apply([fact])
+            for index, runner in self._runners.items():
+                done = runner.blackboard.take_over(self._table, index, fact, events)
+                if done and fact.opening:
+                    yield runner.name, fact.opening.name, done
+
+    def _numbered(self, fact: Fact) -> Fact:
+        if not fact.opening:
+            return fact
+        name, kind = fact.opening.name, bytes.fromhex(fact.opening.fingerprint or "00")
+        self._sent.setdefault(name, [])
+        self.types.setdefault(name, messages.type_named(fact.opening.type_name))
+        return fact.numbered(_newest_of(kind, self._sent[name]))
+
+
+def _newest_of(fingerprint: bytes, sent: Sequence[bytes]) -> int:
+    """Number of the newest message of that type."""
+    return next((messages.sequence_of(data) for data in reversed(sent) if data.startswith(fingerprint)), 0)

@@ -1,0 +1,128 @@
+"""The blackboard aspect as a component sees it, on a bench and in a system in memory."""
+
+import pytest
+
+from fwk import Blackboard, Component, NotOpen, Reads, Writes
+from fwk.declaration import declaration
+from fwk.port import DeclarationError
+from fwk.testing.bench import Bench
+from fwk.testing.memory import MemorySystem
+from lcmtypes.robot import imu_t, odometry_t
+
+
+class Opener(Component):
+    stage = "think"
+    blackboard: Blackboard
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 1
+        self.imu.write()
+
+
+class Reader(Component):
+    stage = "act"
+    blackboard: Blackboard
+    imu: Reads[imu_t]
+
+
+def bench() -> Bench:
+    return Bench(Opener, "a/opener")
+
+
+def test_what_is_asked_is_open_from_the_next_tick_on() -> None:
+    made = bench()
+    spot = made.component.blackboard.open_for_writing(imu_t, "spot")
+    with pytest.raises(NotOpen, match="a/spot is not open for writing; ask 'is_open' before"):
+        spot.write()
+    made.iterate(2)
+    assert spot.is_open
+    spot.value.heading_rad = 3.0
+    spot.write()
+    made.iterate()
+    assert [message.heading_rad for message in made.opened("spot").sent] == [3.0]
+
+
+def test_a_reader_opened_at_run_time_shows_what_comes_and_closes() -> None:
+    made = bench()
+    reader = made.component.blackboard.open_for_reading(imu_t, "b/imu")
+    assert made.component.blackboard.open_for_reading(imu_t, "b/imu") is reader
+    made.iterate(2)
+    made.opened("b/imu").put(heading_rad=1.0)
+    made.iterate()
+    assert (reader.refreshed, reader.value.heading_rad) == (True, 1.0)
+    made.component.blackboard.close(reader)
+    made.iterate(2)
+    made.opened("b/imu").put(heading_rad=2.0)
+    made.iterate()
+    assert reader.value.heading_rad == 1.0
+    with pytest.raises(ValueError, match="a/opener: this was not opened here at run time, or is closed already"):
+        made.component.blackboard.close(reader)
+
+
+def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
+    made = Bench(Reader, "a/reader")
+    board = made.component.blackboard
+    assert board.open_for_reading(imu_t, "imu") is made.component.imu
+    with pytest.raises(ValueError, match="not opened here"):
+        board.close(made.component.imu)
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "what"),
+    [
+        (imu_t, "a/ball!", "'a/ball!' is no name"),
+        (imu_t, "fwk/tick", "names that begin with 'fwk/' are the framework's own"),
+        (int, "a/ball", "is no LCM type that begins with 'core.header_t header;'"),
+    ],
+)
+def test_what_can_never_be_opened_is_refused_at_once(kind: type, name: str, what: str) -> None:
+    with pytest.raises(ValueError, match=f"a/opener: .*{what}"):
+        bench().component.blackboard.open_for_reading(kind, name)
+
+
+def test_an_iteration_cannot_ask_for_more_than_a_datagram_carries() -> None:
+    board = bench().component.blackboard
+    for number in range(64):
+        board.open_for_reading(imu_t, f"a/imu{number}")
+    with pytest.raises(ValueError, match="more than 64 openings and closings in one iteration"):
+        board.open_for_reading(imu_t, "a/more")
+
+
+def test_a_continuous_component_opens_nothing() -> None:
+    class Continuous(Component):
+        rate_hz = 5.0
+        blackboard: Blackboard
+
+    with pytest.raises(DeclarationError, match="a continuous component opens no channels while it runs; declare them"):
+        declaration(Continuous)
+
+
+def test_who_opens_late_has_the_newest_value_at_once_and_hears_of_others() -> None:
+    system = MemorySystem({"a/opener": Opener, "a/reader": Reader, "b/opener": Opener})
+    system.tick(5)
+    a, b = (system.runners[f"{name}/opener"].component.blackboard for name in "ab")  # type: ignore[attr-defined]
+    reader = a.open_for_reading(imu_t, "b/imu")
+    many = a.open_multiple_for_reading(imu_t, "*/spot")
+    spot = b.open_for_writing(imu_t, "spot")
+    system.tick(2)
+    assert [message.header.sequence for message in reader.fresh] == [6]
+    assert list(many) == ["b/spot"]
+    assert [(event.kind, event.channel) for event in a.events_of("b/*")] == [
+        ("reader_added", "b/imu"),
+        ("instance_created", "b/spot"),
+        ("writer_added", "b/spot"),
+        ("reader_added", "b/spot"),
+    ]
+    assert (b.readers("imu"), b.writer("imu"), b.has_writer("x/none")) == (("a/opener",), "b/opener", False)
+    assert [(each.name, each.writer, each.declared) for each in a.instances("*/spot")] == [
+        ("b/spot", "b/opener", False)
+    ]
+    spot.write()
+    b.close(spot)
+    system.tick(2)
+    assert not many
+    assert not spot.is_open
+    refused = b.open_for_reading(odometry_t, "a/imu")
+    system.tick(2)
+    assert "b/opener wants it as robot.odometry_t" in refused.refused

@@ -1,0 +1,107 @@
+"""Components that open and close channels as they like, and write down all that they see of the blackboard."""
+
+TRADERS = '''
+"""Traders open, write, read and close goods at random; a diary holds a digest of everything that one sees."""
+
+import zlib
+
+import numpy as np
+
+from fwk import Blackboard, Clock, Component, Config, Logger, Reads, Writes
+from lcmtypes.robot import imu_t, odometry_t
+
+
+class TraderConfig(Config):
+    gain: float = 1.0
+
+
+class Trader(Component):
+    stage = "think"
+    blackboard: Blackboard
+    clock: Clock
+    config: TraderConfig
+    log: Logger
+    rng: np.random.Generator
+    diary: Writes[imu_t]
+
+    def init(self) -> None:
+        self.goods = self.blackboard.open_multiple_for_reading(imu_t, "*/good?")
+        self.own = self.blackboard.open_for_writing(imu_t, "spot")
+        self.writing = {}
+        self.reading = {}
+        self.wrong = None
+        self.digest = 0
+
+    def loop(self) -> None:
+        board = self.blackboard
+        seen = [board.events, board.instances()]
+        readers = {**self.goods, **self.reading}
+        for name, each in readers.items():
+            seen += [name, [message.header.sequence for message in each.fresh], each.value.heading_rad]
+        seen += [(each.channel, each.is_open, each.refused) for each in self.writing.values()]
+        seen += [board.writer("a/diary"), board.readers("a/diary"), board.has_writer("shop/good1")]
+        self.digest = zlib.crc32(repr(seen).encode(), self.digest)
+        self.diary.value.heading_rad = self.config.gain * self.digest
+        self.diary.write()
+        if self.own.is_open:
+            self.own.value.heading_rad = float(self.digest)
+            self.own.write()
+        for writer in self.writing.values():
+            if writer.is_open and self.rng.random() < 0.7:
+                writer.value.heading_rad = float(self.digest % 1000)
+                writer.write()
+        name = f"shop/good{self.rng.integers(4)}"
+        what = self.rng.integers(8)
+        if what == 0:
+            self.writing[name] = board.open_for_writing(imu_t, name)
+        elif what == 1 and name in self.writing:
+            self.close(self.writing.pop(name))
+        elif what == 2:
+            self.reading[name] = board.open_for_reading(imu_t, name)
+        elif what == 3 and name in self.reading:
+            self.close(self.reading.pop(name))
+        elif what == 4:
+            other = f"{'abc'[self.rng.integers(3)]}/{['spot', 'diary'][self.rng.integers(2)]}"
+            self.reading[other] = board.open_for_reading(imu_t, other)
+        elif what == 5:
+            self.close(self.wrong)
+            self.wrong = board.open_for_writing(odometry_t, name)
+        elif what == 6:
+            self.close(self.wrong)
+
+    def close(self, handle) -> None:
+        try:
+            self.blackboard.close(handle)
+        except ValueError:
+            pass
+
+
+class Bystander(Component):
+    """Knows of nothing and reads a diary."""
+
+    stage = "act"
+    diary: Reads[imu_t]
+    echo: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.echo.value.heading_rad = self.diary.value.heading_rad
+        self.echo.write()
+'''
+
+
+def market(public_url: str, more: str = "") -> dict[str, str]:
+    """The files of an application with three traders in two stages and a bystander."""
+    launch = f"""
+name: market
+period_s: 0.02
+speed: max
+spare_channels: 12
+public_url: {public_url}
+components:
+  a/trader: {{use: "traders:Trader", restart: {{limit: 100, backoff_s: 0.01}}}}
+  b/trader: {{use: "traders:Trader", stage: skill, restart: {{limit: 100, backoff_s: 0.01}}}}
+  c/trader: {{use: "traders:Trader", restart: {{limit: 100, backoff_s: 0.01}}}}
+  a/bystander: {{use: "traders:Bystander"}}
+{more}
+"""
+    return {"traders.py": TRADERS, "launch/market.yaml": launch}
