@@ -40,7 +40,7 @@ class Opened:
                 self._writer[opening.channel] = self._plan.components[fact.component].host
                 self._inputs.comes_from(opening.channel, self._writer[opening.channel])
                 if fact.component in self._own:
-                    self._outputs.open(opening.channel, opening.name, opening.sequence)
+                    self._outputs.open(opening.channel, opening.name)
             elif read and opening.channel not in self._inputs:
                 new.append(self._inputs.open(self._channel(opening), self._writer.get(opening.channel)))
             elif not read and opening.channel in self._inputs:

@@ -31,7 +31,6 @@ class Outputs:
         }
         self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
-        self._opened: set[int] = set()  # at run time
         self._repeated: dict[int, tuple[int, int]] = {}  # by channel: a large message, until when it is not sent again
         self._sender = sender
         self._ports = ports
@@ -56,38 +55,49 @@ class Outputs:
             marks[index] = sequence
         return marks
 
-    def open(self, index: int, channel: str, sequence: int) -> None:
-        """From now on this process writes a channel, beginning after that number."""
+    def open(self, index: int, channel: str) -> None:
+        """From now on this process writes a channel that was opened at run time."""
         if index not in self._by_index:
             self._by_index[index] = (channel.encode(), self._ports.channel(index), History())
-            self._opened.add(index)
         self._written[channel] = (index, *self._by_index[index])
-        self._before[index] = sequence
 
     def answer(self, fetch: fetch_t) -> None:
         """Sends again what a reader lacks, or tells it that this is no longer to be had.
 
         What a predecessor had sent, before this process was started in its place, the gateway may still have.
         """
-        if fetch.channel not in self._by_index:  # written by a predecessor, and not opened again
-            self._pass_on(fetch, fetch.last_sequence)
+        if fetch.channel not in self._before:
+            self._answer_opened(fetch)
             return
         before = self._before[fetch.channel]
         if fetch.first_sequence <= before:
-            self._pass_on(fetch, min(fetch.last_sequence, before))
+            self._pass_on(fetch, fetch.first_sequence, min(fetch.last_sequence, before))
             fetch.first_sequence = before + 1
         _, _, history = self._by_index[fetch.channel]
         kept = history.between(fetch.first_sequence, fetch.last_sequence)
         for sequence, data in kept:
             self._repeat(fetch.channel, sequence, data)
         oldest = kept[0][0] if kept else fetch.last_sequence + 1
-        if oldest > fetch.first_sequence and fetch.channel in self._opened:
-            self._pass_on(fetch, oldest - 1)  # others wrote it, too
-        elif oldest > fetch.first_sequence:
+        if oldest > fetch.first_sequence:
             gone = gone_t()
             gone.run, gone.channel = fetch.run, fetch.channel
             gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
+
+    def _answer_opened(self, fetch: fetch_t) -> None:
+        """Of a channel that was opened at run time: here is what this process wrote, the gateway may have the rest.
+
+        Others may have written between, also a predecessor that this process has not opened it again after.
+        """
+        own = self._by_index.get(fetch.channel)
+        kept = own[2].between(fetch.first_sequence, fetch.last_sequence) if own else []
+        expected = fetch.first_sequence
+        for sequence, data in [*kept, (fetch.last_sequence + 1, b"")]:
+            if sequence > expected:
+                self._pass_on(fetch, expected, sequence - 1)
+            if data:
+                self._repeat(fetch.channel, sequence, data)
+            expected = sequence + 1
 
     def _repeat(self, channel: int, sequence: int, data: bytes) -> None:
         """Sends a message again; a large one slowly, and once for all who ask at the same time."""
@@ -99,8 +109,8 @@ class Outputs:
         if len(data) > LARGE_BYTES:
             self._repeated[channel] = (sequence, monotonic_us() + SHARED_US)
 
-    def _pass_on(self, fetch: fetch_t, last_sequence: int) -> None:
+    def _pass_on(self, fetch: fetch_t, first_sequence: int, last_sequence: int) -> None:
         passed = fetch_t()
         passed.run, passed.host, passed.channel = fetch.run, fetch.host, fetch.channel
-        passed.first_sequence, passed.last_sequence = fetch.first_sequence, last_sequence
+        passed.first_sequence, passed.last_sequence = first_sequence, last_sequence
         self._sender.send(b"fwk/fetch", passed.encode(), self._ports.host(self._ports.gateway))

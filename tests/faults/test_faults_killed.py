@@ -19,7 +19,7 @@ from tests.system.system_runs import TIMEOUT_S, Launched, PortBlock, pause
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
-MATCH_S = 30
+MATCH_S = 60
 
 
 def victims(run: Launched, ports: PortBlock, luck: random.Random) -> Iterator[int]:

@@ -1,0 +1,71 @@
+"""What a host sends, and sends again, on channels that were opened at run time."""
+
+from collections.abc import Iterator
+
+import pytest
+
+from fwk.bus.ports import Ports
+from fwk.bus.sockets import Sender
+from fwk.host.outputs import Outputs
+from lcmtypes.core import fetch_t
+from tests.fwk.host.host_parts import imu, plan
+from tests.system.system_runs import PortBlock
+
+CHANNEL, INDEX = "r/spot", 1
+ASKS = 1  # host
+
+
+class Sent(Sender):
+    """Writes down instead of sending: what, and to which port."""
+
+    def __init__(self) -> None:
+        self.messages: list[tuple[bytes, bytes, int]] = []
+
+    def publish(self, channel: bytes, data: bytes, port: int) -> None:
+        self.messages.append((channel, data, port))
+
+    def send(self, channel: bytes, data: bytes, port: int) -> None:
+        self.messages.append((channel, data, port))
+
+    def publish_slowly(self, channel: bytes, data: bytes, port: int) -> None:
+        self.messages.append((channel, data, port))
+
+
+@pytest.fixture
+def ports() -> Iterator[Ports]:
+    block = PortBlock()
+    yield Ports.of(plan(block.bus))
+    block.release()
+
+
+def fetch(first: int, last: int) -> fetch_t:
+    made = fetch_t()
+    made.host, made.channel, made.first_sequence, made.last_sequence = ASKS, INDEX, first, last
+    return made
+
+
+def passed_on(sent: Sent, ports: Ports) -> list[tuple[int, int]]:
+    """Ranges that the gateway was asked for."""
+    asked = [fetch_t.decode(data) for name, data, port in sent.messages if port == ports.host(ports.gateway)]
+    return [(each.first_sequence, each.last_sequence) for each in asked]
+
+
+def test_what_others_wrote_between_is_asked_of_the_gateway_and_the_rest_sent_again(ports: Ports) -> None:
+    sent = Sent()
+    outputs = Outputs({}, ports, sent, {}, {})
+    outputs.open(INDEX, CHANNEL)
+    outputs.publish([(CHANNEL, imu(3)), (CHANNEL, imu(4))])
+    outputs.open(INDEX, CHANNEL)  # closed, written by somebody else up to 6, and opened again
+    outputs.publish([(CHANNEL, imu(7))])
+    sent.messages.clear()
+    outputs.answer(fetch(1, 8))
+    again = [data for name, data, port in sent.messages if port == ports.channel(INDEX)]
+    assert again == [imu(3), imu(4), imu(7)]
+    assert passed_on(sent, ports) == [(1, 2), (5, 6), (8, 8)]
+
+
+def test_a_channel_that_only_a_predecessor_wrote_is_asked_of_the_gateway(ports: Ports) -> None:
+    sent = Sent()
+    Outputs({}, ports, sent, {}, {}).answer(fetch(2, 3))
+    assert passed_on(sent, ports) == [(2, 3)]
+    assert len(sent.messages) == 1
