@@ -63,6 +63,14 @@ class Component:
         on it: a component started by hand or in a test has to do without.
         """
 
+    @classmethod
+    def unrepeatable(cls, config: Any) -> str:  # noqa: ARG003 - for those who derive
+        """Why a replay cannot run it again with these settings: `'/dev/video0' is a device`; nothing: it can.
+
+        For whoever gets more from outside than its inputs, such as the driver of a device: a replay leaves it alone.
+        """
+        return ""
+
     def init(self) -> None:
         """Called once before the first iteration; an exception means that the component does not start.
 

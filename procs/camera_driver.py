@@ -52,6 +52,15 @@ class CameraDriver(Component):
     clock: Clock
     log: Logger
 
+    @classmethod
+    def unrepeatable(cls, config: CameraDriverConfig) -> str:
+        source = str(config.source)
+        if "://" in source:
+            return f"'{source}' is a stream, what it sent cannot be had again"
+        if _is_device(source):
+            return f"'{source}' is a device, what it saw cannot be had again"
+        return "" if Path(source).exists() else f"'{source}' is not there any more"
+
     def init(self) -> None:
         """Opens the source.
 
@@ -125,3 +134,7 @@ class CameraDriver(Component):
             method = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
             pixels = np.asarray(cv2.resize(pixels, size, interpolation=method), np.uint8)
         return pixels
+
+
+def _is_device(source: str) -> bool:
+    return source.isdecimal() or source.startswith("/dev/")

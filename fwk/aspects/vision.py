@@ -16,6 +16,7 @@ from fwk.aspects.logging import Logger
 from lcmtypes.robot import frame_t
 
 SLOTS = 4
+"""Of a ring; one less may be given out in an iteration."""
 SLOT_BYTES = 8 << 20  # room for the largest frame; memory is used only where a frame was written
 _MARKS = struct.Struct("=qq")  # frame number before and after the pixels: different while a frame is being written
 _SHAPE = struct.Struct("=3i")  # height, width, channels; behind the marks
@@ -41,13 +42,14 @@ class Ring:
 
     def __init__(self, descriptor: int, access: int = mmap.ACCESS_WRITE) -> None:
         self.descriptor = descriptor
-        self._memory = mmap.mmap(descriptor, SLOTS * (_PAGE + SLOT_BYTES), access=access)
+        self.slots = os.fstat(descriptor).st_size // (_PAGE + SLOT_BYTES)
+        self._memory = mmap.mmap(descriptor, 0, access=access)
 
     @classmethod
-    def create(cls, name: str) -> "Ring":
+    def create(cls, name: str, slots: int = SLOTS) -> "Ring":
         """Makes a new ring; processes forked afterwards share it, others open `/proc/<pid>/fd/<descriptor>`."""
         descriptor = os.memfd_create(name)
-        os.ftruncate(descriptor, SLOTS * (_PAGE + SLOT_BYTES))
+        os.ftruncate(descriptor, slots * (_PAGE + SLOT_BYTES))
         return cls(descriptor)
 
     @classmethod
@@ -64,20 +66,18 @@ class Ring:
                 continue
         return None
 
-    def put(self, number: int, pixels: Frame) -> int:
-        """Writes frame `number` and returns its slot."""
-        slot = number % SLOTS
-        start = slot * (_PAGE + SLOT_BYTES)
+    def put(self, number: int, pixels: Frame) -> None:
+        """Writes frame `number`."""
+        start = (number % self.slots) * (_PAGE + SLOT_BYTES)
         _MARKS.pack_into(self._memory, start, number, -1)
         _SHAPE.pack_into(self._memory, start + _MARKS.size, *pixels.shape[:2], _channels(pixels))
         target = np.frombuffer(self._memory, np.uint8, pixels.size, start + _PAGE)
         np.copyto(target, pixels.reshape(-1))
         _MARKS.pack_into(self._memory, start, number, number)
-        return slot
 
     def get(self, number: int, size: int) -> Frame | None:
         """A copy of frame `number`, or None if it has been overwritten: never a torn one."""
-        start = (number % SLOTS) * (_PAGE + SLOT_BYTES)
+        start = (number % self.slots) * (_PAGE + SLOT_BYTES)
         if not 0 < size <= SLOT_BYTES or _MARKS.unpack_from(self._memory, start) != (number, number):
             return None
         pixels = np.frombuffer(self._memory, np.uint8, size, start + _PAGE).copy()
@@ -85,7 +85,7 @@ class Ring:
 
     def newest(self) -> tuple[int, Frame] | None:
         """Number and copy of the newest frame, for somebody who is not told of them; None before the first."""
-        starts = [slot * (_PAGE + SLOT_BYTES) for slot in range(SLOTS)]
+        starts = [slot * (_PAGE + SLOT_BYTES) for slot in range(self.slots)]
         for _ in range(_TRIES):
             marks = [(*_MARKS.unpack_from(self._memory, start), start) for start in starts]
             whole = [(before, start) for before, after, start in marks if before == after > 0]
@@ -133,7 +133,8 @@ class VisionMaster:
             raise FrameError(f"{self.announcement.channel}: at most {SLOTS - 1} frames in one iteration")
         frame = self.announcement.value
         frame.frame = self.announcement.sequence + self.announcement.pending + 1  # goes on when the master is restarted
-        frame.slot = self._ring.put(frame.frame, np.ascontiguousarray(pixels))
+        frame.slot = frame.frame % SLOTS  # the same in every run, however many slots the ring has
+        self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
         frame.channels = _channels(pixels)
         frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
@@ -193,8 +194,8 @@ class Image:
         self._missed.append(number)
         if str(self.lost).strip("0") == "1":
             self._log.warning(
-                f"{self.announcement.channel}: frame {number} was overwritten before it was read: too late by "
-                f"{SLOTS - 1} frames or more ({self.lost} lost so far)"
+                f"{self.announcement.channel}: frame {number} was overwritten before it was read "
+                f"({self.lost} lost so far)"
             )
 
 

@@ -27,7 +27,8 @@ class Recorded:
             self._last[picture.camera] = picture
         if not self._counts:
             upto = f" up to tick {tick}" if tick else ""
-            fail(f"{log}: no pictures{upto}; a component 'use: procs.pictures' in the launch file records some")
+            how = "'record: {frames: ...}' in the launch file, or a component 'use: procs.pictures', records some"
+            fail(f"{log}: no pictures{upto}; {how}")
 
     def rows(self) -> list[dict[str, Any]]:
         """Every camera with how many pictures there are of it, for programs."""

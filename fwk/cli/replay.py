@@ -34,6 +34,8 @@ def replay(
 ) -> None:
     """Feeds recorded inputs to real components at the recorded iterations.
 
+    Drivers of devices are left alone, and so is who looks at a device's frames, unless the frames are recorded, too.
+
     Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one; 2 the recording cannot be
     replayed.
     """
@@ -46,6 +48,8 @@ def replay(
             raise typer.Exit(UNUSABLE) from error
     found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
     typer.echo(f"{done.iterations} iterations replayed")
+    for name, reason in done.left_out.items():
+        typer.echo(f"not replayed: {name}: {reason}")
     if done.recording.skipped_bytes:
         typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are no whole message", err=True)
     if lost := {channel: numbers for channel, numbers in done.lost.items() if numbers}:

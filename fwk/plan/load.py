@@ -11,14 +11,14 @@ from fwk.plan.expand import expand
 from fwk.plan.files import Files, find_launch_file, lay_over, read_files
 from fwk.plan.folders import folders_of, join
 from fwk.plan.hosting import Hosting, share_out
-from fwk.plan.model import ComponentPlan, Plan, RestartPolicy
+from fwk.plan.model import ComponentPlan, Plan, RecordPlan, RestartPolicy
 from fwk.plan.needs import check_left_out, granted_by, needs_of
 from fwk.plan.overrides import overrides
 from fwk.plan.resolve import Resolved, add_settings, check_clock, resolve
 from fwk.plan.selection import chosen, groups_of
 from fwk.plan.stages import stages_of
 from fwk.plan.starting import check_groups, check_processes, check_starts
-from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of, public_url_of, runs_of
+from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of, public_url_of, record_of, runs_of
 from fwk.plan.wiring import Wiring, wire
 
 _PORTS_END = 65536
@@ -91,6 +91,7 @@ class _Loading:
         kept = set(chosen(names, options.only, options.without, problems))
         check_left_out(names, kept, granted, options.without, problems)
         shared = self._shared()
+        recorded = record_of(files, whole.channels, problems)
         problems.stop_if_any()
         if len(kept) < len(components):
             # The whole has been found right, so a writer that is missing now was left out on purpose.
@@ -107,6 +108,9 @@ class _Loading:
             spare_channels=last(files, "spare_channels", SPARE_CHANNELS) if any(map(_opens, components)) else 0,
             hosts=hosts,
             outside={channel.name: channel.type_name for channel in whole.channels if channel.name in outside},
+            record=RecordPlan(
+                tuple(name for name in recorded.frames if name in {each.name for each in whole.channels})
+            ),
             **shared,
         )
         check_clock(components, shared["clock"], problems)

@@ -111,6 +111,14 @@ class RunsPlan:
 
 
 @dataclass(frozen=True)
+class RecordPlan:
+    """What the recording has besides all messages."""
+
+    frames: tuple[str, ...] = ()
+    """Channels of cameras whose frames are recorded."""
+
+
+@dataclass(frozen=True)
 class Plan:
     """Everything that processes of a run have to know."""
 
@@ -145,6 +153,7 @@ class Plan:
     """`module:function` that draws the top view of a recording."""
     log: LogPlan = LogPlan()
     runs: RunsPlan = RunsPlan()
+    record: RecordPlan = RecordPlan()
 
     def memory_limit_mb(self, host: int) -> float | None:
         """Memory that a process may take: what its components may together; None if one of them has no limit."""
@@ -177,5 +186,6 @@ class Plan:
             "stages": tuple(data["stages"]),
             "log": LogPlan(**data.get("log", {})),
             "runs": RunsPlan(**data.get("runs", {})),
+            "record": RecordPlan(tuple(data.get("record", {}).get("frames", ()))),
         }
         return cls(**{**data, **simple, "components": components, "channels": channels, "hosts": hosts})

@@ -135,6 +135,13 @@ class RunsEntry(_Entry):
     """How large they may be together; 0: any size."""
 
 
+class RecordEntry(_Entry):
+    """What the recording has besides all messages."""
+
+    frames: Words | None = None
+    """Channels of cameras whose frames are recorded, lossless: names or patterns such as `*/image`."""
+
+
 class HostFile(_Entry):
     """What differs from machine to machine; the file beside a launch file may say only this."""
 
@@ -157,6 +164,7 @@ class HostFile(_Entry):
     """Where ordinary LCM programs listen and write."""
     log: LogEntry = LogEntry()
     runs: RunsEntry = RunsEntry()
+    record: RecordEntry = RecordEntry()
     outside: dict[str, str] = {}
     """Channels that other programs may write on the public bus: name to type."""
     hosts: dict[str, Words] = {}

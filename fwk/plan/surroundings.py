@@ -1,6 +1,6 @@
 """What a launch file says of the run as a whole: time, buses, what programs outside may write, display."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -9,8 +9,9 @@ from fwk import envelope, messages
 from fwk.plan.classes import UnusableError, find_object
 from fwk.plan.errors import Problems, hint
 from fwk.plan.files import Files
-from fwk.plan.model import LogPlan, Plan, RunsPlan
+from fwk.plan.model import ChannelPlan, LogPlan, Plan, RecordPlan, RunsPlan
 from fwk.plan.names import mistake_in
+from fwk.plan.selection import matches
 
 _URL = "udpm://"
 _BUFFER = "recv_buf_size"
@@ -92,6 +93,20 @@ def log_of(files: Files) -> LogPlan:
 def runs_of(files: Files) -> RunsPlan:
     """How many run directories stay."""
     return RunsPlan(**_key_by_key(files, "runs"))
+
+
+def record_of(files: Files, channels: Sequence[ChannelPlan], problems: Problems) -> RecordPlan:
+    """Which cameras' frames are recorded; `channels` are those of the whole system."""
+    layers = [layer for layer in files.layers if layer.content.record.frames is not None]
+    if not layers:
+        return RecordPlan()
+    cameras = [channel.name for channel in channels if channel.images]
+    patterns = layers[-1].content.record.frames or []
+    for pattern in patterns:
+        if not any(matches(name, pattern) for name in cameras) and not files.gaps:
+            place = layers[-1].node.at("record", "frames").place
+            problems.add(place, "", f"record: no camera gives out '{pattern}'; {hint(pattern, cameras)}")
+    return RecordPlan(tuple(name for name in cameras if any(matches(name, pattern) for pattern in patterns)))
 
 
 def _key_by_key(files: Files, key: str) -> dict[str, Any]:

@@ -6,13 +6,15 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Any
 
-from fwk.aspects.vision import Frames, Ring
+from fwk.aspects.vision import Ring
 from fwk.declaration import declaration
 from fwk.instances import Fact, Instances
-from fwk.messages import sequence_of
+from fwk.messages import decode, sequence_of
 from fwk.plan.model import ComponentPlan, Plan
+from fwk.replay.frames import FrameSource, View
 from fwk.runner import Runner, Surroundings
 from lcmtypes.core import log_t
+from lcmtypes.robot import frame_t
 
 Written = list[tuple[str, bytes]]
 
@@ -20,7 +22,7 @@ Written = list[tuple[str, bytes]]
 class Actor:
     """One life of a component, from its start to its end.
 
-    `settings` are those it was started with; `frames` those of cameras whose rings it shall not look into.
+    `settings` are those it was started with, `frames` where those of each camera are.
     """
 
     def __init__(
@@ -30,15 +32,16 @@ class Actor:
         incarnation: int,
         rings: Mapping[str, Ring],
         settings: Mapping[str, Any],
-        frames: Mapping[str, Frames],
+        frames: Mapping[str, FrameSource],
     ) -> None:
         self.plan = component
+        self._views = {channel: View(source) for channel, source in frames.items()}
         self._stages = plan.stages
         declared = declaration(getattr(import_module(component.module), component.class_name))
         config = declared.config.model_validate(settings)
         names = [each.name for each in plan.components]
         surroundings = Surroundings(
-            plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names, frames=frames
+            plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names, frames=self._views
         )
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
         self._waiting: dict[str, list[bytes]] = {}
@@ -86,6 +89,25 @@ class Actor:
                 self._waiting[name] = [newest[name]]
             elif done == "closed":
                 self._waiting.pop(name, None)
+
+    def miss_frame(self, channel: str, number: int) -> None:
+        """In the run this frame was overwritten before it came to read it."""
+        self._views[channel].miss(number)
+
+    def hold_newest_frames(self) -> None:
+        """It is late: its next iteration looks at the frames of now."""
+        for channel, image in self.runner.images.items():
+            arrived = self._waiting.get(channel)
+            self._hold(channel, decode(frame_t, arrived[-1], channel) if arrived else image.announcement.value)
+
+    def hold_last_frames(self) -> None:
+        """It leaves: when it finalizes, it may look at the frames of its last iteration."""
+        for channel, image in self.runner.images.items():
+            self._hold(channel, image.announcement.value)
+
+    def _hold(self, channel: str, frame: frame_t) -> None:
+        if frame.frame:
+            self._views[channel].hold(frame.frame, frame.height_px * frame.width_px * frame.channels)
 
     def iteration(self, tick: int, place: int, stage: int, time_us: int, holder: str) -> Callable[[], Written | None]:
         """What its host does in a stage, when the result is called: takes over settings, iterates if it takes part.

@@ -3,7 +3,6 @@
 import json
 import struct
 from collections.abc import Iterator, Mapping
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from fwk.instances import facts_of
 from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
 from fwk.record.log import Event
+from fwk.record.pictures import FRAME, RecordedPicture, picture_of
 from fwk.record.stamped import StampedLog
 from fwk.record.types import header_of
 from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t
@@ -33,6 +33,8 @@ class RecordedTick:
     record: tick_record_t
     messages: dict[tuple[str, int, int], list[bytes]]
     """By channel and the (tick, stage) in which they were written, oldest first."""
+    frames: list[RecordedPicture]
+    """Of the cameras whose frames are recorded."""
 
 
 class Recording:
@@ -56,6 +58,7 @@ class Recording:
                 does not begin with that fingerprint.
         """
         messages: dict[tuple[str, int, int], list[bytes]] = {}
+        frames: list[RecordedPicture] = []
         types = {RECORD: fingerprint(tick_record_t), **(types or {})}
         tick = 0
         for number, event in enumerate(self._reader):
@@ -65,35 +68,18 @@ class Recording:
                 raise RecordingError(self._other_type(event, types[event.channel]))
             if event.channel == RECORD:
                 record = self._record(event)
-                yield RecordedTick(record, messages)
-                tick, messages = record.tick, {}
+                yield RecordedTick(record, messages, frames)
+                tick, messages, frames = record.tick, {}, []
                 if to_tick is not None and tick >= to_tick:
                     return
+            elif event.channel == FRAME:
+                frames += [picture] if (picture := picture_of(event.data)) else []
             elif not event.channel.startswith("fwk/"):
                 header = header_of(event.data)
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
                 elif event.channel in types:  # passed over, it would be taken for lost and never be compared
                     raise RecordingError(f"{self.path}: damaged: {event.channel} has a message without a whole header")
-
-    def missed_frames(self) -> dict[tuple[int, int], dict[str, set[int]]]:
-        """Numbers of the frames that were gone when a start of a component came to read them, by channel.
-
-        By the component's index and the number of its start. A done says it, perhaps ticks after the iteration: so it
-        is known beforehand. What is damaged, `ticks` tells.
-        """
-        found: dict[tuple[int, int], dict[str, set[int]]] = {}
-        starts = [1] * len(self.plan.hosts)
-        with suppress(RecordingError):
-            for record in (self._record(event) for event in self._reader if event.channel == RECORD):
-                for event in record.events:
-                    if event.kind == tick_event_t.STARTED:
-                        starts[event.index] = event.stage
-                    elif event.kind == tick_event_t.FRAME_MISSED:
-                        component, channel = self.plan.components[event.index], self.plan.channels[event.stage]
-                        start = (component.index, starts[component.host])
-                        found.setdefault(start, {}).setdefault(channel.name, set()).add(event.tick)
-        return found
 
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes

@@ -6,20 +6,17 @@ from bdb import BdbQuit
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from fnmatch import fnmatchcase
-from functools import partial
-from importlib import import_module
 from typing import Any
 
-from fwk.aspects.vision import Frames, Ring
-from fwk.declaration import declaration
+from fwk.aspects.vision import Ring
 from fwk.envelope import fingerprint
 from fwk.instances import Fact, Instances, facts_of
 from fwk.messages import MessageError, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
 from fwk.replay.actors import Actor, ContinuousActor, Written
-from fwk.replay.frames import Withheld
+from fwk.replay.choice import choose, unrepeatable
+from fwk.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
 from lcmtypes.core import change_t, done_t, tick_event_t
 
@@ -30,11 +27,12 @@ Iteration = Callable[[], Written | None]
 class Replay:
     """Real components on recorded inputs.
 
-    `only` are names or patterns; nothing means all components. A camera whose frames a chosen component reads is
-    replayed with it, because frames are not in the recording.
+    `only` are names or patterns; nothing means all components that can be run again. A camera whose frames a chosen
+    component reads is replayed with it, unless the frames are in the recording.
 
     Raises:
-        RecordingError: no component has such a name. While it runs: the log is damaged, or a component fails.
+        RecordingError: no component has such a name, or none that can be run again. While it runs: the log is damaged,
+            or a component fails.
     """
 
     def __init__(self, recording: Recording, only: Sequence[str] = ()) -> None:
@@ -46,9 +44,14 @@ class Replay:
         self.lost: dict[str, set[int]] = {}
         """Sequence numbers by channel that are not in the recording, and that no chosen component wrote again."""
         self._plan = plan
-        self._chosen = _chosen(plan.components, only, recording)
+        choice = choose(recording, only)
+        self._chosen = choice.components
+        self.left_out = {plan.components[index].name: reason for index, reason in choice.left_out.items()}
+        """Components that are not run, with the reason."""
+        self._recorded = {channel: RecordedFrames(recording.path, channel) for channel in plan.record.frames}
         self._rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
-        self._missed = recording.missed_frames() if self._rings and plan.clock == "wall" else {}
+        live = {channel: RingFrames(ring) for channel, ring in self._rings.items()}
+        self._frames: dict[str, FrameSource] = {**live, **self._recorded}
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
@@ -90,6 +93,9 @@ class Replay:
 
     def _tick(self, tick: RecordedTick) -> None:
         self._hidden.update(tick.messages)
+        for picture in tick.frames:
+            if picture.camera in self._recorded:
+                self._recorded[picture.camera].add(picture)
         record, stage, place = tick.record, -1, -1
         decided = {each.number: facts_of(each.settings) for each in record.changes if each.component == NOBODY}
         for facts in decided.values():
@@ -97,7 +103,7 @@ class Replay:
         self._lose(tick)
         for change in record.changes:
             if change.component != NOBODY:
-                self._change(change)
+                self._change(change, record.tick)
         events = deque(record.events)
         while events:
             event = events.popleft()
@@ -112,13 +118,19 @@ class Replay:
                 self._start(event.index, event.stage, event.tick)
             elif event.kind == tick_event_t.STOPPED:
                 self._leaving[event.index] = self._actors.pop(event.index, [])
+                for actor in self._leaving[event.index]:
+                    actor.hold_last_frames()
             elif event.kind == tick_event_t.LOST:
                 self._end(event.index)
             elif event.kind == tick_event_t.LATE:
-                self._begin(event.index, record.tick, place, stage, record.time_us, late=True)
+                for actor in self._actors.get(event.index, []):
+                    actor.hold_newest_frames()
+                self._begin(event.index, record.tick, place, stage, record.time_us)
             elif event.kind == tick_event_t.MISSED:
                 for actor in [*self._actors.get(event.index, []), *self._leaving.get(event.index, [])]:
                     actor.miss(self._names[event.stage], event.tick)
+            elif event.kind == tick_event_t.FRAME_MISSED:
+                self._miss_frame(self._plan.components[event.index], self._plan.channels[event.stage].name, event.tick)
             elif event.kind == tick_event_t.TOLD:
                 self._show()
                 for actor in self._continuous():
@@ -147,8 +159,9 @@ class Replay:
             if len(here.get(channel, ())) < mark - before:
                 self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
 
-    def _change(self, change: change_t) -> None:
+    def _change(self, change: change_t, tick: int) -> None:
         settings = json.loads(change.settings)
+        self._check(change.component, settings, tick)
         self._changes.setdefault(change.component, []).append((change.number, settings))
         for actor in self._actors.get(self._plan.components[change.component].host, []):
             if actor.plan.index == change.component:
@@ -168,6 +181,20 @@ class Replay:
                     if actor.plan.opens:
                         actor.open(fact)
 
+    def _miss_frame(self, component: ComponentPlan, channel: str, number: int) -> None:
+        for actor in [*self._actors.get(component.host, []), *self._leaving.get(component.host, [])]:
+            if actor.plan.index == component.index:
+                actor.miss_frame(channel, number)
+
+    def _check(self, component: int, settings: Any, tick: int) -> None:
+        """Whether a component can still be run again with its new settings."""
+        plan = self._plan.components[component]
+        if component in self._chosen and (reason := unrepeatable(plan, settings)):
+            raise RecordingError(
+                f"{self.recording.path}: {plan.name} cannot be replayed with the settings of tick {tick}: {reason}; "
+                f"replay what is before it with --to-tick {tick - 1}, or others with --only"
+            )
+
     def _start(self, host: int, incarnation: int, started_with: int) -> None:
         """Starts a host's components with the settings after that change, then takes over what was changed since."""
         self._end(host)
@@ -179,8 +206,8 @@ class Replay:
             before = [settings for number, settings in changes if number <= started_with]
             with self._failing(component, "its start"):
                 kind = Actor if component.rate_hz is None else ContinuousActor
-                frames = self._frames(index, incarnation)
-                actor = kind(self._plan, component, incarnation, self._rings, [component.config, *before][-1], frames)
+                settings = [component.config, *before][-1]
+                actor = kind(self._plan, component, incarnation, self._rings, settings, self._frames)
             for _, settings in changes[len(before) :]:
                 actor.configure(settings)
             if component.opens:
@@ -191,10 +218,6 @@ class Replay:
                 actor.continue_at(channel, sequence)
             self._actors[host].append(actor)
 
-    def _frames(self, component: int, incarnation: int) -> dict[str, Frames]:
-        missed = self._missed.get((component, incarnation), {})
-        return {channel: Withheld(self._rings[channel], numbers) for channel, numbers in missed.items()}
-
     def _end(self, host: int) -> None:
         """What it was late with it takes along."""
         self._actors.pop(host, None)
@@ -202,17 +225,14 @@ class Replay:
         self._time_us.pop(host, None)
         self._owed = {key: owed for key, owed in self._owed.items() if key[0] != host}
 
-    def _begin(self, host: int, tick: int, place: int, stage: int, time_us: int, *, late: bool = False) -> None:
+    def _begin(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
         """Freezes what a host sees in a stage. Its iterations run when its done comes: one that was late may have died
-        over it, or have left without ever having run it. Only who looks at frames looks now, while they are there.
+        over it, or have left without ever having run it.
         """
         owed: list[tuple[Actor, Iteration]] = []
         for actor in self._actors.get(host, []):
             actor.take_over(self._newest)
             iteration = actor.iteration(tick, place, stage, time_us, self._holder)
-            if late and actor.runner.images:
-                with self._failing(actor.plan, f"tick {tick}"):
-                    iteration = partial(_the_same, iteration())
             owed.append((actor, iteration))
         self._owed[host, tick, place] = time_us, owed
 
@@ -252,7 +272,7 @@ class Replay:
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
         try:
             yield
-        except BdbQuit:  # somebody left the debugger
+        except (BdbQuit, RecordingError):  # somebody left the debugger; a frame is not in the recording
             raise
         except Exception as error:
             trace = "".join(traceback.format_exception(error)).rstrip()
@@ -309,36 +329,3 @@ class Replay:
                 for actor in actors:
                     actor.see(channel, data)
         self._revealed = []
-
-
-def _the_same(written: Written | None) -> Written | None:
-    return written
-
-
-def _chosen(components: Sequence[ComponentPlan], only: Sequence[str], recording: Recording) -> set[int]:
-    if not only:
-        return {component.index for component in components}
-    chosen = set()
-    for pattern in only:
-        found = {component.index for component in components if fnmatchcase(component.name, pattern)}
-        if not found:
-            names = ", ".join(component.name for component in components)
-            raise RecordingError(f"{recording.path}: no component '{pattern}' in this run; there are: {names}")
-        chosen |= found
-    channels = {channel.name: channel for channel in recording.plan.channels}
-    for index in sorted(chosen):
-        for channel in _images_read(components[index], recording):
-            chosen.add(channels[channel].writer)
-    return chosen
-
-
-def _images_read(component: ComponentPlan, recording: Recording) -> list[str]:
-    try:
-        declared = declaration(getattr(import_module(component.module), component.class_name))
-    except Exception as error:
-        raise RecordingError(
-            f"{recording.path}: {component.name}: {component.module}:{component.class_name} cannot be had any more: "
-            f"{type(error).__name__}: {error}"
-        ) from error
-    looks = [port.attribute for port in declared.ports if port.images and not port.writes]
-    return [channel for attribute in looks for channel in component.channels.get(attribute, ())]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 
 from fwk.aspects.logging import Logger
-from fwk.aspects.vision import Ring
+from fwk.aspects.vision import SLOTS, Ring
 from fwk.bus.ports import PortLock, Ports, PortsInUse
 from fwk.bus.sockets import Sender
 from fwk.clock import US_PER_S, Clock
@@ -19,7 +19,7 @@ from fwk.supervisor.children import Children, decoded
 from fwk.supervisor.control import Control
 from fwk.supervisor.hosts import Hosts, StartFailure
 from fwk.supervisor.ledger import Ledger
-from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.loop import WINDOW, MainLoop
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.options import Outcome, RunBroken, RunOptions
 from fwk.supervisor.pace import Pace
@@ -45,9 +45,9 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
     number = secrets.randbits(62)
-    rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+    rings = _rings(plan, options)
     zygote = Zygote(plan, number, rings, debug, profile)
-    children = Children(plan, number, options)
+    children = Children(plan, number, options, rings)
     supervisor = Supervisor(plan, options, number, zygote, rings, debug)
     reason, failed = supervisor.work(children)
     status, failures = supervisor.stop()
@@ -68,6 +68,14 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         newest,
         children.lost,
     )
+
+
+def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:
+    """A ring for each camera; where frames are recorded, as large as the window that the recorder may be behind."""
+    recorded = plan.record.frames if options.record else ()
+    cameras = [channel.name for channel in plan.channels if channel.images]
+    large = SLOTS + (SLOTS - 1) * WINDOW
+    return {name: Ring.create(name, large if name in recorded else SLOTS) for name in cameras}
 
 
 def _profile_request(plan: Plan, options: RunOptions) -> ProfileRequest | None:

@@ -3,9 +3,11 @@
 import os
 import signal
 import socket
+from collections.abc import Mapping
 from functools import partial
 
 from fwk import envelope, messages
+from fwk.aspects.vision import Ring
 from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
 from fwk.control.watcher import Watcher
@@ -13,6 +15,7 @@ from fwk.gateway import sinks, targets
 from fwk.gateway.apart import apart, plain_channels
 from fwk.gateway.board import Board
 from fwk.gateway.calls import Calls
+from fwk.gateway.frames import FrameRecorder
 from fwk.gateway.gateway import Gateway
 from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.messages import MessageError
@@ -27,7 +30,7 @@ _PATIENCE_S = 5.0
 class Children:
     """Forks gateway and display, before the supervisor has sockets of its own."""
 
-    def __init__(self, plan: Plan, run: int, options: RunOptions) -> None:
+    def __init__(self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring]) -> None:
         self.gave_up = ""
         """What could not be waited for at the end."""
         self.lost = 0
@@ -48,7 +51,7 @@ class Children:
             self.control.close()
             os.setsid()
             die_with_parent(parent, signal.SIGTERM)
-            run_forked(lambda _: _gateway(plan, run, options, gateway_control, display_feed))
+            run_forked(lambda _: _gateway(plan, run, options, gateway_control, display_feed, rings))
         gateway_control.close()
         display_feed.close()
         self._watcher = os.fork() if options.watch else 0
@@ -104,7 +107,14 @@ def _display(plan: Plan, connection: socket.socket, plain: bool) -> int:
     return 0
 
 
-def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, display: socket.socket) -> int:
+def _gateway(
+    plan: Plan,
+    run: int,
+    options: RunOptions,
+    control: socket.socket,
+    display: socket.socket,
+    rings: Mapping[str, Ring],
+) -> int:
     signal.signal(
         signal.SIGTERM, signal.SIG_IGN
     )  # ends when the supervisor's end of `control` is closed, also by its death
@@ -127,7 +137,12 @@ def _gateway(plan: Plan, run: int, options: RunOptions, control: socket.socket, 
     ]
     if options.record:
         try:
-            recorder = sinks.Recorder(plan, options.record, gateway.log.error)
+            recorded = {channel: rings[channel] for channel in plan.record.frames}
+            recorder = (
+                FrameRecorder(plan, options.record, recorded, gateway.log.error)
+                if recorded
+                else sinks.Recorder(plan, options.record, gateway.log.error)
+            )
             gateway.sinks.insert(0, targets.above(apart(recorder, plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")

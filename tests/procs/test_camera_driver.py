@@ -9,7 +9,7 @@ import pytest
 
 from fwk.clock import monotonic_us, sleep_s
 from fwk.testing import Bench, MemorySystem
-from procs.camera_driver import CameraDriver
+from procs.camera_driver import CameraDriver, CameraDriverConfig
 from procs.omni_ball import OmniBall
 from procs.omni_field import OmniField
 from procs.vision.colours import Picture
@@ -201,3 +201,19 @@ def test_the_detectors_see_in_a_folder_what_they_saw_of_the_camera(tmp_path: Pat
     replayed.tick(8)
     for channel in ("cyan1/ball_percept", "cyan1/line_points", "cyan1/obstacle_percepts"):
         assert replayed.sent[channel] == live.sent[channel]
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        ("/dev/video0", "is a device"),
+        (2, "is a device"),
+        ("rtsp://10.0.0.7/", "is a stream"),
+        ("film-that-is-gone.mp4", "is not there any more"),
+        (__file__, ""),
+    ],
+)
+def test_it_says_what_a_replay_cannot_read_again(source: str | int, reason: str) -> None:
+    said = CameraDriver.unrepeatable(CameraDriverConfig.model_validate({"source": source}))
+    assert reason in said
+    assert bool(said) == bool(reason)

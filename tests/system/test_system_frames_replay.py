@@ -43,6 +43,8 @@ class Camera(Component):
 class WatcherConfig(Config):
     slow: bool = False
     """Whether it dawdles now and then before it looks."""
+    looks_first: bool = False
+    """Whether it dawdles now and then after it has looked."""
 
 
 class Watcher(Component):
@@ -62,6 +64,8 @@ class Watcher(Component):
         if self.config.slow and dawdles:
             sleep_s(0.06)
         pixels = self.image.pixels
+        if self.config.looks_first and dawdles:
+            sleep_s(0.06)
         self.pose.value.x_m = float(self.image.announcement.value.frame)
         self.pose.value.y_m = -1.0 if pixels is None else float(zlib.crc32(pixels))
         self.pose.value.heading_rad = float(self.image.lost)
@@ -78,6 +82,7 @@ components:
   a/watcher: {{use: "watch:Watcher"}}
   b/watcher: {{use: "watch:Watcher", config: {{slow: true}}}}
   c/watcher: {{use: "watch:Watcher", config: {{slow: true}}}}
+  d/watcher: {{use: "watch:Watcher", config: {{looks_first: true}}}}
 hosts: {hosts}
 """
 

@@ -77,7 +77,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
         Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
     )
     zygote = Zygote(plan, number, {})
-    children = Children(plan, number, options) if recorded else None
+    children = Children(plan, number, options, {}) if recorded else None
     supervisor = MeasuredSupervisor(plan, options, number, zygote, {})
     if not recorded:
         supervisor.loop.records.taken = _NEVER  # there is no gateway to wait for

@@ -88,7 +88,7 @@ def test_what_cannot_be_done_is_said(log: Path, arguments: tuple[str, ...], erro
 
 def test_a_recording_without_pictures_says_how_to_get_some(tmp_path: Path) -> None:
     LogWriter(tmp_path / "log.lcm", print).close()
-    assert "no pictures; a component 'use: procs.pictures'" in cam("--log", tmp_path / "log.lcm", code=1)
+    assert "no pictures; 'record: {frames: ...}' in the launch file" in cam("--log", tmp_path / "log.lcm", code=1)
 
 
 @pytest.mark.parametrize(("columns", "rows", "expected"), [(40, 40, (40, 15)), (200, 10, (27, 10)), (80, 30, (80, 30))])
