@@ -127,7 +127,9 @@ class Runner:
         if early:
             for writer in self.writers.values():
                 writer.drop()
-            self._command_ports.append(_Early(early))
+            written = _Early(early)
+            self._begin.insert(len(self._command_ports), written.begin)
+            self._command_ports.append(written)
 
     def configure(self, settings: Mapping[str, Any]) -> None:
         """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""

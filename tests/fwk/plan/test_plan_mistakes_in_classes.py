@@ -33,7 +33,7 @@ ROWS = {
     "ball: Reads": "Odd.ball: Reads is no aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
     "CommandsEach, Sends, SendsEach, Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, "
     "VisionMaster, a Config, Clock, Logger, numpy.random.Generator, TimeSource, MainLoop, "
-    "PluginControl or an Aspect, and set plain attributes in init()",
+    "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
     "does not begin with 'core.header_t header;'",
