@@ -9,6 +9,8 @@ from fwk.aspects.logging import Logger
 from fwk.host.memory import lift_limit
 from fwk.host.report import Figures, told
 
+_RESERVED = 4000  # small objects, a quarter of a megabyte together
+
 
 class Failure(Exception):  # noqa: N818 - a failure of a component, not an error of the framework
     """A component failed; the text says which, where and why."""
@@ -21,6 +23,8 @@ class Blame:
         self._figures = figures
         self._memory_limit_mb = memory_limit_mb
         self._log = log
+        # Who has used up all memory with small objects leaves none for saying so.
+        self._reserve: list[list[int]] = [[] for _ in range(_RESERVED if memory_limit_mb else 0)]
 
     @contextmanager
     def guard(self, name: str, moment: str) -> Iterator[None]:
@@ -35,6 +39,12 @@ class Blame:
             self.put(name, moment, error)
             raise
 
+    def make_room(self, error: BaseException) -> None:
+        """If it is memory that ran out, there is some from now on: even the words for it take some."""
+        if isinstance(error, MemoryError):
+            self._reserve.clear()
+            lift_limit()
+
     def put(self, name: str, moment: str, error: BaseException) -> None:
         """Marks a component as failed and logs why, with the traceback.
 
@@ -43,10 +53,10 @@ class Blame:
         """
         if isinstance(error, BdbQuit | KeyboardInterrupt):
             return
-        if isinstance(error, MemoryError):
-            lift_limit()
-        place = traceback.extract_tb(error.__traceback__)[-1]
-        reason = f"{self._what(error)} ({place.filename}:{place.lineno}, in {moment})"
+        self.make_room(error)
+        trace = traceback.extract_tb(error.__traceback__)  # without memory it was not written down
+        place = f"{trace[-1].filename}:{trace[-1].lineno}, " if trace else ""
+        reason = f"{self._what(error)} ({place}in {moment})"
         self._figures[name].state, self._figures[name].reason = "failed", reason
         self._log.named(name).exception(f"failed in {moment}", error)
         raise Failure(f"{name}: {reason}") from error

@@ -154,6 +154,7 @@ class Members:
             try:
                 written += runner.iterate(tick.tick, tick.stage, stage, tick.time_us, waiting)
             except BaseException as error:
+                self._blame.make_room(error)
                 self._blame.put(name, f"loop, tick {tick.tick}", error)
                 raise
             end_us = monotonic_us()
