@@ -10,11 +10,15 @@ from tests.system.system_orchestra import TYPES, orchestra
 from tests.system.system_runs import Launched, PortBlock, write_files
 
 Launch = Callable[..., Launched]
+GONE_S = 5.0
 
 
 @pytest.fixture
 def launch(tmp_path: Path, ports: PortBlock) -> Iterator[Launch]:
-    """`launch("launch/x.yaml", "--ticks", "5", env={}, folder=...)` starts a run; whatever is left of it is killed."""
+    """`launch("launch/x.yaml", "--ticks", "5", env={}, folder=...)` starts a run; what still runs at the end is killed.
+
+    A run that ended by itself, or was killed, has to have left no process, and with that no shared memory.
+    """
     launched: list[Launched] = []
 
     def start(
@@ -24,8 +28,12 @@ def launch(tmp_path: Path, ports: PortBlock) -> Iterator[Launch]:
         return launched[-1]
 
     yield start
+    orphans = [
+        each.processes() for each in launched if each.process.poll() is not None and not each.gone_within(GONE_S)
+    ]
     for each in launched:
         each.end()
+    assert orphans == []
 
 
 @pytest.fixture
