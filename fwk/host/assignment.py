@@ -20,6 +20,8 @@ class Start:
     """Settings of its components that were changed since the run began, by name, as JSON."""
     blackboard: str = "[]"
     """What was opened at run time, as facts in JSON."""
+    newest_change: int = 0
+    """Number of the newest change of settings or of the blackboard that is in these: older ones are not told anew."""
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ class Members:
         self._instances = Instances(plan) if any(each.opens for each in self.plans) else None
         if self._instances:
             self._instances.apply(facts_of(assignment.start.blackboard))
-        self._configured = 0  # number of the newest change of settings taken over
+        self._configured = assignment.start.newest_change  # number of the newest change of settings taken over
 
     @property
     def _own(self) -> Sequence[int]:

@@ -193,7 +193,7 @@ class Hosts:
         self._told.discard(entry.index)
         incarnation = entry.starting(monotonic_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
-        start = Start(incarnation, sequences, settings, self.blackboard())
+        start = Start(incarnation, sequences, settings, self.blackboard(), entry.started_with)
         hand = self._hands.get(entry.index)
         if hand:
             entry.pid, entry.held = hand.pid, hand.held
