@@ -1,10 +1,20 @@
 """What a writer has sent lately, kept for readers that lost it."""
 
 from collections import deque
+from collections.abc import Iterable, Iterator
 
 MESSAGES_MAX = 256
 BYTES_MAX = 64 << 20
 TICKS = 17  # the recorder may be 16 ticks behind
+
+
+def gaps(there: Iterable[int], first: int, last: int) -> Iterator[tuple[int, int]]:
+    """The ranges between two numbers that are not there, each with its first and last; `there` is in order."""
+    expected = first
+    for number in (*there, last + 1):
+        if number > expected:
+            yield expected, number - 1
+        expected = number + 1
 
 
 class History:

@@ -45,8 +45,7 @@ class Box:
 
     def missing(self) -> list[int]:
         """Sequence numbers up to the mark that are not here."""
-        held = self._held
-        return [number for number in range(self.floor + 1, self.mark + 1) if number not in held]
+        return Box.lacks(self, self.mark)
 
     def lacks(self, sequence: int) -> list[int]:
         """Sequence numbers up to this one, visible or not, that are not here."""

@@ -44,7 +44,7 @@ class Board:
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Takes a message."""
-        if channel not in self._channels and not self._instances.find(channel):
+        if not self._instances.find(channel):
             return
         self._newest[channel], self._arrived_us[channel] = data, monotonic_us()
         self._counts[channel] = self._counts.get(channel, 0) + 1
@@ -71,7 +71,7 @@ class Board:
             if isinstance(request, requests.Call):
                 self._call(request, connection)
                 return
-            answer = self._shown(self._known(request.channel))
+            answer = self._shown(request.channel)
             if isinstance(request, requests.Watch):
                 self._watching.setdefault(request.channel, []).append(connection)
             connection.reply({"ok": True, **answer})
@@ -80,16 +80,17 @@ class Board:
         except Exception as error:  # a mistake in here must not end the recording
             connection.refuse(f"the gateway cannot answer this: {type(error).__name__}: {error}")
 
-    def _known(self, channel: str) -> str:
-        names = [each.name for each in self._all()]
-        if channel not in names:
-            raise RequestError(f"no channel '{channel}'; {hint(channel, names)}")
-        return channel
+    def _known(self, name: str) -> ChannelPlan:
+        """The channel of that name, of the plan or opened while the run goes on."""
+        instance = self._instances.find(name)
+        if instance is None:
+            raise RequestError(f"no channel '{name}'; {hint(name, [each.name for each in self._all()])}")
+        return self._channels[name] if instance.declared else self._opened(instance)
 
     def _all(self) -> list[ChannelPlan]:
         """The plan's channels, and after them those that were opened while the run goes on."""
         opened = [instance for instance in self._instances.matching("*") if not instance.declared]
-        return [*self._plan.channels, *(self._opened(instance) for instance in opened)]
+        return [*self._plan.channels, *map(self._opened, opened)]
 
     def _opened(self, instance: Instance) -> ChannelPlan:
         writer = instance.writer[0] if instance.writer else NOBODY
@@ -125,10 +126,7 @@ class Board:
         return list(dict.fromkeys([*channel.readers, *opened]))
 
     def _shown(self, name: str) -> dict[str, Any]:
-        channel = next((each for each in self._all() if each.name == name), None)
-        if channel is None:
-            raise RequestError(f"'{name}' is closed meanwhile")
-        row, data = self._row(channel), self._newest.get(name)
+        row, data = self._row(self._known(name)), self._newest.get(name)
         if data is None:
             return {**row, "value": None}
         try:

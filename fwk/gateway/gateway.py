@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from fwk.aspects.logging import Logger
 from fwk.bus import sync, wire
+from fwk.bus.history import gaps
 from fwk.bus.ports import Ports
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver
@@ -272,13 +273,10 @@ class Gateway:
             recent = [(number, data) for _, number, data in self._recent.get(fetch.channel, [])]
             found = [each for each in recent if fetch.first_sequence <= each[0] <= fetch.last_sequence]
             found += box.held(fetch.first_sequence, fetch.last_sequence)
-        expected = fetch.first_sequence
-        for number, data in [*found, (fetch.last_sequence + 1, b"")]:
-            if number > expected:
-                self._tell_gone(fetch, expected, number - 1)
-            if data and fetch.host != self._ports.gateway:
-                self._sender.publish_slowly(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
-            expected = number + 1
+        for first, last in gaps((number for number, _ in found), fetch.first_sequence, fetch.last_sequence):
+            self._tell_gone(fetch, first, last)
+        for _, data in found if fetch.host != self._ports.gateway else ():
+            self._sender.publish_slowly(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
 
     def _tell_gone(self, fetch: fetch_t, first: int, last: int) -> None:
         gone = gone_t()

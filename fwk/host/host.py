@@ -19,7 +19,6 @@ from fwk.host.opened import Opened
 from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
 from fwk.host.report import Complaints
-from fwk.instances import facts_of
 from fwk.messages import MessageError
 from fwk.runner import AWAY_TICKS, Runner
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
@@ -66,9 +65,8 @@ class Host:
         )
         self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.start.sequences)
         self._opened: Opened | None = None
-        if any(component.opens for component in self._members.plans):
-            before = facts_of(assignment.start.blackboard)
-            self._opened = Opened(plan, assignment.host, self._members, self.inputs, self._outputs, before)
+        if instances := self._members.instances:
+            self._opened = Opened(plan, assignment.host, self._members, instances, self.inputs, self._outputs)
         stages = sorted({stage for component in self._members.plans for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
         self._sockets = {source.fileno(): (stage, source) for stage, source in listening}

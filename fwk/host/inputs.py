@@ -162,8 +162,6 @@ class Inputs:
         """Whether everything up to these numbers of channels is here, visible or not; asks for what is not."""
         lacking = []
         for index, sequence in marks:
-            if index not in self._boxes:  # opened at run time, and this process is not there yet
-                return False
             missing = self._boxes[index].lacks(sequence)
             if missing:
                 lacking.append((self._boxes[index], missing))

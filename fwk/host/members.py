@@ -55,9 +55,9 @@ class Members:
             for channel in plan.channels
             if not own.isdisjoint(channel.readers)
         }
-        self._instances = Instances(plan) if any(each.opens for each in self.plans) else None
-        if self._instances:
-            self._instances.apply(facts_of(assignment.start.blackboard))
+        self.instances = Instances(plan) if any(each.opens for each in self.plans) else None
+        if self.instances:
+            self.instances.apply(facts_of(assignment.start.blackboard))
         self._configured = assignment.start.newest_change  # number of the newest change of settings taken over
 
     @property
@@ -77,8 +77,8 @@ class Members:
                 self._waiting[plan.name] = {}
                 if runner.has_main_loop:
                     self._takers.append(runner)
-                if self._instances:
-                    runner.blackboard.first(self._instances)
+                if self.instances:
+                    runner.blackboard.first(self.instances)
                 misses = runner.images and self._plan.clock == "wall"  # in lockstep no frame is missed
                 if runner.has_main_loop or runner.has_plugins or runner.has_blackboard or misses:
                     self._wishing.append(runner)
@@ -112,12 +112,12 @@ class Members:
 
     def take_over(self, fact: Fact) -> bool:
         """Takes over what was decided on the blackboard; whether somebody here reads the fact's channel after that."""
-        assert self._instances
-        events = self._instances.apply([fact])
+        assert self.instances
+        events = self.instances.apply([fact])
         for plan in self.plans:
             if plan.opens:
                 runner = self.runners[plan.name]
-                done = runner.blackboard.take_over(self._instances, plan.index, fact, events)
+                done = runner.blackboard.take_over(self.instances, plan.index, fact, events)
                 if fact.opening and done == "opened":
                     self._begin_reading(plan.name, fact.opening)
                 elif fact.opening and done == "closed":

@@ -6,16 +6,16 @@ from fwk.bus.inbox import Box
 from fwk.host.inputs import Inputs
 from fwk.host.members import Members
 from fwk.host.outputs import Outputs
-from fwk.instances import Fact, Opening
+from fwk.instances import Instances, Opening
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from lcmtypes.core import change_t
 
 
 class Opened:
-    """Brings inputs and outputs of a process up to what is open; `before` makes the table as the process starts."""
+    """Brings inputs and outputs of a process up to what is open; `instances` is the table as the process starts."""
 
     def __init__(
-        self, plan: Plan, host: int, members: Members, inputs: Inputs, outputs: Outputs, before: Sequence[Fact]
+        self, plan: Plan, host: int, members: Members, instances: Instances, inputs: Inputs, outputs: Outputs
     ) -> None:
         self._plan = plan
         self._own = set(plan.hosts[host].components)
@@ -24,9 +24,9 @@ class Opened:
         self._outputs = outputs
         # Of each channel that was opened at run time: the host that writes it.
         self._writer = {
-            fact.opening.channel: plan.components[fact.component].host
-            for fact in before
-            if fact.kind == "write" and fact.opening
+            instance.index: plan.components[instance.writer[0]].host
+            for instance in instances.matching("*")
+            if instance.writer
         }
 
     def take_over(self, changes: Sequence[change_t]) -> list[Box]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from fwk.bus.history import History
+from fwk.bus.history import History, gaps
 from fwk.bus.inbox import Box
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
@@ -91,13 +91,10 @@ class Outputs:
         """
         own = self._by_index.get(fetch.channel)
         kept = own[2].between(fetch.first_sequence, fetch.last_sequence) if own else []
-        expected = fetch.first_sequence
-        for sequence, data in [*kept, (fetch.last_sequence + 1, b"")]:
-            if sequence > expected:
-                self._pass_on(fetch, expected, sequence - 1)
-            if data:
-                self._repeat(fetch.channel, sequence, data)
-            expected = sequence + 1
+        for sequence, data in kept:
+            self._repeat(fetch.channel, sequence, data)
+        for first, last in gaps((sequence for sequence, _ in kept), fetch.first_sequence, fetch.last_sequence):
+            self._pass_on(fetch, first, last)
 
     def _repeat(self, channel: int, sequence: int, data: bytes) -> None:
         """Sends a message again; a large one slowly, and once for all who ask at the same time."""

@@ -127,7 +127,7 @@ class Replay:
                     actor.hold_newest_frames()
                 self._begin(event.index, record.tick, place, stage, record.time_us)
             elif event.kind == tick_event_t.MISSED:
-                for actor in [*self._actors.get(event.index, []), *self._leaving.get(event.index, [])]:
+                for actor in self._living(event.index):
                     actor.miss(self._names[event.stage], event.tick)
             elif event.kind == tick_event_t.FRAME_MISSED:
                 self._miss_frame(self._plan.components[event.index], self._plan.channels[event.stage].name, event.tick)
@@ -181,8 +181,12 @@ class Replay:
                     if actor.plan.opens:
                         actor.open(fact)
 
+    def _living(self, host: int) -> list[Actor]:
+        """Those of a host that run, and those that have not finalized yet."""
+        return [*self._actors.get(host, []), *self._leaving.get(host, [])]
+
     def _miss_frame(self, component: ComponentPlan, channel: str, number: int) -> None:
-        for actor in [*self._actors.get(component.host, []), *self._leaving.get(component.host, [])]:
+        for actor in self._living(component.host):
             if actor.plan.index == component.index:
                 actor.miss_frame(channel, number)
 

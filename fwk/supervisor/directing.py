@@ -1,12 +1,11 @@
 """What components ask to be done with other components: collected during a tick, granted between two."""
 
-import json
-
 from fwk.aspects.logging import Logger
 from fwk.clock import monotonic_us
 from fwk.control.requests import Action, RequestError
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.steering import Steering
+from fwk.supervisor.wishes import Wishes
 from lcmtypes.core import done_t
 
 _Wish = tuple[tuple[int, int, str, int], Action, list[str]]
@@ -22,10 +21,10 @@ class Directing:
         self._log = log
         self._wishes: list[_Wish] = []
 
-    def ask(self, done: done_t) -> None:
+    def ask(self, done: done_t, wishes: Wishes) -> None:
         """Takes what components of a host ask for."""
-        for name, wishes in json.loads(done.wishes).get("plugins", {}).items():
-            for number, (action, names) in enumerate(wishes):
+        for name, asked in wishes.get("plugins", {}).items():
+            for number, (action, names) in enumerate(asked):
                 self._wishes.append(((done.tick, done.stage, name, number), action, names))
 
     def decide(self) -> None:

@@ -1,5 +1,6 @@
 """The main loop: one barrier a stage, in lockstep or in real time."""
 
+import json
 from collections.abc import Callable
 
 from fwk.aspects.logging import Logger
@@ -20,6 +21,7 @@ from fwk.supervisor.patience import Patience
 from fwk.supervisor.records import Records, change_message, void_messages
 from fwk.supervisor.table import Change, HostEntry
 from fwk.supervisor.turns import Turns
+from fwk.supervisor.wishes import Wishes
 from lcmtypes.core import done_t, tick_event_t, tick_t
 
 REPEAT_LONGEST_US = 100_000
@@ -52,8 +54,8 @@ class MainLoop:
         self.late = 0
         self.stands = False
         """Whether the run is paused and its newest tick has ended."""
-        self.on_wishes: Callable[[done_t], None] = lambda _: None
-        """Called with a done in which components ask for something."""
+        self.on_wishes: Callable[[done_t, Wishes], None] = lambda _done, _wishes: None
+        """Called with a done in which components ask for something, and with what they ask."""
         self.on_boundary: Callable[[int], None] = lambda _: None
         """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
         self.on_wait: Callable[[], None] = lambda: None
@@ -341,12 +343,12 @@ class MainLoop:
         if done.next_time_us >= 0:
             self.pace.source(done.next_time_us)
         if done.wishes:
-            self.records.missed(done)
-            self.turns.ask(done)
+            wishes = json.loads(done.wishes)
+            self._missed.take(done, wishes)
+            self.turns.ask(done, wishes)
             if self.opening:
-                self.opening.ask(done)
-            self.on_wishes(done)
-            self._missed.take(done)
+                self.opening.ask(done, wishes)
+            self.on_wishes(done, wishes)
         self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
 
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:

@@ -1,6 +1,5 @@
 """What components ask of the blackboard on its way into the run: decided between two ticks, told, recorded."""
 
-import json
 from collections.abc import Callable
 
 from fwk.aspects.logging import Logger
@@ -10,6 +9,7 @@ from fwk.plan.model import Plan
 from fwk.supervisor.hosts import Hosts
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.table import HostEntry
+from fwk.supervisor.wishes import Wishes
 from lcmtypes.core import done_t
 
 
@@ -33,10 +33,10 @@ class Opening:
         """The blackboard as it is, for a host that starts."""
         return text_of(self._openings.instances.snapshot())
 
-    def ask(self, done: done_t) -> None:
+    def ask(self, done: done_t, wishes: Wishes) -> None:
         """Takes what components of a host ask for."""
-        for name, wishes in json.loads(done.wishes).get("blackboard", {}).items():
-            self._openings.ask(done.tick, done.stage, name, wishes)
+        for name, asked in wishes.get("blackboard", {}).items():
+            self._openings.ask(done.tick, done.stage, name, asked)
 
     def came(self, entry: HostEntry) -> None:
         """A host takes part in the run from now on."""

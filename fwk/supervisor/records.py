@@ -1,7 +1,6 @@
 """What the main loop decides in each tick, on its way to the gateway: kept, and sent again to who lacks it."""
 
 import contextlib
-import json
 import struct
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -13,7 +12,7 @@ from fwk.messages import MessageError
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
 from fwk.supervisor.table import Change
-from lcmtypes.core import change_t, done_t, fetch_t, tick_event_t, tick_record_t, void_t
+from lcmtypes.core import change_t, fetch_t, tick_record_t, void_t
 
 KEPT = 64  # ticks at the least: all that the gateway has not taken yet
 FIRST_WAIT_US = 20_000
@@ -38,11 +37,6 @@ class Records:
     def event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
         """Something happened, as in core.tick_event_t."""
         self._events.append((kind, index, tick, stage))
-
-    def missed(self, done: done_t) -> None:
-        """What a host says that it never got."""
-        for channel, sequence in json.loads(done.wishes).get("missed", ()):
-            self.event(tick_event_t.MISSED, done.host, sequence, channel)
 
     def mark(self, channel: int, sequence: int) -> None:
         """A mark moves."""

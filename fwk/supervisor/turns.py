@@ -1,6 +1,5 @@
 """The order in which a tick runs stages: the plan's, or that of the component that has the main loop."""
 
-import json
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -8,6 +7,7 @@ from fwk.aspects.logging import Logger
 from fwk.aspects.main_loop import Holding
 from fwk.plan.model import NOBODY, Plan
 from fwk.supervisor.table import HostEntry
+from fwk.supervisor.wishes import Wishes
 from lcmtypes.core import done_t
 
 
@@ -46,9 +46,9 @@ class Turns:
         """Whether there is something to decide."""
         return self._holding.asked
 
-    def ask(self, done: done_t) -> None:
+    def ask(self, done: done_t, wishes: Wishes) -> None:
         """Takes what components of a host ask for."""
-        for name, order in json.loads(done.wishes).get("main_loop", {}).items():
+        for name, order in wishes.get("main_loop", {}).items():
             self._holding.ask(done.tick, done.stage, name, order)
 
     def left(self, host: int) -> None:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from procs.estimation.frames import Floats
-from procs.estimation.library_parts import KalmanFilter
+from procs.estimation.lean_imports import KalmanFilter
 
 _UNKNOWN_SPEED_M_S = 4.0
 _STEADY_M_S2 = 0.25  # unmodelled acceleration of a ball at rest

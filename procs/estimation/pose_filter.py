@@ -3,7 +3,7 @@
 import numpy as np
 
 from procs.estimation.frames import Floats, rotation, wrap
-from procs.estimation.library_parts import KalmanFilter
+from procs.estimation.lean_imports import KalmanFilter
 
 _PATH_ERROR = 0.1  # of the way driven since the last frame: wheel scale, encoder noise, slip
 _STANDING_M = 0.002

@@ -3,7 +3,7 @@
 import numpy as np
 
 from procs.estimation.frames import Flags, Floats, Indices
-from procs.estimation.library_parts import linear_sum_assignment
+from procs.estimation.lean_imports import linear_sum_assignment
 
 _ACCELERATION_M_S2 = 2.5
 _UNKNOWN_SPEED_M_S = 1.5

@@ -5,7 +5,7 @@ import sys
 
 SAME_FILTER = """
 import numpy as np
-from procs.estimation.library_parts import KalmanFilter as ours
+from procs.estimation.lean_imports import KalmanFilter as ours
 from filterpy.kalman import KalmanFilter as theirs
 
 assert ours is not theirs
@@ -25,7 +25,7 @@ assert mine.log_likelihood == other.log_likelihood
 
 SAME_ASSIGNMENT = """
 import numpy as np
-from procs.estimation.library_parts import linear_sum_assignment as ours
+from procs.estimation.lean_imports import linear_sum_assignment as ours
 from scipy.optimize import linear_sum_assignment as theirs
 
 costs = np.random.default_rng(1).random((5, 8))
@@ -35,18 +35,18 @@ assert np.array_equal(ours(costs), theirs(costs))
 IMPORTED_BEFORE = """
 from filterpy.kalman import KalmanFilter
 from scipy.optimize import linear_sum_assignment
-from procs.estimation import library_parts
+from procs.estimation import lean_imports
 
-assert library_parts.KalmanFilter is KalmanFilter
-assert library_parts.linear_sum_assignment is linear_sum_assignment
+assert lean_imports.KalmanFilter is KalmanFilter
+assert lean_imports.linear_sum_assignment is linear_sum_assignment
 """
 
 LAID_OUT_OTHERWISE = """
 from pathlib import Path
-from procs.estimation import library_parts
+from procs.estimation import lean_imports
 
-library_parts._folder_of = lambda library: Path("/nowhere")
-whole = library_parts.load_kalman_filter(), library_parts.load_linear_sum_assignment()
+lean_imports._folder_of = lambda library: Path("/nowhere")
+whole = lean_imports.load_kalman_filter(), lean_imports.load_linear_sum_assignment()
 from filterpy.kalman import KalmanFilter
 from scipy.optimize import linear_sum_assignment
 
