@@ -88,9 +88,10 @@ class Gateway:
         self._handlers.append(handler)
 
     def serve(self) -> None:
-        """Works until the supervisor closes the control connection."""
+        """Says that it hears everything from now on, and works until the supervisor closes the control connection."""
+        self._acknowledge()
         while self._open:
-            if not self._poller.poll(100) and self._outside.marks:
+            if not self._poller.poll(100) and (self._outside.marks or self._next == 1):
                 self._acknowledge()  # the main loop may have lost what it was told
             self._handle_own()
             self._hear_strangers()

@@ -143,6 +143,7 @@ class Supervisor:
         raise RunBroken(f"the gateway ended: {children.gateway_end()}")
 
     def _work(self) -> tuple[str, bool]:
+        self.loop.records.wait_for(0, self._interrupted)  # until the gateway hears; it would miss what is sent before
         try:
             self._hosts.start_all(self._interrupted)
         except StartFailure as failure:

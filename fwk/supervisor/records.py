@@ -23,7 +23,7 @@ class Records:
     """The record of the running tick, and the newest ones before it, for which the gateway asks if it lacks them."""
 
     def __init__(self, ports: Ports, run: int, sender: Sender, mailbox: Mailbox) -> None:
-        self.taken = 0  # newest tick that the gateway has
+        self.taken = -1  # newest tick that the gateway has; 0: it hears whatever is sent from now on
         self._ports = ports
         self._run = run
         self._sender = sender
