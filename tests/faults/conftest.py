@@ -7,7 +7,7 @@ import pytest
 from tests.faults.faults_after import Aftermath
 from tests.system.conftest import _types, folder, launch
 from tests.system.system_orchestra import orchestra
-from tests.system.system_runs import Launched, PortBlock, write_files
+from tests.system.system_runs import played
 
 __all__ = ["RUN", "TICKS", "_types", "folder", "launch"]
 
@@ -18,15 +18,7 @@ RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")
 @pytest.fixture(scope="session")
 def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of an undisturbed run in lockstep."""
-    folder, ports = tmp_path_factory.mktemp("undisturbed"), PortBlock()
-    write_files(folder, orchestra(ports.public_url))
-    run = Launched(folder, ports, (*RUN, "--ticks", str(TICKS)), {})
-    try:
-        assert run.wait() == 0, run.text
-    finally:
-        run.end()
-        ports.release()
-    return folder / "log.lcm"
+    return played(tmp_path_factory.mktemp("undisturbed"), orchestra, *RUN, "--ticks", str(TICKS))
 
 
 @pytest.fixture

@@ -2,14 +2,13 @@
 
 import contextlib
 import os
-import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import psutil
 
 from tests.system.system_logs import Recording, difference
-from tests.system.system_runs import BIN, Launched
+from tests.system.system_runs import Launched, replayed
 
 GONE_S = 2.0
 _SHARED = ("/memfd:", "/dev/shm/")
@@ -56,15 +55,8 @@ class Aftermath:
         if equal_to:
             assert difference(equal_to, log) == ""
         if replays:
-            self._verify(run.folder, log)
+            replayed(run.folder, log=log)
         return recording
-
-    def _verify(self, folder: Path, log: Path) -> None:
-        command = [str(BIN / "fwk"), "replay", str(log), "--verify"]
-        env = {**os.environ, "HOME": str(folder)}
-        done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False, timeout=120)
-        assert done.returncode == 0, done.stdout + done.stderr
-        assert "equal: " in done.stdout
 
     def _left(self) -> list[str]:
         """What still holds the run's shared memory, or belongs to one of its sessions."""

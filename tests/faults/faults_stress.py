@@ -15,8 +15,10 @@ from pathlib import Path
 
 from fwk.record.types import use_types_of
 from tests.system.control_system import Steered
-from tests.system.system_everything import FILE, Fate, everything, replayed
-from tests.system.system_runs import Launched, PortBlock, pause, write_files
+from tests.system.system_everything import everything
+from tests.system.system_fate import Fate
+from tests.system.system_runs import Launched, PortBlock, pause, replayed, write_files
+from tests.system.system_together import FILE
 
 
 def stressed(folder: Path, seed: int, *, real_time: bool, groups: bool, strikes: int, env: dict[str, str]) -> str:

@@ -1,15 +1,13 @@
 """A small system to be looked at and steered: a counter, one that follows it, and a camera with its user."""
 
 import json
-import os
 import signal
-import subprocess
 from pathlib import Path
 from typing import Any
 
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
-from tests.system.system_runs import BIN, TIMEOUT_S, Launched, PortBlock, write_files
+from tests.system.system_runs import TIMEOUT_S, Launched, PortBlock, fwk, write_files
 
 PARTS = '''
 """Counts, follows, and looks."""
@@ -110,17 +108,7 @@ class Steered:
     def fwk(self, *arguments: str, code: int = 0) -> str:
         """What `fwk ARGUMENTS` prints about this run; it has to end with that exit code."""
         which = [] if "--verify" in arguments else ["--bus-port", str(self._ports.bus)]
-        done = subprocess.run(
-            [str(BIN / "fwk"), *arguments, *which],
-            cwd=self.launched.folder,
-            env={**os.environ, "HOME": str(self.launched.folder)},
-            capture_output=True,
-            text=True,
-            timeout=TIMEOUT_S,
-            check=False,
-        )
-        assert done.returncode == code, f"{arguments}: {done}\n{self.launched.text}"
-        return done.stdout + done.stderr
+        return fwk(self.launched.folder, *arguments, *which, code=code)
 
     def json(self, *arguments: str) -> Any:
         """What `fwk ARGUMENTS --json` prints."""

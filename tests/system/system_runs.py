@@ -181,8 +181,42 @@ def pause(seconds: float = 0.02) -> None:
     time.sleep(seconds)  # noqa: TID251
 
 
+def fwk(folder: Path, *words: str | Path, code: int = 0) -> str:
+    """What a command prints in a folder; it has to end with that exit code."""
+    done = subprocess.run(
+        [BIN / "fwk", *words],
+        cwd=folder,
+        env={**os.environ, "HOME": str(folder)},
+        capture_output=True,
+        text=True,
+        timeout=2 * TIMEOUT_S,
+        check=False,
+    )
+    assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}\n{done.stderr}"
+    return done.stdout + done.stderr
+
+
+def replayed(folder: Path, *words: str, log: str | Path = "log.lcm", code: int = 0) -> str:
+    """What `fwk replay LOG --verify` prints; it has to find no difference, unless another exit code is expected."""
+    said = fwk(folder, "replay", log, "--verify", *words, code=code)
+    assert code or "equal: " in said, said
+    return said
+
+
 def write_files(folder: Path, files: dict[str, str]) -> None:
     """Writes files below a folder."""
     for name, content in files.items():
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(content)
+
+
+def played(folder: Path, files: Callable[[str], dict[str, str]], *arguments: str) -> Path:
+    """The recording `log.lcm` of an undisturbed run that ends by itself; `files` gets the address of the public bus."""
+    with PortBlock() as ports:
+        write_files(folder, files(ports.public_url))
+        run = Launched(folder, ports, arguments, {})
+        try:
+            assert run.wait() == 0, run.text
+        finally:
+            run.end()
+    return folder / "log.lcm"

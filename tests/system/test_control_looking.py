@@ -12,7 +12,7 @@ from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.client import RefusedError
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, PortBlock
+from tests.system.system_runs import BIN, PortBlock, fwk
 
 pytestmark = pytest.mark.system
 
@@ -118,10 +118,7 @@ def test_watched_settings_are_told_and_kept_ones_are_there_next_time(run: Steere
         assert "r/counter.step = 2.0 since tick" in run.fwk("config", "reload")
         assert "nothing else" in run.fwk("config", "reload", "r/counter")
         run.end()
-    checked = subprocess.run(
-        [BIN / "fwk", "check", "small.yaml"], cwd=run.launched.folder, capture_output=True, text=True, check=True
-    )
-    assert "r/counter.step = 2.0 (small.host.yaml:4)" in checked.stdout
+    assert "r/counter.step = 2.0 (small.host.yaml:4)" in fwk(run.launched.folder, "check", "small.yaml")
 
 
 def test_a_kept_setting_is_erased_and_the_run_takes_what_the_files_say_then(run: Steered) -> None:

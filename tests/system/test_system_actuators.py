@@ -3,9 +3,7 @@
 import math
 import os
 import signal
-import subprocess
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +12,7 @@ from lcmtypes.core import done_t, tick_event_t
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock
+from tests.system.system_runs import PortBlock, replayed
 
 pytestmark = pytest.mark.system
 
@@ -66,13 +64,6 @@ def index_of(match: Steered, name: str) -> int:
     return names.index(name)
 
 
-def verified(log: Path) -> None:
-    done: Any = subprocess.run(
-        [str(BIN / "fwk"), "replay", str(log), "--verify"], cwd=log.parent, capture_output=True, timeout=TIMEOUT_S
-    )
-    assert done.returncode == 0, done
-
-
 def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered, ports: PortBlock) -> None:
     base = index_of(match, "cyan1/base")
     drive(match, ports)
@@ -90,7 +81,7 @@ def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered,
     standing = range(stopped + round(BRAKING_S * TICKS_PER_S), stopped + 2 * TICKS_PER_S)
     assert max(speeds[tick] for tick in standing) < STANDING_M_S
     assert recording.gaps() == {}
-    verified(log)
+    replayed(log.parent, log=log)
 
 
 def test_a_killed_base_lets_the_motors_time_out(match: Steered, ports: PortBlock) -> None:
@@ -146,4 +137,4 @@ def test_what_finalize_writes_is_seen_recorded_and_replayed(
         assert [header.tick for header in last] == [tick - 1 for tick in stops]
         assert stops[0] in seen  # in the very tick from which on the writer is missing
     assert seen
-    verified(log)
+    replayed(log.parent, log=log)

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +13,7 @@ from tests.procs.support_pictures import read, shades, simulated, write_folder, 
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording, difference
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock
+from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, fwk, replayed
 
 pytestmark = pytest.mark.system
 
@@ -42,10 +41,7 @@ def test_detectors_say_of_a_folder_what_they_said_of_the_camera(
     recording = Recording(tmp_path / "a.lcm")
     for channel in ("cyan1/ball_percept", "cyan1/line_points", "cyan1/obstacle_percepts"):
         assert recording.messages[channel] == said[channel]
-    verified = subprocess.run(
-        [str(BIN / "fwk"), "replay", "a.lcm", "--verify"], cwd=tmp_path, capture_output=True, timeout=TIMEOUT_S
-    )
-    assert verified.returncode == 0, verified
+    replayed(tmp_path, log="a.lcm")
 
 
 def test_a_video_gives_the_same_messages_in_every_process_layout(
@@ -108,13 +104,7 @@ def test_fwk_cam_sees_what_a_running_camera_sees(
     assert "did you mean 'cyan1/camera'" in run.fwk("cam", "cyan1/camra", "--save", "one.png", code=2)
     run.ticks_pass(3)
     log = run.end()
-    recorded = subprocess.run(
-        [str(BIN / "fwk"), "cam", "cyan1/camera", "--log", str(log), "--save", "all/"],
-        cwd=tmp_path,
-        check=True,
-        timeout=TIMEOUT_S,
-    )
-    assert recorded.returncode == 0
+    fwk(tmp_path, "cam", "cyan1/camera", "--log", log, "--save", "all/")
     saved = sorted((tmp_path / "all").iterdir())
     assert len(saved) > 3
     assert all(np.array_equal(read(path), pictures[at % 5]) for at, path in enumerate(saved))

@@ -12,7 +12,7 @@ from fwk.record.types import use_types_of
 from tests.system.command_system import TYPES, command_system
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording, difference
-from tests.system.system_runs import BIN, Launched, PortBlock, write_files
+from tests.system.system_runs import Launched, PortBlock, played, replayed, write_files
 from tests.system.test_system_determinism import MEMORY
 
 pytestmark = pytest.mark.system
@@ -41,15 +41,7 @@ def folder(tmp_path: Path, ports: PortBlock) -> Path:
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of an undisturbed run, a process a component."""
-    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
-    write_files(folder, command_system(ports.public_url))
-    run = Launched(folder, ports, RUN, {})
-    try:
-        assert run.wait() == 0, run.text
-    finally:
-        run.end()
-        ports.release()
-    return folder / "log.lcm"
+    return played(tmp_path_factory.mktemp("reference"), command_system, *RUN)
 
 
 def begun(recording: Recording) -> list[tuple[str, int]]:
@@ -72,15 +64,6 @@ def restart(run: Launched, name: str) -> None:
     os.kill(pid, signal.SIGKILL)
     run.until_true(lambda: run.host(name) != pid, f"another {name}")
     run.until_ticks(name, 10)
-
-
-def verified(folder: Path, log: str = "log.lcm") -> str:
-    """What `fwk replay --verify` says, which has to find no difference."""
-    done = subprocess.run(
-        [BIN / "fwk", "replay", log, "--verify"], cwd=folder, capture_output=True, text=True, check=False, timeout=120
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
 
 
 def test_every_command_is_carried_out_once_and_in_order(reference: Path) -> None:
@@ -123,7 +106,7 @@ def test_a_system_in_memory_gives_the_same(folder: Path, reference: Path) -> Non
 
 
 def test_a_recording_replays_byte_for_byte(reference: Path) -> None:
-    verified(reference.parent)
+    replayed(reference.parent)
 
 
 @pytest.mark.parametrize("loss", ["0", "0.05"])
@@ -147,7 +130,7 @@ def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: La
         assert tally.sent - tally.ended < 64 + 10
     if loss == "0":  # otherwise the dead take along what was lost on its way
         assert recording.gaps() == {}
-        verified(folder)
+        replayed(folder)
 
 
 @pytest.mark.parametrize("loss", ["0", "0.05"])
@@ -167,7 +150,7 @@ def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder:
     assert recording.decoded("one/tally")[-1].done > 0
     if loss == "0":  # otherwise the dead take along what was lost on its way
         assert recording.gaps() == {}
-        verified(folder)
+        replayed(folder)
 
 
 def test_an_owner_that_does_not_come_back_lets_futures_end(launch: Launch, folder: Path) -> None:
@@ -206,7 +189,7 @@ def test_in_real_time_an_owner_that_was_late_begins_everything_once(launch: Laun
     recording = Recording(wall / "log.lcm")
     lifts = begun(recording)
     assert len(lifts) == len(set(lifts)) > 5
-    verified(wall)
+    replayed(wall)
 
 
 def test_in_real_time_with_losses_nothing_is_begun_twice(launch: Launch, wall: Path) -> None:
@@ -227,4 +210,4 @@ def test_a_flood_of_commands_is_held_back_and_said(launch: Launch, folder: Path)
     assert len(recording.headers("r/lift@one/worker")) <= 64 * 2
     reasons = recording.decoded("one/tally")[-1].reasons
     assert "rejected: queue full: 64 commands to r/lift are not finished" in reasons
-    verified(folder)
+    replayed(folder)

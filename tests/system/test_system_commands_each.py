@@ -1,6 +1,5 @@
 """One component carries out the commands to all robots."""
 
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -9,7 +8,7 @@ from fwk.record.compare import Comparison
 from fwk.record.types import use_types_of
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_runs import PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -79,12 +78,4 @@ def test_every_robot_has_its_answers_in_any_layout_and_in_replay(
         last = Recording(tmp_path / "it.lcm").decoded(f"{robot}/tally")[-1]
         assert (last.done, last.failed) == (19, 0)  # accepted in one tick, done in the next
     assert Comparison(tmp_path / "it.lcm", tmp_path / "single.lcm", False).difference is None
-    replayed = subprocess.run(
-        [str(BIN / "fwk"), "replay", "it.lcm", "--verify"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
-    )
-    assert replayed.returncode == 0, replayed.stdout + replayed.stderr
+    replayed(tmp_path, log="it.lcm")

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
@@ -14,7 +13,7 @@ from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording
 from tests.system.system_orchestra import WEATHER
-from tests.system.system_runs import BIN, PortBlock, write_files
+from tests.system.system_runs import PortBlock, fwk, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -125,11 +124,7 @@ def until_planned(run: Steered, number: int) -> None:
 
 
 def verified(log: Path) -> Recording:
-    done = subprocess.run(
-        [BIN / "fwk", "replay", "--verify", log], cwd=log.parent, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "equal: " in done.stdout
+    replayed(log.parent, log=log)
     recording = Recording(log)
     assert recording.gaps() == {}
     return recording
@@ -179,16 +174,7 @@ def test_faster_than_the_loop_it_runs_several_times_a_tick_not_more(start: Start
     run = start("--set", "r/planner.takes_s=0")
     assert run.ask("period", name="r/planner") == {"ok": True, "name": "r/planner", "period_us": 10_000, "stages": []}
     assert "100 Hz" in run.fwk("status")
-    assert (
-        "100 Hz"
-        in subprocess.run(
-            [BIN / "fwk", "check", "restless.yaml", "--channels"],
-            cwd=folder,
-            capture_output=True,
-            text=True,
-            check=True,
-        ).stdout
-    )
+    assert "100 Hz" in fwk(folder, "check", "restless.yaml", "--channels")
     until_planned(run, 30)
     run.ask("pause")
     run.steer("restart", "r/follower")

@@ -14,7 +14,7 @@ import pytest
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording, difference
 from tests.system.system_orchestra import GROUPS, PLAYERS, orchestra
-from tests.system.system_runs import BIN, Launched, PortBlock, write_files
+from tests.system.system_runs import fwk, played, write_files
 
 pytestmark = pytest.mark.system
 
@@ -26,15 +26,7 @@ RECORD = ("--record", "log.lcm")
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of an undisturbed run, a process a component."""
-    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
-    write_files(folder, orchestra(ports.public_url))
-    run = Launched(folder, ports, (*RUN, *RECORD), {})
-    try:
-        assert run.wait() == 0, run.text
-    finally:
-        run.end()
-        ports.release()
-    return folder / "log.lcm"
+    return played(tmp_path_factory.mktemp("reference"), orchestra, *RUN, *RECORD)
 
 
 @pytest.mark.core
@@ -160,12 +152,5 @@ def test_another_seed_gives_something_else(launch: Launch, folder: Path, referen
 def test_a_changed_component_is_found_by_compare(launch: Launch, folder: Path, reference: Path) -> None:
     run = launch(*RUN, *RECORD, "--set", "d/player.tone=1")
     assert run.wait() == 0, run.text
-    compared = subprocess.run(
-        [BIN / "fwk", "compare", reference, folder / "log.lcm", "--types", folder],
-        capture_output=True,
-        text=True,
-        check=False,
-        timeout=60,
-    )
-    assert compared.returncode == 1, compared.stdout
-    assert "different: d/note: tick 1, stage 5, message 1 by d/player: digest is " in compared.stdout
+    said = fwk(folder, "compare", reference, "log.lcm", code=1)
+    assert "different: d/note: tick 1, stage 5, message 1 by d/player: digest is " in said

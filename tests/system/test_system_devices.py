@@ -22,7 +22,7 @@ from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.device_system import TYPES, device_system
 from tests.system.system_logs import difference
-from tests.system.system_runs import BIN, Launched, PortBlock, write_files
+from tests.system.system_runs import Launched, PortBlock, fwk, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -137,23 +137,14 @@ def alone(launch: Launch, tmp_path: Path, ports: PortBlock) -> Callable[..., Lau
     return run
 
 
-def fwk(folder: Path, *arguments: str, code: int) -> str:
-    done = subprocess.run(
-        [str(BIN / "fwk"), *arguments], cwd=folder, capture_output=True, text=True, check=False,
-        env={**os.environ, "HOME": str(folder)},
-    )  # fmt: skip
-    assert done.returncode == code, done
-    return done.stdout + done.stderr
-
-
 def test_a_changed_component_is_found_by_the_replay(alone: Callable[..., Launched], tmp_path: Path) -> None:
     alone("log.lcm")
-    assert "equal" in fwk(tmp_path, "replay", "log.lcm", "--verify", code=0)
+    replayed(tmp_path)
     file = tmp_path / "device_parts.py"
     text = file.read_text()
     changed = "            part.value.power = [*motor.power[:1], motor.power[1] + (self.clock.tick == 17)]"
     file.write_text(text.replace("            part.value.power = motor.power", changed))
-    said = fwk(tmp_path, "replay", "log.lcm", "--verify", code=1)
+    said = replayed(tmp_path, code=1)
     assert "r/driver: left/parts: tick 17, stage 5, message 33 by r/driver: power[1] is -0.17 in" in said
     file.write_text(text.replace("part.write()\n            part.write()", "part.write()"))
     assert "left/parts: tick 1, stage 5, message 2 by r/driver: there in" in fwk(
@@ -176,7 +167,7 @@ def test_a_recording_whose_stamps_are_not_there_is_refused(
         for event in LogReader(tmp_path / "log.lcm"):
             data = event.data[kept] if event.channel == STAMP else event.data
             log.append(event.channel, data, event.time_us)
-    assert said in fwk(tmp_path, "replay", "without.lcm", "--verify", code=2)
+    assert said in replayed(tmp_path, log="without.lcm", code=2)
 
 
 def test_every_layout_of_processes_gives_the_same_and_another_setting_does_not(

@@ -16,7 +16,7 @@ from fwk.control.yaml_edit import read
 from fwk.record.log import LogReader
 from fwk.record.text_log import read_lines
 from tests.system.control_system import Steered, write_system
-from tests.system.system_runs import BIN, Launched, PortBlock
+from tests.system.system_runs import BIN, Launched, PortBlock, fwk
 
 pytestmark = pytest.mark.system
 
@@ -127,14 +127,7 @@ def test_kill_9_while_settings_are_set_loses_nothing_that_was_acknowledged(
     assert killed >= 3
     launched.signal(signal.SIGKILL)
     assert launched.gone_within(30)
-    checked = subprocess.run(
-        [BIN / "fwk", "config", "get", "r/counter.step", "--file", "small.yaml", "--json"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    (row,) = json.loads(checked.stdout)
+    (row,) = json.loads(fwk(tmp_path, "config", "get", "r/counter.step", "--file", "small.yaml", "--json"))
     assert (row["value"], row["origin"]) == (12.0, "small.host.yaml:4")
 
 

@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 from pathlib import Path
 
 import cv2
@@ -14,7 +13,7 @@ from fwk.record.pictures import FRAME, pictures_in
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import difference
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_runs import PortBlock, fwk, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -117,24 +116,15 @@ def record(launch: Launch, *options: str, log: str = "log.lcm") -> None:
     assert run.wait() == 0, run.text
 
 
-def fwk(folder: Path, *arguments: str, code: int = 0) -> str:
-    """What a command says."""
-    done = subprocess.run(
-        [str(BIN / "fwk"), *arguments], cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
-    )
-    assert done.returncode == code, done
-    return done.stdout + done.stderr
-
-
 def test_without_recorded_frames_a_device_is_left_alone_and_the_rest_compared(launch: Launch, eyes: Path) -> None:
     record(launch)
-    said = fwk(eyes, "replay", "log.lcm", "--verify")
+    said = replayed(eyes)
     assert "not replayed: r/camera: 'the eye' is a device" in said
     assert "not replayed: a/watcher: it looks at r/image, whose frames are not recorded" in said
     assert "equal: 120 messages" in said  # of the grey camera, who looks at it, and the follower
     assert "cannot be replayed: a/watcher" in fwk(eyes, "replay", "log.lcm", "--only", "a/watcher", code=2)
     assert "is a device" in fwk(eyes, "replay", "log.lcm", "--only", "r/camera", code=2)
-    assert "equal" in fwk(eyes, "replay", "log.lcm", "--verify", "--only", "a/follower")
+    assert "equal" in replayed(eyes, "--only", "a/follower")
     assert (eyes / "opened").read_text() == "opened\n"
 
 
@@ -144,15 +134,15 @@ def test_readers_of_recorded_frames_do_the_same_again_without_the_camera(
 ) -> None:
     wants(eyes, "record: {frames: [r, g/image]}")
     record(launch, "--hosting", hosting)
-    said = fwk(eyes, "replay", "log.lcm", "--verify")
+    said = replayed(eyes)
     assert said.count("not replayed") == 1
     assert "equal: 160 messages" in said
-    assert "equal: 40 messages" in fwk(eyes, "replay", "log.lcm", "--verify", "--only", "a/watcher")
-    assert "equal: 40 messages" in fwk(eyes, "replay", "log.lcm", "--verify", "--only", "b/watcher")
+    assert "equal: 40 messages" in replayed(eyes, "--only", "a/watcher")
+    assert "equal: 40 messages" in replayed(eyes, "--only", "b/watcher")
     assert (eyes / "opened").read_text() == "opened\n"
     changed = (eyes / "eyes.py").read_text().replace("zlib.crc32(pixels)", "zlib.crc32(pixels | 1)")
     (eyes / "eyes.py").write_text(changed)
-    said = fwk(eyes, "replay", "log.lcm", "--verify", "--only", "*/watcher", code=1)
+    said = replayed(eyes, "--only", "*/watcher", code=1)
     assert "different: 80 of 80 messages" in said
     assert "x_m" in said
 
@@ -184,7 +174,7 @@ def test_a_killed_reader_of_recorded_frames_replays(launch: Launch, eyes: Path, 
     run.ticks_pass(10)
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text
-    assert "equal" in fwk(eyes, "replay", "log.lcm", "--verify")
+    assert "equal" in replayed(eyes)
 
 
 def test_a_frame_that_is_not_in_the_recording_is_named(launch: Launch, eyes: Path) -> None:
@@ -194,9 +184,9 @@ def test_a_frame_that_is_not_in_the_recording_is_named(launch: Launch, eyes: Pat
     frames = [event.data for event in LogReader(eyes / "log.lcm") if event.channel == FRAME]
     at = data.index(frames[39])  # the one that is seen in tick 20
     (eyes / "log.lcm").write_bytes(data[: at + 8] + bytes(len(frames[39]) - 8) + data[at + len(frames[39]) :])
-    said = fwk(eyes, "replay", "log.lcm", "--verify", "--only", "a/watcher", code=2)
+    said = replayed(eyes, "--only", "a/watcher", code=2)
     assert "frame 40 of r/image is not in the recording" in said
-    assert "equal" in fwk(eyes, "replay", "log.lcm", "--verify", "--only", "a/watcher", "--to-tick", "19")
+    assert "equal" in replayed(eyes, "--only", "a/watcher", "--to-tick", "19")
 
 
 def test_a_camera_that_is_not_there_is_a_mistake_in_the_launch_file(launch: Launch, eyes: Path) -> None:

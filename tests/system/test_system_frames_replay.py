@@ -2,7 +2,6 @@
 
 import os
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ import pytest
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_runs import PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -94,20 +93,6 @@ def watch(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> P
     return tmp_path
 
 
-def replayed(folder: Path, *arguments: str, code: int = 0) -> str:
-    """What `fwk replay log.lcm --verify` says."""
-    done = subprocess.run(
-        [str(BIN / "fwk"), "replay", "log.lcm", "--verify", *arguments],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
-    )
-    assert done.returncode == code, done
-    return done.stdout + done.stderr
-
-
 def lost(folder: Path, watcher: str) -> int:
     """How many iterations of a watcher found their frame overwritten."""
     return [pose.y_m for pose in Recording(folder / "log.lcm").decoded(f"{watcher}/pose")].count(-1.0)
@@ -126,5 +111,5 @@ def test_frames_that_a_slow_reader_lost_are_lost_again_in_a_replay(
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text
     assert lost(watch, "b") > 6
-    assert "equal" in replayed(watch)
-    assert "equal" in replayed(watch, "--only", "b/watcher")
+    replayed(watch)
+    replayed(watch, "--only", "b/watcher")

@@ -1,6 +1,5 @@
 """What components write in `init` is a message like all others: seen, stamped, recorded and replayed."""
 
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -8,7 +7,7 @@ import pytest
 from fwk.record.compare import Comparison
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_runs import PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -76,15 +75,7 @@ def test_they_go_out_with_the_first_iteration(launch: Launch, tmp_path: Path, po
         *((tick, 5, sequence, again) for tick, sequence in ((11, 7), (16, 8))),
     ]
     assert [header.tick for header in recording.headers("r/heard")] == [1, 1, 1, 1, 6, 8, 8, 11, 16]
-    done = subprocess.run(
-        [str(BIN / "fwk"), "replay", "it.lcm", "--verify"],
-        cwd=tmp_path,
-        capture_output=True,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
+    replayed(tmp_path, log="it.lcm")
     launch("it.yaml", "--ticks", "6", "--speed", "max", "--record", "six.lcm").wait()
     launch("it.yaml", "--ticks", "6", "--speed", "max", "--record", "single.lcm", "--hosting", "single").wait()
     assert Comparison(tmp_path / "six.lcm", tmp_path / "single.lcm", False).difference is None

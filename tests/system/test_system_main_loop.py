@@ -1,7 +1,6 @@
 """A component of a real run takes the main loop over and gives it back; the recording replays."""
 
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from lcmtypes.core import tick_event_t
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording, difference
-from tests.system.system_runs import BIN, PortBlock, write_files
+from tests.system.system_runs import PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -96,14 +95,6 @@ def orders(recording: Recording) -> dict[int, list[str]]:
     }
 
 
-def verify(folder: Path, log: str = "log.lcm") -> str:
-    done = subprocess.run(
-        [BIN / "fwk", "replay", "--verify", log], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stdout + done.stderr
-    return done.stdout
-
-
 def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_same(launch: Launch, taken: Path) -> None:
     run = launch("taken.yaml", "--ticks", "60", "--record", "log.lcm")
     assert run.wait() == 0, run.text
@@ -115,12 +106,12 @@ def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_sam
     assert recording.gaps() == {}
     places = [(header.tick, header.stage) for header in recording.headers("d/imu") if 5 <= header.tick <= 7]
     assert places == [(5, 7), (6, 0), (6, 2), (6, 3), (7, 0), (7, 2), (7, 3)]
-    assert "equal: " in verify(taken)
+    replayed(taken)
     for arguments in (("--hosting", "single"), ("--hosting", "robot"), ()):
         again = launch("taken.yaml", "--ticks", "60", "--record", "again.lcm", *arguments)
         assert again.wait() == 0, again.text
         assert difference(taken / "log.lcm", taken / "again.lcm") == ""
-        verify(taken, "again.lcm")
+        replayed(taken, log="again.lcm")
 
 
 def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> None:
@@ -130,7 +121,7 @@ def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> N
     assert "lost 0" in run.text
     recording = Recording(taken / "log.lcm")
     assert {header.tick for header in recording.headers("e/imu")} == {*range(1, 6), *range(401, 411)}
-    assert "equal: " in verify(taken)
+    replayed(taken)
     again = launch("taken.yaml", "--ticks", "410", "--record", "again.lcm", "--hosting", "single", *sets)
     assert again.wait() == 0, again.text
     assert difference(taken / "log.lcm", taken / "again.lcm") == ""
@@ -144,7 +135,7 @@ def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
     assert orders(recording)[9] == TAKEN
     assert orders(recording)[10] == USUAL
     assert recording.gaps() == {}
-    assert "equal: " in verify(taken)
+    replayed(taken)
 
 
 def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
@@ -161,7 +152,7 @@ def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, 
     run.ask("resume")
     run.ticks_pass(20)
     log = run.end()
-    assert "equal: " in verify(taken, str(log))
+    replayed(taken, log=log)
 
 
 def test_in_real_time_it_is_taken_over_too(launch: Launch, taken: Path) -> None:
@@ -172,4 +163,4 @@ def test_in_real_time_it_is_taken_over_too(launch: Launch, taken: Path) -> None:
     recording = Recording(taken / "log.lcm")
     assert orders(recording)[6] == TAKEN
     assert orders(recording)[30] == USUAL
-    assert "equal: " in verify(taken)
+    replayed(taken)

@@ -4,7 +4,6 @@ import os
 import random
 import re
 import signal
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -15,21 +14,12 @@ from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.opening_system import market
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, write_files
+from tests.system.system_runs import PortBlock, fwk, replayed, write_files
 
 pytestmark = pytest.mark.system
 
 GROUPS = "hosts: {stall: [a/trader, c/trader, a/bystander]}"
 TRADERS = ("a/trader", "b/trader", "c/trader")
-
-
-def fwk(folder: Path, *words: str, code: int = 0) -> str:
-    """What a command prints."""
-    done = subprocess.run(
-        [str(BIN / "fwk"), *words], cwd=folder, capture_output=True, text=True, timeout=2 * TIMEOUT_S, check=False
-    )
-    assert done.returncode == code, done
-    return done.stdout + done.stderr
 
 
 def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
@@ -44,8 +34,8 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
     goods = [channel for channel in recording.messages if channel.startswith("shop/good")]
     assert len(goods) >= 3
     assert len({header.writer for channel in goods for header in recording.headers(channel)}) == 3
-    assert "equal" in fwk(tmp_path, "replay", "process.log", "--verify")
-    assert "equal" in fwk(tmp_path, "replay", "process.log", "--verify", "--only", "b/trader")
+    replayed(tmp_path, log="process.log")
+    replayed(tmp_path, "--only", "b/trader", log="process.log")
 
 
 @pytest.mark.parametrize("clock", ["lockstep", "real time"])
@@ -79,8 +69,8 @@ def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
     assert run.launched.wait() == 0, run.launched.text
     kinds = {event.kind for record in Recording(tmp_path / "log.lcm").records for event in record.events}
     assert {tick_event_t.OPENED, tick_event_t.LOST} <= kinds
-    assert "equal" in fwk(tmp_path, "replay", "log.lcm", "--verify")
-    assert "equal" in fwk(tmp_path, "replay", "log.lcm", "--verify", "--only", "c/trader")
+    replayed(tmp_path)
+    replayed(tmp_path, "--only", "c/trader")
 
 
 def test_a_changed_component_is_found_on_a_channel_that_it_opened(
@@ -92,7 +82,7 @@ def test_a_changed_component_is_found_on_a_channel_that_it_opened(
     code = tmp_path / "traders.py"
     changed = "float(self.digest) + (self.clock.tick >= 20 and self.name == 'b/trader')"
     code.write_text(code.read_text().replace("heading_rad = float(self.digest)\n", f"heading_rad = {changed}\n"))
-    said = fwk(tmp_path, "replay", "log.lcm", "--verify", code=1)
+    said = replayed(tmp_path, code=1)
     assert re.search(r"b/trader: b/spot: tick 20, stage 6, message \d+ by b/trader: heading_rad is", said), said
 
 

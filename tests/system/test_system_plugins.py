@@ -1,6 +1,5 @@
 """A component that starts and stops others does so between two ticks, the same way each time, and it replays."""
 
-import subprocess
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,7 +7,7 @@ import pytest
 
 from tests.system.control_system import PARTS
 from tests.system.system_logs import Recording, difference
-from tests.system.system_runs import BIN, TIMEOUT_S, Launched, PortBlock, write_files
+from tests.system.system_runs import Launched, PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -81,6 +80,4 @@ def test_it_happens_at_the_same_ticks_in_every_run_and_replays(
     assert ticks["r/pose"] == list(range(1, 21))
     writers = [header.writer for header in recording.headers("r/imu")]
     assert list(dict.fromkeys(writers)) == ["r/counter", "r/counter#2", "r/counter#3", "r/counter#4"]
-    command = [str(BIN / "fwk"), "replay", str(logs[0]), "--verify"]
-    replayed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, timeout=TIMEOUT_S)
-    assert replayed.returncode == 0, replayed.stdout + replayed.stderr
+    replayed(tmp_path, log=logs[0])

@@ -20,7 +20,7 @@ from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, status_t, ti
 from tests.system.conftest import Launch
 from tests.system.system_logs import difference
 from tests.system.system_orchestra import orchestra
-from tests.system.system_runs import Launched, PortBlock, pause, write_files
+from tests.system.system_runs import PortBlock, pause, played
 
 pytestmark = pytest.mark.system
 
@@ -31,15 +31,7 @@ RUN = ("launch/orchestra.yaml", "--ticks", "60", "--seed", "7", "--record", "log
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of an undisturbed run."""
-    folder, ports = tmp_path_factory.mktemp("reference"), PortBlock()
-    write_files(folder, orchestra(ports.public_url))
-    run = Launched(folder, ports, RUN, {})
-    try:
-        assert run.wait() == 0, run.text
-    finally:
-        run.end()
-        ports.release()
-    return folder / "log.lcm"
+    return played(tmp_path_factory.mktemp("reference"), orchestra, *RUN)
 
 
 class Stranger:
