@@ -12,7 +12,7 @@ from fwk.plan.names import mistake_in
 T = TypeVar("T")
 
 WISHES_MAX = 64
-"""Openings and closings that a component may ask for in an iteration; they travel in one datagram."""
+"""Openings and closings that a component may ask for in an iteration; more is taken for a mistake."""
 
 
 class NotOpen(Exception):  # noqa: N818 - a state

@@ -43,6 +43,7 @@ class Sender:
         self.socket.setblocking(False)
         # Not from 0: whoever sends from this port next must not seem to go on with a message that this one left undone.
         self._number = itertools.count(secrets.randbits(32))
+        self._assembler = wire.Assembler()
         self.refused = 0  # datagrams that the system would not take; receivers fetch them again
 
     def publish(self, channel: bytes, data: bytes, port: int) -> None:
@@ -69,15 +70,18 @@ class Sender:
         """The next message that was sent to this port alone, as (channel, data); None when nothing is waiting.
 
         Raises:
-            MessageError: it is no small LCM message, or does not come from one of the ports of `members`.
+            MessageError: it is no LCM message, or does not come from one of the ports of `members`.
         """
-        try:
-            datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
-        except OSError:  # nothing there, or the news that an earlier datagram found nobody
-            return None
-        if address[0] != LOOPBACK or address[1] not in members:
-            raise MessageError(f"datagram from port {address[1]}, which is not of this run")
-        return wire.short(datagram)
+        message = None
+        while message is None:
+            try:
+                datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
+            except OSError:  # nothing there, or the news that an earlier datagram found nobody
+                return None
+            if address[0] != LOOPBACK or address[1] not in members:
+                raise MessageError(f"datagram from port {address[1]}, which is not of this run")
+            message = self._assembler.feed(datagram, address[1])
+        return message
 
     def _send(self, channel: bytes, data: bytes, address: tuple[str, int]) -> None:
         for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):

@@ -42,18 +42,6 @@ def is_short(datagram: bytes) -> bool:
     return datagram.startswith(_SHORT_MAGIC)
 
 
-def short(datagram: bytes) -> tuple[bytes, bytes]:
-    """Channel and data of a message that must have come in one datagram, as all of the framework's small ones do.
-
-    Raises:
-        MessageError: it is not of LCM's format, or a fragment.
-    """
-    end = datagram.find(b"\0", 8)
-    if datagram[:4] != _SHORT_MAGIC or end < 0:
-        raise MessageError(f"datagram of {len(datagram)} bytes that is no small LCM message")
-    return datagram[8:end], datagram[end + 1 :]
-
-
 class _Unfinished:
     def __init__(self, size: int, count: int) -> None:
         self.size = size

@@ -21,7 +21,6 @@ from fwk.plan.settings import effective
 from fwk.plan.source import Node
 
 _NOW = "now"
-_CHANGE_MAX = 30_000  # bytes of all changes of a tick; they travel in one datagram
 
 
 @dataclass(frozen=True)
@@ -95,8 +94,6 @@ class RunSettings:
             raise RequestError(
                 "\n".join(str(problem).removeprefix(f"{PLACE}: ") for problem in error.problems)
             ) from error
-        if sum(len(new.text) for new in found) > _CHANGE_MAX:
-            raise RequestError(f"these are more than {_CHANGE_MAX} bytes of settings; set fewer at once")
         return found
 
     def ask(self, new: NewSettings) -> None:

@@ -71,6 +71,7 @@ class Gateway:
         self._next = 1  # tick whose record comes next
         self._open = True
         self._handlers: list[Callable[[], None]] = []
+        self._assembler = wire.Assembler()
         self._poller = select.poll()
         for source in (self._records, self._lines, self._status, self._sender.socket, control):
             self._poller.register(source, select.POLLIN)
@@ -305,9 +306,9 @@ class Gateway:
                 known = self._ports.supervisor <= address[1] <= self._ports.host(self._ports.gateway)
                 if not known or not (anybody or address[1] == self._ports.supervisor):
                     raise MessageError(f"datagram from port {address[1]}, which is not of this run")
-                message = wire.Assembler().feed(datagram, address[1])
-                if message is None or message[0] != channel:
+                message = self._assembler.feed(datagram, address[1])
+                if message and message[0] != channel:
                     raise MessageError("a message of another channel")
-                found.append(message[1])
+                found += [message[1]] if message else []
             except MessageError as error:
                 self._complaints(channel.decode(), f"{error}; refused")

@@ -70,6 +70,7 @@ class Host:
         stages = sorted({stage for component in self._members.plans for stage in component.stages})
         listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
         self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
+        self._assembler = wire.Assembler()
         self._poller = select.epoll()  # unlike poll() it does not look at every socket again each time
         for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
             self._poller.register(descriptor, select.EPOLLIN)
@@ -136,11 +137,12 @@ class Host:
         try:
             if address[1] != self._supervisor_port:
                 raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
-            tick: tick_t = sync.decode_tick(wire.short(datagram)[1])
+            message = self._assembler.feed(datagram, address[1])
+            tick: tick_t | None = sync.decode_tick(message[1]) if message else None
         except MessageError as error:
             self._complaints("fwk/tick", f"{error}; refused")
             return None
-        return tick if tick.run == self._assignment.run else None
+        return tick if tick and tick.run == self._assignment.run else None
 
     def _answer(self, tick: tick_t, stage: int) -> None:
         if self._assignment.host in tick.absent:

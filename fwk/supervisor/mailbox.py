@@ -87,19 +87,24 @@ class Mailbox:
         if source not in self._members:
             raise MessageError(f"datagram from port {source}, which is not of this run")
         if datagram.startswith(sync.DONE_START, 8) and wire.is_short(datagram):
-            done = sync.decode_done(datagram[8 + len(sync.DONE_START) :])
-            self._check(done, source)
-            if done.run == self._run:
-                self.on_done(done)
+            self._take_done(datagram[8 + len(sync.DONE_START) :], source)
             return
         channel, data = self._assembler.feed(datagram, source) or (b"", b"")
-        if channel == b"fwk/actual":
+        if channel == sync.DONE:
+            self._take_done(data, source)
+        elif channel == b"fwk/actual":
             actual = actual_t.decode(data)
             self._check(actual, source)
             if actual.run == self._run:
                 self.on_actual(actual)
         elif channel:
             raise MessageError(f"channel {channel!r} does not belong on the sync bus")
+
+    def _take_done(self, data: bytes, source: int) -> None:
+        done = sync.decode_done(data)
+        self._check(done, source)
+        if done.run == self._run:
+            self.on_done(done)
 
     def _check(self, message: done_t | actual_t, source: int) -> None:
         if source - self._first_host != message.host:

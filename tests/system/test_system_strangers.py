@@ -120,13 +120,15 @@ class Ears:
         self.run = 0
         self._supervisor = ports.supervisor
         self._socket = multicast_receiver(ports.stage(0))
+        self._assembler = wire.Assembler()
 
     def listen(self) -> None:
         with contextlib.suppress(BlockingIOError):
             while not self.run:
                 datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
                 if address[1] == self._supervisor:
-                    self.run = sync.decode_tick(wire.short(datagram)[1]).run
+                    _, data = self._assembler.feed(datagram, address[1]) or (b"", b"")
+                    self.run = sync.decode_tick(data).run
 
     def close(self) -> None:
         self._socket.close()

@@ -81,7 +81,7 @@ def test_what_can_never_be_opened_is_refused_at_once(kind: type, name: str, what
         bench().component.blackboard.open_for_reading(kind, name)
 
 
-def test_an_iteration_cannot_ask_for_more_than_a_datagram_carries() -> None:
+def test_an_iteration_that_asks_for_too_much_is_refused() -> None:
     board = bench().component.blackboard
     for number in range(64):
         board.open_for_reading(imu_t, f"a/imu{number}")
