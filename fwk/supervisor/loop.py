@@ -18,11 +18,12 @@ from fwk.supervisor.missed import Missed
 from fwk.supervisor.opening import Opening
 from fwk.supervisor.pace import Pace
 from fwk.supervisor.patience import Patience
-from fwk.supervisor.records import Records, change_message, void_messages
+from fwk.supervisor.records import Records, void_messages
 from fwk.supervisor.table import Change, HostEntry
+from fwk.supervisor.telling import Telling
 from fwk.supervisor.turns import Turns
 from fwk.supervisor.wishes import Wishes
-from lcmtypes.core import done_t, tick_event_t, tick_t
+from lcmtypes.core import done_t, tick_event_t
 
 REPEAT_LONGEST_US = 100_000
 LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
@@ -62,7 +63,6 @@ class MainLoop:
         """Called again and again while a stage takes longer than a moment."""
         self.times = LoopTimes(plan, hosts.table, log)
         self._plan = plan
-        self._run = run
         self._hosts = hosts
         self._ledger = ledger
         self._mailbox = mailbox
@@ -89,6 +89,7 @@ class MainLoop:
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
         self.records = Records(self._ports, run, sender, mailbox)
+        self._telling = Telling(run, self._ports, ledger, sender)
         self._missed = Missed(plan, self.records)
         continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
         self._continuous = continuous if continuous.entries else None
@@ -98,8 +99,6 @@ class MainLoop:
             hosts.blackboard = self.opening.snapshot
         self.newest_change = 0
         """Number of the newest change of settings, or of the blackboard."""
-        self._told = b""  # the newest tick as it was sent
-        self._owed: dict[int, tuple[bytes, int]] = {}  # the tick that a late host works on, or lost, and its stage
         mailbox.on_done = self._on_done
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
@@ -152,7 +151,7 @@ class MainLoop:
             return
         if self._hosts.leaving and self._lockstep:
             self._see_off()
-        self._remind()
+        self._telling.remind(self._hosts.table)
         if self.turns.asked:
             self._decide()
         if self.opening and self.opening.asked:
@@ -235,39 +234,16 @@ class MainLoop:
                 self._broadcast(members, time_us)
                 sent_us = monotonic_us()
 
+    def _broadcast(self, members: list[HostEntry], time_us: int) -> None:
+        holder = self.turns.holder
+        self._telling.broadcast(self.tick, time_us, self._stage, self._place, holder, members, self._outstanding)
+
     def _look_after(self, members: list[HostEntry]) -> None:
         """Starts again who has to be, and does not wait for those who will not come back."""
         self._break_off(monotonic_us())
         if self._hosts.unsettled:
             self._hosts.maintain()
             self._outstanding &= {entry.index for entry in members if entry.expected}
-
-    def _broadcast(self, members: list[HostEntry], time_us: int) -> None:
-        told = [entry for entry in members if entry.index in self._outstanding and entry.state == "running"]
-        if not told:
-            return
-        since = min(entry.seen for entry in told)
-        tick = tick_t()
-        tick.run, tick.tick, tick.stage, tick.time_us = self._run, self.tick, self._place, time_us
-        tick.main_loop = self.turns.holder
-        tick.channel, tick.sequence = self._ledger.news(self._stage, since)
-        tick.n_marks = len(tick.channel)
-        tick.voids = void_messages(self._ledger, since)
-        tick.n_voids = len(tick.voids)
-        tick.absent = [entry.index for entry in members if entry not in told]
-        tick.n_absent = len(tick.absent)
-        changes = {change.number: change for entry in told for change in entry.changes}
-        tick.changes = [change_message(changes[number]) for number in sorted(changes)]
-        tick.n_changes = len(tick.changes)
-        self._told = sync.encode_tick(tick)
-        self._sender.publish(sync.TICK, self._told, self._ports.stage(self._stage))
-
-    def _remind(self) -> None:
-        """Who is late may have lost its tick, or its done was lost: the tick is repeated until it is answered."""
-        for entry in self._hosts.table:
-            if entry.busy:
-                owed, stage = self._owed[entry.index]
-                self._sender.publish(sync.TICK, owed, self._ports.stage(stage))
 
     def _see_off(self) -> None:
         """Waits until those who leave have finalized: what they wrote then is visible in the tick that begins.
@@ -354,19 +330,12 @@ class MainLoop:
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
         for entry in members:
             if entry.index in self._outstanding:
-                entry.busy, self._owed[entry.index] = (self.tick, self._place), (self._told_to(entry, members), stage)
-                entry.seen = self._step
+                entry.busy, entry.seen = (self.tick, self._place), self._step
+                self._telling.owe(entry, members, stage)
                 self.records.event(tick_event_t.LATE, entry.index)
                 self.late += not entry.held
                 self.times.late(entry, stage, self.tick, self._stage_time_us)
         self._outstanding = set()
-
-    def _told_to(self, entry: HostEntry, members: list[HostEntry]) -> bytes:
-        """The newest tick for one host alone: a process that is started meanwhile must not take it for its first."""
-        tick: tick_t = sync.decode_tick(self._told)
-        tick.absent = [other.index for other in members if other is not entry]
-        tick.n_absent = len(tick.absent)
-        return sync.encode_tick(tick)
 
     def _on_started(self, entry: HostEntry) -> None:
         self.records.event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
