@@ -1,0 +1,160 @@
+"""What the check says of modules and classes that a launch file names."""
+
+from pathlib import Path
+
+from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
+
+
+@rows(
+    Broken(
+        "it.yaml:1: it/a: no module 'trakcer'; did you mean 'tracker'?",
+        """
+        components: {it/a: {use: trakcer}}
+        --- tracker.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'mine.trakcer'; did you mean 'mine.tracker'?",
+        """
+        components: {it/a: {use: mine.trakcer}}
+        --- mine/tracker.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'mine.tracker.inner'; there is mine.tracker, mine.tracker_inner",
+        """
+        components: {it/a: {use: mine.tracker.inner}}
+        --- mine/tracker.py
+        --- mine/tracker_inner.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: 'procs/omni_ball.py' is no module; write it as in Python: procs.omni_ball, or "
+        "procs.omni_ball:OmniBall",
+        "components: {it/a: {use: procs/omni_ball.py}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'without' defines no component; derive a class from fwk.Component",
+        """
+        components: {it/a: {use: without}}
+        --- without.py
+        from fwk import Component
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'several' defines several components; say which: several:One or several:Two",
+        """
+        components: {it/a: {use: several}}
+        --- several.py
+        from fwk import Component
+        class One(Component):
+            stage = "think"
+        class Two(One): ...
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: module 'plan_parts' has no component 'Odmeter'; did you mean 'Odometer'?",
+        "components: {it/a: {use: plan_parts:Odmeter}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: plan_parts:NotAComponent is no component; derive it from fwk.Component",
+        "components: {it/a: {use: plan_parts:NotAComponent}}",
+    ),
+    Broken(
+        'it.yaml:1: it/a: plan_parts.Stageless: no stage; say for example: stage = "think"',
+        "components: {it/a: {use: plan_parts:Stageless}}",
+    ),
+    Broken(
+        """
+        it.yaml:2: it/a: restless.Both: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous
+        it.yaml:3: it/b: restless.Wrong: rate_hz is 'often'; it should be a number from 0 to 10000
+        it.yaml:4: it/c: restless.Looks.image: a continuous component has no frames: their ring goes on without it; \
+give it a stage, or let a component with a stage look
+        it.yaml:5: it/d: restless.Times.sun: a continuous component is no time source; give it a stage
+        it.yaml:6: it/e: it is continuous and takes part in no stage; leave 'stage' out
+        it.yaml:7: it/f: it takes part in stages; leave 'rate_hz' out, or give its class a rate_hz instead of a stage
+        """,
+        """
+        components:
+          it/a: {use: restless:Both}
+          it/b: {use: restless:Wrong}
+          it/c: {use: restless:Looks}
+          it/d: {use: restless:Times}
+          it/e: {use: restless:Right, stage: think}
+          it/f: {use: restless:Staged, rate_hz: 5}
+        --- restless.py
+        from fwk import Component, Image, TimeSource
+        class Both(Component):
+            stage = "think"
+            rate_hz = 5
+        class Wrong(Component):
+            rate_hz = "often"
+        class Looks(Component):
+            rate_hz = 5
+            image: Image
+        class Times(Component):
+            rate_hz = 5
+            sun: TimeSource
+        class Right(Component):
+            rate_hz = 0
+        class Staged(Component):
+            stage = "think"
+        """,
+    ),
+)
+def test_modules_and_classes(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
+
+
+@rows(
+    Broken(
+        "it.yaml:1: it/a: cannot import 'typing_error': invalid syntax (typing_error.py:3)",
+        """
+        components: {it/a: {use: typing_error}}
+        --- typing_error.py
+
+        x = 1
+        if x ==
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'outer': NameError: name 'undefined' is not defined (inner.py:1)",
+        """
+        components: {it/a: {use: outer}}
+        --- outer.py
+        import inner
+        --- inner.py
+        def f(): return undefined
+        f()
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'hungry': ModuleNotFoundError: No module named 'pancakes' (hungry.py:1)",
+        """
+        components: {it/a: {use: hungry}}
+        --- hungry.py
+        import pancakes
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'leaving': SystemExit: 3 (leaving.py:1)",
+        """
+        components: {it/a: {use: leaving}}
+        --- leaving.py
+        raise SystemExit(3)
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'decoding': ValueError: '0.1' is no channel (decoding.py:3)",
+        """
+        components: {it/a: {use: decoding}}
+        --- decoding.py
+        import json
+        def hook(text):
+            raise ValueError(f"{text!r} is no channel")
+        json.loads("0.1", parse_float=hook)
+        """,
+    ),
+)
+def test_imports(folder: Path, broken: Broken) -> None:
+    assert said(broken, folder) == expected(broken)
