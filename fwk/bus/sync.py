@@ -8,6 +8,8 @@ from lcmtypes.core import done_t, tick_record_t, tick_t
 
 TICK = b"fwk/tick"
 DONE = b"fwk/done"
+RECORD = b"fwk/record"
+OPENS = b"fwk/opens"
 DONE_START = DONE + b"\0"  # what follows the number of its datagram
 
 encode_tick = encoder(tick_t, "fwk/tick")

@@ -3,7 +3,7 @@
 import select
 import socket
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
 from fwk.aspects.logging import Logger
@@ -17,7 +17,7 @@ from fwk.gateway.outside import Outside
 from fwk.gateway.strangers import Strangers
 from fwk.host.inputs import Inputs
 from fwk.host.report import Complaints
-from fwk.instances import Instances, facts_of
+from fwk.instances import Fact, Instances, facts_of
 from fwk.messages import Header, MessageError
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
 from fwk.runner import AWAY_TICKS
@@ -69,6 +69,7 @@ class Gateway:
         self._recent: dict[int, list[tuple[int, int, bytes]]] = {}  # tick, sequence number, message
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
+        self._announced = 0  # newest change of the blackboard that was announced
         self._open = True
         self._handlers: list[Callable[[], None]] = []
         self._assembler = wire.Assembler()
@@ -122,9 +123,14 @@ class Gateway:
         return sequence
 
     def _receive_records(self) -> None:
-        for data in self._drain(self._records, b"fwk/record"):
+        for channel, data in self._drain(self._records, sync.RECORD, sync.OPENS):
             record = sync.decode_record(data)
-            if record.run == self._run and record.tick >= self._next:
+            if record.run == self._run and channel == sync.OPENS:
+                for change in record.changes:
+                    self._listen(facts_of(change.settings))
+                    self._announced = change.number
+                self._acknowledge()
+            elif record.run == self._run and record.tick >= self._next:
                 self._waiting[record.tick] = (record, data)
             elif record.run == self._run:
                 self._acknowledge()
@@ -167,23 +173,22 @@ class Gateway:
         """What components opened at run time is collected as everything else."""
         facts = facts_of(change.settings)
         self.instances.apply(facts)
+        self._listen(facts)
+        for fact in facts:
+            if fact.kind == "write" and fact.opening and fact.opening.channel >= len(self._plan.channels):
+                self._inputs.comes_from(fact.opening.channel, self._plan.components[fact.component].host)
+
+    def _listen(self, facts: Iterable[Fact]) -> None:
+        """To channels that were never open before."""
         for fact in facts:
             opening = fact.opening
-            if opening and opening.channel >= len(self._plan.channels):
-                if opening.channel not in self._inputs:
-                    self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
-                if fact.kind == "write":
-                    self._inputs.comes_from(opening.channel, self._plan.components[fact.component].host)
+            if opening and opening.channel not in self._inputs:
+                self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
 
     def _acknowledge(self) -> None:
         done = done_t()
-        done.run, done.host, done.tick, done.stage, done.next_time_us = (
-            self._run,
-            self._ports.gateway,
-            self._next - 1,
-            -1,
-            -1,
-        )
+        done.run, done.host, done.incarnation = self._run, self._ports.gateway, self._announced
+        done.tick, done.stage, done.next_time_us = self._next - 1, -1, -1
         marks = self._outside.marks
         done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
         self._sender.publish(sync.DONE, sync.encode_done(done), self._ports.sync)
@@ -195,9 +200,9 @@ class Gateway:
         self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.supervisor)
 
     def _receive_lines(self) -> None:
-        for data in self._drain(self._lines, b"fwk/log", anybody=True):
+        for _, data in self._drain(self._lines, b"fwk/log", anybody=True):
             self._emit("fwk/log", data)
-        for data in self._drain(self._status, b"fwk/status"):
+        for _, data in self._drain(self._status, b"fwk/status"):
             self._emit("fwk/status", data)
 
     def _log_line(self, line: log_t) -> None:
@@ -295,8 +300,8 @@ class Gateway:
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
 
-    def _drain(self, source: socket.socket, channel: bytes, anybody: bool = False) -> list[bytes]:
-        found: list[bytes] = []
+    def _drain(self, source: socket.socket, *channels: bytes, anybody: bool = False) -> list[tuple[bytes, bytes]]:
+        found: list[tuple[bytes, bytes]] = []
         while True:
             try:
                 datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
@@ -307,8 +312,8 @@ class Gateway:
                 if not known or not (anybody or address[1] == self._ports.supervisor):
                     raise MessageError(f"datagram from port {address[1]}, which is not of this run")
                 message = self._assembler.feed(datagram, address[1])
-                if message and message[0] != channel:
+                if message and message[0] not in channels:
                     raise MessageError("a message of another channel")
-                found += [message[1]] if message else []
+                found += [message] if message else []
             except MessageError as error:
-                self._complaints(channel.decode(), f"{error}; refused")
+                self._complaints(channels[0].decode(), f"{error}; refused")

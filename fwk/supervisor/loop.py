@@ -32,6 +32,7 @@ STUCK_US = 1_000_000  # how long what shall stop may keep the loop from its next
 STANDS_US = 100_000  # how often to look after hosts while the run is paused
 WINDOW = 16  # ticks that the loop may be ahead of the gateway
 REAL_TIME_WINDOW_US = 4_000_000  # in real time as many ticks as take so long: it goes on while somebody stands still
+ANNOUNCE_US = 20_000  # how long a gateway that stands still may hold up real time when channels are opened
 FINISH_US = 2_000_000  # how long an interrupted run waits for the gateway
 
 
@@ -120,19 +121,22 @@ class MainLoop:
         """At a tick boundary: new settings of a component, which its next iteration has."""
         self._tell(component, settings, [self._hosts.table[self._plan.components[component].host]])
 
-    def _change_blackboard(self, facts: str) -> None:
-        """At a tick boundary: what is open from the next tick on."""
+    def _change_blackboard(self, facts: str, new: bool) -> None:
+        """At a tick boundary: what is open from the next tick on, and whether channels are written that never were."""
         concerned = [self._hosts.table[host] for host in {each.host for each in self._plan.components if each.opens}]
-        self._tell(NOBODY, facts, concerned)
+        change = self._tell(NOBODY, facts, concerned)
+        if new:
+            self.records.announce(change, 0 if self._lockstep else ANNOUNCE_US, self._interrupted)
         self.records.event(tick_event_t.OPENED, 0, self.newest_change)
 
-    def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> None:
+    def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> Change:
         self.newest_change += 1
         change = Change(component, self.newest_change, text, self._step + 1)
         self.records.change(change)
         for entry in concerned:
             if entry.alive:
                 entry.changes.append(change)
+        return change
 
     def run_tick(self) -> None:
         """Waits until the next tick may begin, then runs all its stages; while paused, does what is asked meanwhile."""
@@ -267,6 +271,7 @@ class MainLoop:
     def _on_done(self, done: done_t) -> None:
         if done.host == self._gateway:
             self.records.taken = max(self.records.taken, done.tick)
+            self.records.heard = max(self.records.heard, done.incarnation)
             for channel, sequence in zip(done.channel, done.sequence, strict=True):
                 self._came_in[channel] = max(sequence, self._came_in.get(channel, 0))
             return

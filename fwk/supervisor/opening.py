@@ -16,13 +16,16 @@ from lcmtypes.core import done_t
 class Opening:
     """Of a run in which components may open channels; `change` makes a decision part of the tick that is to begin."""
 
-    def __init__(self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str], None], log: Logger) -> None:
+    def __init__(
+        self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str, bool], None], log: Logger
+    ) -> None:
         self._plan = plan
         self._hosts = hosts
         self._ledger = ledger
         self._change = change
         self._log = log
         self._openings = Openings(plan)
+        self._written = {channel.index for channel in plan.channels}  # all channels that somebody has written
 
     @property
     def asked(self) -> bool:
@@ -52,7 +55,9 @@ class Opening:
         """At the boundary between two ticks."""
         facts, _ = self._openings.decide(self._busy)
         if facts:
-            self._change(text_of(map(self._numbered, facts)))
+            written = {fact.opening.channel for fact in facts if fact.kind == "write" and fact.opening}
+            self._change(text_of(map(self._numbered, facts)), not written <= self._written)
+            self._written |= written
             self._ledger.opened(self._openings.instances)
         for fact in facts:
             if fact.kind == "refuse":

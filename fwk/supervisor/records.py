@@ -2,12 +2,14 @@
 
 import contextlib
 import struct
+import sys
 from collections import deque
 from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
+from fwk.clock import monotonic_us
 from fwk.messages import MessageError
 from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.mailbox import Mailbox
@@ -24,6 +26,7 @@ class Records:
 
     def __init__(self, ports: Ports, run: int, sender: Sender, mailbox: Mailbox) -> None:
         self.taken = -1  # newest tick that the gateway has; 0: it hears whatever is sent from now on
+        self.heard = 0  # newest change of the blackboard that the gateway was told of beforehand
         self._ports = ports
         self._run = run
         self._sender = sender
@@ -46,6 +49,23 @@ class Records:
         """The tick begins with new settings of a component."""
         self._changes.append(change)
 
+    def announce(self, change: Change, patience_us: int, interrupted: Callable[[], bool]) -> None:
+        """Waits until the gateway listens to the channels that a change opens, for so long at most; 0: for ever.
+
+        It learns of them from the tick's record, too, but by then a writer may have sent something and died.
+        """
+        record = tick_record_t()
+        record.run, record.changes, record.n_changes = self._run, [change_message(change)], 1
+        data = record.encode()
+        until_us = monotonic_us() + patience_us if patience_us else sys.maxsize
+        wait_us, due_us = FIRST_WAIT_US, 0
+        while self.heard < change.number and not interrupted() and (now_us := monotonic_us()) < until_us:
+            if now_us >= due_us:
+                self._sender.publish(sync.OPENS, data, self._ports.record)
+                due_us = now_us + wait_us
+                wait_us = min(2 * wait_us, LONGEST_WAIT_US)
+            self._mailbox.pump(min(due_us, until_us) - now_us)
+
     def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
         """Sends the record of a tick that has ended, and keeps it for a while."""
         record = tick_record_t()
@@ -60,7 +80,7 @@ class Records:
         self._kept.append((tick, data))
         while len(self._kept) > KEPT and self._kept[0][0] <= self.taken:
             self._kept.popleft()
-        self._sender.publish(b"fwk/record", data, self._ports.record)
+        self._sender.publish(sync.RECORD, data, self._ports.record)
 
     def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> None:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
@@ -76,7 +96,7 @@ class Records:
         """Sends the records of these ticks again, but not too many at once."""
         for tick, data in self._kept:
             if first <= tick <= min(last, first + KEPT):
-                self._sender.publish(b"fwk/record", data, self._ports.record)
+                self._sender.publish(sync.RECORD, data, self._ports.record)
 
     def _on_asked(self) -> None:
         with contextlib.suppress(MessageError, ValueError, struct.error):  # a stranger's; hosts' complaints name it

@@ -105,3 +105,43 @@ components:
 {more}
 """
     return {"traders.py": TRADERS, "launch/market.yaml": launch}
+
+
+WRITER = '''
+"""A writer that opens its channel when it is told to."""
+
+from fwk import Blackboard, Component, Config
+from lcmtypes.robot import imu_t
+
+
+class WriterConfig(Config):
+    wants: bool = False
+
+
+class Writer(Component):
+    stage = "think"
+    blackboard: Blackboard
+    config: WriterConfig
+
+    def init(self) -> None:
+        self.brief = None
+
+    def loop(self) -> None:
+        if self.config.wants and self.brief is None:
+            self.brief = self.blackboard.open_for_writing(imu_t, "brief")
+        if self.brief and self.brief.is_open:
+            self.brief.write()
+'''
+
+
+def brief(public_url: str) -> dict[str, str]:
+    """The files of an application with a writer that opens its channel when it is told to."""
+    launch = f"""
+name: brief
+period_s: 0.02
+spare_channels: 1
+public_url: {public_url}
+components:
+  a/writer: {{use: "writer:Writer", restart: {{backoff_s: 0.01}}}}
+"""
+    return {"writer.py": WRITER, "launch/brief.yaml": launch}

@@ -12,9 +12,9 @@ from fwk.record.compare import compare
 from lcmtypes.core import tick_event_t
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
-from tests.system.opening_system import market
+from tests.system.opening_system import brief, market
 from tests.system.system_logs import Recording
-from tests.system.system_runs import PortBlock, fwk, replayed, write_files
+from tests.system.system_runs import PortBlock, fwk, pause, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -106,3 +106,23 @@ def test_bb_shows_what_was_opened_while_the_run_goes_on(tmp_path: Path, ports: P
     rows = fwk(tmp_path, "bb", "list", "--bus-port", str(ports.bus))
     assert re.search(r"b/spot\b.*robot\.imu_t.*b/trader", rows), rows
     assert "heading_rad" in fwk(tmp_path, "bb", "show", "b/spot", "--bus-port", str(ports.bus))
+
+
+def test_what_a_writer_sent_on_a_new_channel_before_it_died_is_recorded(
+    tmp_path: Path, ports: PortBlock, launch: Launch
+) -> None:
+    write_files(tmp_path, brief(ports.public_url))
+    run = Steered(launch("brief.yaml", "--record", "log.lcm"), ports)
+    run.ticks_pass(2)
+    gateway, writer = run.launched.gateway(), run.component("a/writer")["pid"]
+    os.kill(gateway, signal.SIGSTOP)
+    run.ask("set", changes=["a/writer.wants=true"])
+    pause(0.3)  # ticks go on until the gateway is wanted
+    os.kill(writer, signal.SIGKILL)
+    os.kill(gateway, signal.SIGCONT)
+    run.ticks_pass(3)
+    run.end()
+    recording = Recording(tmp_path / "log.lcm")
+    assert recording.gaps() == {}
+    assert recording.messages["a/brief"]
+    replayed(tmp_path)
