@@ -36,6 +36,14 @@ NOTHING: list[bytes] = []
 """No message came. Readers do not change what they are given."""
 
 
+def is_new(tick: int, answered: int) -> bool:
+    """Whether a process that is told a tick is new in the run, or was away for long: it wants the newest alone.
+
+    `answered` is the newest tick that it has answered; 0: none.
+    """
+    return tick > (answered + AWAY_TICKS if answered else 1)
+
+
 @dataclass(frozen=True)
 class Surroundings:
     """What a component gets from the run it is part of."""

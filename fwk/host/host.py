@@ -20,7 +20,7 @@ from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
 from fwk.host.report import Complaints
 from fwk.messages import MessageError
-from fwk.runner import AWAY_TICKS, Runner
+from fwk.runner import Runner, is_new
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
@@ -157,7 +157,7 @@ class Host:
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
         for box in new:
             box.skip_to(box.mark - 1)
-        if tick.tick > (self._answered[0] + AWAY_TICKS if self._answered[0] else 1):
+        if is_new(tick.tick, self._answered[0]):
             self.inputs.newest_only()
         if not self.inputs.wait(moved, self._handle_own):
             return

@@ -44,7 +44,8 @@ class Actor:
             plan.seed, plan.period_us, _silent, rings, stages=plan.stages, components=names, frames=self._views
         )
         self.runner = Runner(declared, component.name, config, component.channels, surroundings, incarnation)
-        self._waiting: dict[str, list[bytes]] = {}
+        self._arrived: dict[str, list[bytes]] = {}  # visible, but its process was not told yet
+        self._waiting: dict[str, list[bytes]] = {}  # its process has it, its next iteration will
         self._instances = Instances(plan)
         self._facts: list[Fact] = []  # of the blackboard, which it is told with its next iteration
         self._missed: set[tuple[str, int]] = set()  # channel and number of messages that it never saw
@@ -63,7 +64,7 @@ class Actor:
     def see(self, channel: str, data: list[bytes]) -> None:
         """Messages became visible; the next iteration has them."""
         if channel in self.runner.readers:
-            self._waiting.setdefault(channel, []).extend(data)
+            self._arrived.setdefault(channel, []).extend(data)
 
     def miss(self, channel: str, sequence: int) -> None:
         """A message that is there in the recording never came to its process."""
@@ -86,8 +87,9 @@ class Actor:
             done = self.runner.blackboard.take_over(self._instances, self.plan.index, fact, events)
             name = fact.opening.name if fact.opening else ""
             if done == "opened" and name in newest:
-                self._waiting[name] = [newest[name]]
+                self._arrived[name] = [newest[name]]
             elif done == "closed":
+                self._arrived.pop(name, None)
                 self._waiting.pop(name, None)
 
     def miss_frame(self, channel: str, number: int) -> None:
@@ -97,7 +99,7 @@ class Actor:
     def hold_newest_frames(self) -> None:
         """It is late: its next iteration looks at the frames of now."""
         for channel, image in self.runner.images.items():
-            arrived = self._waiting.get(channel)
+            arrived = self._arrived.get(channel) or self._waiting.get(channel)
             self._hold(channel, decode(frame_t, arrived[-1], channel) if arrived else image.announcement.value)
 
     def hold_last_frames(self) -> None:
@@ -109,10 +111,16 @@ class Actor:
         if frame.frame:
             self._views[channel].hold(frame.frame, frame.height_px * frame.width_px * frame.channels)
 
+    def tell(self, newest_only: bool) -> None:
+        """Its process is told what is visible; a new one, or one that was away for long, wants the newest alone."""
+        arrived, self._arrived = self._arrived, {}
+        for channel, data in arrived.items():
+            self._waiting.setdefault(channel, []).extend(data[-1:] if newest_only else data)
+
     def iteration(self, tick: int, place: int, stage: int, time_us: int, holder: str) -> Callable[[], Written | None]:
         """What its host does in a stage, when the result is called: takes over settings, iterates if it takes part.
 
-        The iteration has everything that is visible now and was not before its last one.
+        The iteration has everything that its process was told and had not been before its last one.
         """
         changes, self._changes = self._changes, []
         takes_part = stage in self.plan.stages
@@ -126,23 +134,18 @@ class Actor:
             self.runner.main_loop.holder = holder
             if not takes_part:
                 return None
-            written = self.runner.iterate(tick, place, self._stages[stage], time_us, self._seen(tick, waiting))
+            written = self.runner.iterate(tick, place, self._stages[stage], time_us, self._seen(waiting))
             self.runner.wishes()  # what came of them is in the recording
             return written
 
         return run
 
-    def _seen(self, tick: int, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
-        """Of what became visible, what its process got."""
+    def _seen(self, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
+        """Of what its process was told, what it got."""
         if not self._missed:
             return fresh
-        newest_only = self.runner.is_new(tick)
         return {
-            channel: [
-                data
-                for data in (arrived[-1:] if newest_only else arrived)
-                if (channel, sequence_of(data)) not in self._missed
-            ]
+            channel: [data for data in arrived if (channel, sequence_of(data)) not in self._missed]
             for channel, arrived in fresh.items()
         }
 
@@ -173,9 +176,9 @@ class ContinuousActor(Actor):
         super().__init__(*arguments)
         self._told: deque[_Told] = deque()
 
-    def tell(self, tick: int, time_us: int, holder: str) -> None:
+    def tell_tick(self, tick: int, time_us: int, holder: str) -> None:
         """A tick says that everything seen so far is visible."""
-        arrived, self._waiting = self._waiting, {}
+        arrived, self._arrived = self._arrived, {}
         changes, self._changes = self._changes, []
         self._told.append(_Told(tick, time_us, holder, arrived, changes))
 
@@ -188,7 +191,9 @@ class ContinuousActor(Actor):
         self._take(newest, fresh)
         self._told[0] = _Told(newest.tick, newest.time_us, newest.holder, {}, [])
         self.runner.main_loop.holder = newest.holder
-        written = self.runner.iterate(tick, number, "", newest.time_us, self._seen(tick, fresh))
+        if self.runner.is_new(tick):
+            fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
+        written = self.runner.iterate(tick, number, "", newest.time_us, self._seen(fresh))
         self.runner.wishes()
         return written
 

@@ -18,6 +18,7 @@ from fwk.replay.actors import Actor, ContinuousActor, Written
 from fwk.replay.choice import choose, unrepeatable
 from fwk.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
+from fwk.runner import is_new
 from lcmtypes.core import change_t, done_t, tick_event_t
 
 Made = list[tuple[Actor, Written]]
@@ -62,6 +63,7 @@ class Replay:
         self._holder = ""  # component that has the main loop
         self._leaving: dict[int, list[Actor]] = {}  # were asked to stop and have not finalized yet
         self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
+        self._answered: dict[int, int] = {}  # host to the newest tick that its process has answered
         self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
         self._newest: dict[str, bytes] = {}
         self._marks: dict[int, int] = {}
@@ -134,7 +136,7 @@ class Replay:
             elif event.kind == tick_event_t.TOLD:
                 self._show()
                 for actor in self._continuous():
-                    actor.tell(record.tick, record.time_us, self._holder)
+                    actor.tell_tick(record.tick, record.time_us, self._holder)
             elif event.kind == tick_event_t.DONE and event.index == len(self._plan.hosts):
                 self._come_in()
             elif event.kind == tick_event_t.DONE:
@@ -227,6 +229,7 @@ class Replay:
         self._actors.pop(host, None)
         self._leaving.pop(host, None)
         self._time_us.pop(host, None)
+        self._answered.pop(host, None)
         self._owed = {key: owed for key, owed in self._owed.items() if key[0] != host}
 
     def _begin(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
@@ -234,8 +237,10 @@ class Replay:
         over it, or have left without ever having run it.
         """
         owed: list[tuple[Actor, Iteration]] = []
+        newest_only = is_new(tick, self._answered.get(host, 0))
         for actor in self._actors.get(host, []):
             actor.take_over(self._newest)
+            actor.tell(newest_only)
             iteration = actor.iteration(tick, place, stage, time_us, self._holder)
             owed.append((actor, iteration))
         self._owed[host, tick, place] = time_us, owed
@@ -243,6 +248,7 @@ class Replay:
     def _run(self, host: int, tick: int, place: int) -> Made:
         made = []
         self._time_us[host], owed = self._owed.pop((host, tick, place))
+        self._answered[host] = tick
         for actor, iteration in owed:
             with self._failing(actor.plan, f"tick {tick}"):
                 written = iteration()

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from fwk import Component, Config, Reads, Writes
+from fwk.plan.model import Plan
 from fwk.record.log import LogWriter
 from fwk.replay.recording import Recording
 from fwk.replay.replay import Replay
@@ -14,7 +15,7 @@ from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
 
 SENSOR, COUNTER = 0, 1  # components, their hosts and the channels that they write
-ACQUIRE, THINK = 1, 5
+ACQUIRE, THINK, ACT = 1, 5, 7
 Event = tuple[int, int, int, int]
 LATE = (tick_event_t.LATE, COUNTER, 0, 0)
 STOPPED = (tick_event_t.STOPPED, COUNTER, 0, 0)
@@ -54,18 +55,30 @@ class Counter(Component):
         self.pose.write()
 
 
+class Idler(Component):
+    """Does nothing, in a stage after the counter's."""
+
+    stage = "act"
+
+    def loop(self) -> None:
+        pass
+
+
 PLAN = plan_of({"r/sensor": Sensor, "r/counter": Counter})
+SHARED = plan_of(
+    {"r/sensor": Sensor, "r/counter": Counter, "r/idler": Idler}, groups=[["r/sensor"], ["r/counter", "r/idler"]]
+)
 
 
 class Made:
     """A log that is made by hand, tick by tick."""
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, plan: Plan = PLAN) -> None:
         self.path = path
         self._log = LogWriter(path, print)
         self._tick = 0
         said = plan_t()
-        said.json = json.dumps(PLAN.to_json())
+        said.json = json.dumps(plan.to_json())
         self._log.append("fwk/plan", said.encode(), 0)
 
     def sensed(self, number: int) -> None:
@@ -79,6 +92,12 @@ class Made:
         message = pose_t()
         message.x_m, message.y_m, message.heading_rad = float(number - (stage == done_t.FINAL)), y_m, heading_rad
         self._write(message, "r/counter", number, tick, stage)
+
+    def counted_anew(self, number: int, heading_rad: float, tick: int) -> None:
+        """The first message of a counter that was started again."""
+        message = pose_t()
+        message.x_m, message.heading_rad = 1.0, heading_rad
+        self._write(message, "r/counter#2", number, tick, THINK)
 
     def tick(self, *events: Event, marks: Sequence[int], gain: float = 0.0) -> None:
         """A tick in which the sensor runs, and then this happens; `gain` is what the counter is told before."""
@@ -111,7 +130,7 @@ class Made:
         header = message.header
         header.tick, header.stage, header.sequence, header.writer = tick, where, number, writer
         header.time_us = tick * 50_000
-        self._log.append("r/imu" if writer == "r/sensor" else "r/pose", message.encode(), 0)
+        self._log.append("r/imu" if isinstance(message, imu_t) else "r/pose", message.encode(), 0)
 
 
 def stage(index: int) -> Event:
@@ -166,6 +185,35 @@ def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> 
     replay = made.replayed()
     assert differences(replay) == []
     assert replay.compared == 4
+
+
+def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Path) -> None:
+    """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
+    made = Made(tmp_path / "log.lcm", SHARED)
+    made.sensed(1)
+    made.counted(1, 1.0, tick=1)
+    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
+    made.tick(lost, started, stage(ACT), done(COUNTER, 2, ACT), marks=(2, 1))
+    made.sensed(3)
+    made.counted_anew(2, 2.0, tick=3)
+    made.tick(missed(3), done(COUNTER, 3, THINK), marks=(3, 2))
+    assert differences(made.replayed()) == []
+
+
+def test_the_newest_that_a_new_process_never_got_nobody_in_it_has(tmp_path: Path) -> None:
+    made = Made(tmp_path / "log.lcm", SHARED)
+    made.sensed(1)
+    made.counted(1, 1.0, tick=1)
+    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
+    made.tick(lost, started, stage(ACT), missed(2), done(COUNTER, 2, ACT), marks=(2, 1))
+    made.sensed(3)
+    made.counted_anew(2, 3.0, tick=3)
+    made.tick(done(COUNTER, 3, THINK), marks=(3, 2))
+    assert differences(made.replayed()) == []
 
 
 def test_what_the_recording_never_got_its_writer_writes_again(tmp_path: Path) -> None:
