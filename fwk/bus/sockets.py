@@ -16,6 +16,19 @@ _BREATH_S = 0.001
 _IP_MULTICAST_ALL = 49  # Python has no name for it
 
 
+Address = tuple[str, int]
+
+
+def port_of(address: Address) -> int:
+    """The port of a sender of this run; 0 for whoever sends from another address, where the run's ports are free."""
+    return address[1] if address[0] == LOOPBACK else 0
+
+
+def told(address: Address) -> str:
+    """Where a datagram came from, for people."""
+    return f"port {address[1]}" if address[0] == LOOPBACK else f"{address[0]}, port {address[1]}"
+
+
 def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.socket:
     """A non-blocking socket that hears the group on `port`, as do any others on this machine."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -78,8 +91,8 @@ class Sender:
                 datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
             except OSError:  # nothing there, or the news that an earlier datagram found nobody
                 return None
-            if address[0] != LOOPBACK or address[1] not in members:
-                raise MessageError(f"datagram from port {address[1]}, which is not of this run")
+            if port_of(address) not in members:
+                raise MessageError(f"datagram from {told(address)}, which is not of this run")
             message = self._assembler.feed(datagram, address[1])
         return message
 

@@ -11,7 +11,7 @@ from fwk.bus import sync, wire
 from fwk.bus.history import gaps
 from fwk.bus.ports import Ports
 from fwk.bus.public import PublicBus
-from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
 from fwk.clock import Clock
 from fwk.gateway.outside import Outside
 from fwk.gateway.strangers import Strangers
@@ -308,9 +308,9 @@ class Gateway:
             except BlockingIOError:
                 return found
             try:
-                known = self._ports.supervisor <= address[1] <= self._ports.host(self._ports.gateway)
-                if not known or not (anybody or address[1] == self._ports.supervisor):
-                    raise MessageError(f"datagram from port {address[1]}, which is not of this run")
+                known = self._ports.members if anybody else (self._ports.supervisor,)
+                if port_of(address) not in known:
+                    raise MessageError(f"datagram from {told(address)}, which is not of this run")
                 message = self._assembler.feed(datagram, address[1])
                 if message and message[0] not in channels:
                     raise MessageError("a message of another channel")

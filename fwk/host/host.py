@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from fwk.aspects.logging import Logger
 from fwk.bus import sync, wire
 from fwk.bus.ports import Ports
-from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
 from fwk.clock import US_PER_S, Clock, monotonic_us
 from fwk.host.assignment import Assignment
 from fwk.host.inputs import Inputs
@@ -135,8 +135,8 @@ class Host:
         except BlockingIOError:
             return None
         try:
-            if address[1] != self._supervisor_port:
-                raise MessageError(f"datagram from port {address[1]}, which is not the supervisor's")
+            if port_of(address) != self._supervisor_port:
+                raise MessageError(f"datagram from {told(address)}, which is not the supervisor's")
             message = self._assembler.feed(datagram, address[1])
             tick: tick_t | None = sync.decode_tick(message[1]) if message else None
         except MessageError as error:

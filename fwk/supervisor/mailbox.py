@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from fwk.bus import sync, wire
 from fwk.bus.ports import Ports
-from fwk.bus.sockets import multicast_receiver
+from fwk.bus.sockets import Address, multicast_receiver, port_of, told
 from fwk.bus.waiting import Waiting
 from fwk.clock import US_PER_S, sleep_s
 from fwk.messages import MessageError
@@ -79,13 +79,14 @@ class Mailbox:
             except BlockingIOError:
                 return
             try:
-                self._dispatch(datagram, address[1])
+                self._dispatch(datagram, address)
             except (MessageError, ValueError, struct.error) as error:
                 self._complain("fwk/sync", f"{error}; refused")
 
-    def _dispatch(self, datagram: bytes, source: int) -> None:
+    def _dispatch(self, datagram: bytes, address: Address) -> None:
+        source = port_of(address)
         if source not in self._members:
-            raise MessageError(f"datagram from port {source}, which is not of this run")
+            raise MessageError(f"datagram from {told(address)}, which is not of this run")
         if datagram.startswith(sync.DONE_START, 8) and wire.is_short(datagram):
             self._take_done(datagram[8 + len(sync.DONE_START) :], source)
             return

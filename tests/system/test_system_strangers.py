@@ -37,10 +37,10 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 class Stranger:
     """A socket that belongs to nobody in the run."""
 
-    def __init__(self) -> None:
+    def __init__(self, address: str = LOOPBACK, port: int = 0) -> None:
         self._socket = socket.socket(AF_INET, socket.SOCK_DGRAM)
         self._socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
-        self._socket.bind((LOOPBACK, 0))
+        self._socket.bind((address, port))
 
     def close(self) -> None:
         self._socket.close()
@@ -118,7 +118,7 @@ class Ears:
 
     def __init__(self, ports: Ports) -> None:
         self.run = 0
-        self._supervisor = ports.supervisor
+        self._supervisor = (LOOPBACK, ports.supervisor)
         self._socket = multicast_receiver(ports.stage(0))
         self._assembler = wire.Assembler()
 
@@ -126,7 +126,7 @@ class Ears:
         with contextlib.suppress(BlockingIOError):
             while not self.run:
                 datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
-                if address[1] == self._supervisor:
+                if address == self._supervisor:
                     _, data = self._assembler.feed(datagram, address[1]) or (b"", b"")
                     self.run = sync.decode_tick(data).run
 
@@ -159,6 +159,50 @@ def test_strangers_on_every_inner_port_are_named_and_change_nothing(
     assert run.text.count("refused") < 1000
     for port_of in ("fwk/sync", "fwk/tick", "fwk/record", "fwk/log", "fwk/fetch", "d/note"):
         assert f"{port_of}: " in run.text
+
+
+def mean(run: int) -> list[tuple[str, bytes]]:
+    """Dones, ticks and records that would end a run or spoil it."""
+    made = []
+    for wishes in ("{", "[1]", '{"main_loop": 1}', '{"missed": [[1]]}', '{"plugins": {"d/player": [["stop", ["*"]]]}}'):
+        for stage in (*range(10), done_t.FINAL, -1):
+            done = done_t()
+            done.run, done.host, done.incarnation, done.tick, done.stage = run, 5, 1, 10, stage
+            done.wishes, done.n_marks, done.channel, done.sequence = wishes, 2, [-1, 10**6], [10**9, 10**9]
+            made.append(("fwk/done", sync.encode_done(done)))
+    for stage in range(10):
+        tick = tick_t()
+        tick.run, tick.tick, tick.stage, tick.n_marks = run, 10, stage, 2
+        tick.channel, tick.sequence = [-1, 3], [10**9, 10**9]
+        made.append(("fwk/tick", sync.encode_tick(tick)))
+    return made
+
+
+def test_who_borrows_the_ports_of_the_run_at_another_address_is_a_stranger(
+    launch: Launch, folder: Path, ports: PortBlock, reference: Path
+) -> None:
+    """The whole of 127.0.0.0/8 is this machine, so every port is free there once more."""
+    inner = Ports(ports.bus, HOSTS, CHANNELS)
+    disguised = [Stranger("127.0.0.2", port) for port in inner.members]
+    ears = Ears(inner)
+    run = launch(*RUN)
+    while run.process.poll() is None:
+        ears.listen()
+        for stranger in disguised:
+            for group, port in all_ports(inner):
+                for channel, data in plausible(ears.run) + mean(ears.run) * (port == inner.sync):
+                    stranger.say(channel, data, port, group)
+        pause(0.05)
+    ears.close()
+    for stranger in disguised:
+        stranger.close()
+    assert run.wait() == 0, run.text
+    assert ears.run
+    assert difference(reference, folder / "log.lcm") == ""
+    assert "Traceback" not in run.text
+    assert "ended:" not in run.text
+    for port_of in ("fwk/sync", "fwk/tick", "fwk/record", "fwk/log", "fwk/fetch", "d/note"):
+        assert f"{port_of}: datagram from 127.0.0.2, port " in run.text
 
 
 def test_strangers_on_the_public_bus_are_named_and_change_nothing(
