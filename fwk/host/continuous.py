@@ -103,7 +103,7 @@ class ContinuousHost(Host):
                 continue
             for box in self.inputs.advance(tick.channel, tick.sequence, tick.voids):
                 self._moved[box.plan.index] = box
-            if self._answered[0] == 0 and tick.tick > 1:
+            if not self._clock.tick and tick.tick > 1:  # it has not run yet
                 self.inputs.newest_only()
             for box in self._moved.values():
                 box.collect()
