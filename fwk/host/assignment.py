@@ -22,6 +22,10 @@ class Start:
     """What was opened at run time, as facts in JSON."""
     newest_change: int = 0
     """Number of the newest change of settings or of the blackboard that is in these: older ones are not told anew."""
+    tick: int = 0
+    """The newest one when it is started; what it logs before its own first one is of that."""
+    time_us: int = 0
+    """Logical time of that."""
 
 
 @dataclass(frozen=True)

@@ -248,4 +248,6 @@ class Host:
             runner.log.tell_dropped()
 
     def _send_log(self, line: log_t) -> None:
+        if not line.tick:
+            line.tick, line.time_us = self._assignment.start.tick, self._assignment.start.time_us
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)

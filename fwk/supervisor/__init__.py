@@ -9,7 +9,7 @@ from fwk.aspects.logging import Logger
 from fwk.aspects.vision import SLOTS, Ring
 from fwk.bus.ports import PortLock, Ports, PortsInUse
 from fwk.bus.sockets import Sender
-from fwk.clock import US_PER_S, Clock
+from fwk.clock import US_PER_S
 from fwk.host.debugger import DebuggerMissing, DebugRequest, check
 from fwk.host.process import raise_file_limit
 from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
@@ -111,13 +111,12 @@ class Supervisor:
         self._options = options
         self._ports = Ports.of(plan)
         self._sender = Sender(self._ports.supervisor)
-        self._clock = Clock(plan.period_us)
-        self.log = Logger("supervisor", self._clock, self._send_log)
+        self.pace = Pace(plan, options.speed)
+        self.log = Logger("supervisor", self.pace.clock, self._send_log)
         self._mailbox = Mailbox(self._ports, number, Complaints(self.log))
         ledger = Ledger(plan)
-        self.pace = Pace(plan, options.speed)
         self._zygote = zygote
-        self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log)
+        self._hosts = Hosts(plan, zygote, ledger, self._mailbox, self.log, self.pace.clock)
         self._debugged = self._hosts.table[debug.host] if debug and not debug.debugpy_port else None
         self.loop = MainLoop(
             plan, number, self._hosts, ledger, self._mailbox, self._sender, self.pace, self.log, self._interrupted
@@ -154,7 +153,6 @@ class Supervisor:
         self._status = StatusReport(self._status.run, self._hosts.table, self.loop, self.pace)
         while not self._interrupted() and not self._done():
             self.loop.run_tick()
-            self._clock.tick, self._clock.now_us = self.loop.tick, self.pace.time_us
             self._publish_status_in_time()
         self.wall_s = self._status.wall_s
         self.loop.finish()

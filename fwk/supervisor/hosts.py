@@ -5,7 +5,7 @@ from collections.abc import Callable
 from functools import partial
 
 from fwk.aspects.logging import Logger
-from fwk.clock import US_PER_S, monotonic_us
+from fwk.clock import US_PER_S, Clock, monotonic_us
 from fwk.host.assignment import Start
 from fwk.host.debugger import LEFT
 from fwk.plan.model import NOBODY, Plan
@@ -33,7 +33,7 @@ class Hosts:
     A process is started when those that it needs run. One that they will not come back for fails.
     """
 
-    def __init__(self, plan: Plan, zygote: Zygote, ledger: Ledger, mailbox: Mailbox, log: Logger) -> None:
+    def __init__(self, plan: Plan, zygote: Zygote, ledger: Ledger, mailbox: Mailbox, log: Logger, clock: Clock) -> None:
         self.table: list[HostEntry] = host_table(plan)
         self.on_started: Callable[[HostEntry], None] = lambda _: None
         self.on_lost: Callable[[HostEntry], None] = lambda _: None
@@ -50,6 +50,7 @@ class Hosts:
         self._ledger = ledger
         self._mailbox = mailbox
         self._log = log
+        self._clock = clock
         self._stopping = False
         self._told: set[int] = set()  # hosts that were said to wait for others
         self._standins: dict[int, StandIn] = {}
@@ -73,8 +74,7 @@ class Hosts:
             now_us = monotonic_us()
             for entry in self.table:
                 if entry.overdue(now_us):
-                    entry.state = "failed"
-                    entry.reason = f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{self._where(entry)}"
+                    entry.state, entry.reason = "failed", _not_ready(entry)
             self._start_ready("loaded")
         failed = [entry for entry in self.table if entry.state in ("failed", "waiting")]
         if failed:
@@ -86,12 +86,12 @@ class Hosts:
         now_us = monotonic_us()
         for entry in self.table:
             if entry.overdue(now_us):
-                self._log.error(f"{entry.name}: not ready after {entry.ready_timeout_us / US_PER_S:g} s; killed")
-                entry.since_us = now_us
+                entry.since_us, entry.reason = now_us, _not_ready(entry)
+                self._log.error(f"{entry.name}: {entry.reason}; killed")
                 self.kill(entry)
             elif entry.state == "stopping" and now_us - entry.since_us > STOP_GRACE_US:
-                self._log.warning(f"{entry.name}: did not stop when asked; killed")
-                entry.since_us = now_us
+                entry.since_us, entry.reason = now_us, "did not stop when asked; killed"
+                self._log.warning(f"{entry.name}: {entry.reason}")
                 self.kill(entry)
         self._start_ready("waiting")
 
@@ -193,7 +193,15 @@ class Hosts:
         self._told.discard(entry.index)
         incarnation = entry.starting(monotonic_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
-        start = Start(incarnation, sequences, settings, self.blackboard(), entry.started_with)
+        start = Start(
+            incarnation,
+            sequences,
+            settings,
+            self.blackboard(),
+            entry.started_with,
+            self._clock.tick,
+            self._clock.now_us,
+        )
         hand = self._hands.get(entry.index)
         if hand:
             entry.pid, entry.held = hand.pid, hand.held
@@ -214,10 +222,6 @@ class Hosts:
         hand.close()
         if entry.pid == hand.pid:
             self._ended(entry, 0 if self._stopping else LEFT)
-
-    def _where(self, entry: HostEntry) -> str:
-        stuck = [item.name for item in entry.components if item.state == "init"]
-        return f"; still in init: {', '.join(stuck)}" if stuck else ""
 
     def _on_actual(self, actual: actual_t) -> None:
         if actual.host >= len(self.table):
@@ -284,3 +288,9 @@ class Hosts:
     def _stand_in(self, entry: HostEntry) -> None:
         if entry.index not in self._standins:
             self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
+
+
+def _not_ready(entry: HostEntry) -> str:
+    stuck = [item.name for item in entry.components if item.state == "init"]
+    where = f"; still in init: {', '.join(stuck)}" if stuck else ""
+    return f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{where}"

@@ -85,5 +85,5 @@ class Printed:
 
 
 def _text(line: bytes) -> str:
-    text = line[:_LINE_MAX].decode(errors="replace")
+    text = line[:_LINE_MAX].decode(errors="backslashreplace")
     return text if len(line) <= _LINE_MAX else f"{text} ... {len(line) - _LINE_MAX} bytes left out"

@@ -1,6 +1,6 @@
 """The central clock: the logical time of each tick, from its one source, and when on the wall a tick may begin."""
 
-from fwk.clock import US_PER_S
+from fwk.clock import US_PER_S, Clock
 from fwk.plan.model import Plan
 
 
@@ -16,14 +16,19 @@ class Pace:
     def __init__(self, plan: Plan, speed: float) -> None:
         self.period_us = plan.period_us
         self.wall = plan.clock == "wall"
-        self.time_us = 0
+        self.clock = Clock(plan.period_us)
+        """The newest tick and its logical time."""
         self._speed = speed
         self._next_us = -1
-        self._ticks = 0
         self._origin_us = -1  # wall clock only: wall time of logical time 0
         self._anchor: tuple[int, int] | None = None  # wall and logical time at which the pace was last set
         self._paused = False
         self._steps = 0  # ticks that may still begin while paused
+
+    @property
+    def time_us(self) -> int:
+        """Logical time of the newest tick."""
+        return self.clock.now_us
 
     @property
     def speed(self) -> float:
@@ -65,7 +70,7 @@ class Pace:
         """Wall time at which the next tick may begin, as seen at wall time `now_us`."""
         if not self.wall and self._speed <= 0:
             return now_us
-        upcoming = self._ticks * self.period_us if self.wall else self._upcoming_us()
+        upcoming = self.clock.tick * self.period_us if self.wall else self._upcoming_us()
         if self._anchor is None:
             self._anchor = (now_us, upcoming)
         wall_us, logical_us = self._anchor
@@ -77,17 +82,18 @@ class Pace:
 
     def advance(self, now_us: int) -> int:
         """Begins the next tick at wall time `now_us`; returns its logical time."""
-        self._ticks += 1
+        clock = self.clock
+        clock.tick += 1
         if self._steps:
             self._steps -= 1
         if self.wall:
             if self._origin_us < 0:
                 self._origin_us = now_us - self.period_us
-            self.time_us = max(self.time_us + 1, now_us - self._origin_us)
+            clock.now_us = max(clock.now_us + 1, now_us - self._origin_us)
         else:
-            self.time_us = self._upcoming_us()
+            clock.now_us = self._upcoming_us()
         self._next_us = -1
-        return self.time_us
+        return clock.now_us
 
     def _upcoming_us(self) -> int:
         return self._next_us if self._next_us > self.time_us else self.time_us + self.period_us

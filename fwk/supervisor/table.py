@@ -184,7 +184,8 @@ class HostEntry:
             self._starts_us.popleft()
         if len(self._starts_us) > self.policy.limit:
             self.state = "failed"
-            self.reason += f" (started {len(self._starts_us)} times in {self.policy.window_s:g} s, not again)"
+            times = "once" if len(self._starts_us) == 1 else f"{len(self._starts_us)} times"
+            self.reason += f" (started {times} in {self.policy.window_s:g} s, not again)"
             return
         self.state = "waiting"
         self.restarts += 1

@@ -20,8 +20,10 @@ pytestmark = pytest.mark.system
 PARTS = '''
 """Talks, in several ways."""
 
+import os
 import sys
 import threading
+from pathlib import Path
 
 from fwk import Clock, Component, Config, Logger, Writes
 from lcmtypes.robot import imu_t
@@ -38,6 +40,8 @@ class TalkerConfig(Config):
     """Whether a thread ends by an exception."""
     fails_at: int = 0
     """Tick in which it raises."""
+    leaves_at: int = 0
+    """Tick in which its first process ends."""
 
 
 class Talker(Component):
@@ -49,7 +53,14 @@ class Talker(Component):
     log: Logger
     imu: Writes[imu_t]
 
+    def init(self) -> None:
+        if self.config.leaves_at:
+            self.log.info("begins")
+
     def loop(self) -> None:
+        if self.clock.tick == self.config.leaves_at and not Path("left").exists():
+            Path("left").touch()
+            os._exit(3)
         self.log.debug(f"in tick {self.clock.tick}")
         if self.clock.tick == 3:
             self._talk()
@@ -67,6 +78,7 @@ class Talker(Component):
             print(f"printed {number}")
         if self.config.printed:
             print("to the other stream", file=sys.stderr)
+            os.write(2, b"\\xfe no text\\n")
         if self.config.long:
             self.log.warning("x" * self.config.long)
         if self.config.thread:
@@ -120,7 +132,8 @@ def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[...,
     shown = [line for line in printed if line["text"].startswith("printed")]
     assert len(shown) + sum(dropped) == 100_000
     assert [line["line"] for line in shown] == [int(line["text"].split()[1]) + 1 for line in shown]
-    assert "to the other stream" in [line["text"] for line in lines_of(run) if line["file"] == "stderr"]
+    errors = [line["text"] for line in lines_of(run) if line["file"] == "stderr"]
+    assert errors == ["to the other stream", "\\xfe no text"]
 
 
 def test_long_lines_come_with_their_ends(talk: Callable[..., Launched]) -> None:
@@ -139,6 +152,17 @@ def test_exceptions_have_traceback_component_and_tick(talk: Callable[..., Launch
     assert thread["text"].endswith("ZeroDivisionError: division by zero")
     assert (failure["tick"], failure["file"]) == (7, "parts.py")
     assert re.match("failed in loop, tick 7\nTraceback (.|\n)*RuntimeError: not this tick$", failure["text"])
+
+
+def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_that_in_which_its_process_began(
+    talk: Callable[..., Launched],
+) -> None:
+    run = talk("--ticks", "50", "--set", "b/talker.leaves_at=7")
+    assert run.wait() == 0, run.text
+    assert [line["tick"] for line in lines_of(run, "b/talker") if line["text"] == "begins"] == [0, 7]
+    times = {line["text"]: (line["tick"], line["time_us"]) for line in lines_of(run, "supervisor")}
+    assert times["b/talker ended: exit code 3; starting it again in 0.1 s"] == (7, 350_000)
+    assert times["b/talker runs again, start number 2"] == (7, 350_000)
 
 
 def test_levels_and_targets_are_the_launch_files_and_decide_nothing(

@@ -1,6 +1,7 @@
 """Components start in the order of their needs, or later, or not at all; each time it is said who waits for whom."""
 
 import os
+import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -81,6 +82,20 @@ def test_who_is_not_ready_in_time_is_named_with_those_who_wait_for_it(start: Sta
     launched = start("--ticks", "5", timeout=0.5)
     assert launched.wait() == 1
     assert "r/camera: not ready after 0.5 s; still in init: r/camera\nr/finder: waits for r/camera" in launched.text
+
+
+def test_who_is_not_ready_in_time_after_a_restart_is_named_too(start: Start, ports: PortBlock, tmp_path: Path) -> None:
+    (tmp_path / "go").touch()
+    run = Steered(start(timeout=0.5, when="never"), ports)
+    (tmp_path / "go").unlink()
+    said = run.fwk("restart", "r/camera", code=1)
+    assert re.search(r"r/camera failed, tick \d+: not ready after 0.5 s; still in init: r/camera\n", said)
+    run.launched.until("r/camera ended: not ready after 0.5 s; still in init: r/camera")
+
+
+def test_what_the_launch_file_does_not_have_is_not_loaded(run: Steered) -> None:
+    said = run.fwk("load", "r/folower", code=2)
+    assert "no component 'r/folower'; did you mean 'r/follower'?; what can be loaded stands in the launch file" in said
 
 
 def test_what_does_not_start_with_the_run_is_loaded_later_and_replays(run: Steered, tmp_path: Path) -> None:
