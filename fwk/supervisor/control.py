@@ -12,7 +12,7 @@ from fwk.control.address import supervisor_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
-from fwk.plan.model import ComponentPlan, Plan
+from fwk.plan.model import Plan
 from fwk.supervisor.clock_control import ClockControl
 from fwk.supervisor.directing import Directing
 from fwk.supervisor.hosts import Hosts
@@ -22,7 +22,7 @@ from fwk.supervisor.options import RunOptions
 from fwk.supervisor.places import Places
 from fwk.supervisor.steering import Steering
 from fwk.supervisor.table import HostEntry
-from fwk.supervisor.view import component_view, times_view
+from fwk.supervisor.view import component_view, period_us, times_view
 from lcmtypes.core import status_t
 
 _FRESH_US = 2 * US_PER_S  # rates older than this say nothing
@@ -227,7 +227,7 @@ class Control:
         if request.verb == "state":
             return {"name": view["name"], "state": view["state"], "reason": view["reason"]}
         if request.verb == "period":
-            return {"name": view["name"], "period_us": self._period_us(component), "stages": view["stages"]}
+            return {"name": view["name"], "period_us": period_us(self._plan, component), "stages": view["stages"]}
         if request.verb == "time_awake":
             return {"name": view["name"], "awake_s": view["awake_s"]}
         if request.verb == "parameters":
@@ -235,12 +235,6 @@ class Control:
             return {"name": view["name"], "parameters": rows}
         self._steer(requests.Steer(verb="steer", action="kill", names=[component.name]), connection)
         return None
-
-    def _period_us(self, component: ComponentPlan) -> int:
-        """From iteration to iteration; 0 if a component goes on as fast as it can."""
-        if component.rate_hz is None:
-            return self._plan.period_us
-        return round(US_PER_S / component.rate_hz) if component.rate_hz else 0
 
     def _wait(self, connection: Connection, happened: Callable[[], dict[str, Any] | None]) -> None:
         self._waiting.append(_Waiting(connection, happened))

@@ -13,6 +13,7 @@ from fwk.supervisor.table import HostEntry
 _STOPS = ("stop", "unload", "kill")
 _STARTS_AGAIN = ("start", "restart", "reload")
 _RUNNING = ("starting", "running", "waiting")
+_LOADED = "; what can be loaded stands in the launch file, with 'start: false' if it does not start with the run"
 
 
 class Steering:
@@ -54,7 +55,10 @@ class Steering:
         """
         if not patterns:
             raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
-        chosen, components = self.components(patterns), self._plan.components
+        try:
+            chosen, components = self.components(patterns), self._plan.components
+        except RequestError as error:
+            raise RequestError(f"{error}{_LOADED if action == 'load' else ''}") from error
         if action == "load":
             chosen = [index for index in with_needs(chosen, components) if index in chosen or not self._runs(index)]
         elif action == "unload" and force:

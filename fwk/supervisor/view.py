@@ -18,7 +18,7 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
         "name": component.name,
         "state": _state(entry, told),
         "wanted": "running" if entry.wanted else "stopped",
-        "period_s": plan.period_us / US_PER_S,
+        "period_s": period_us(plan, component) / US_PER_S,
         "stages": [plan.stages[stage] for stage in component.stages],
         "rate_hz": component.rate_hz,
         "process": entry.name,
@@ -35,6 +35,13 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> di
         "reason": told.reason or entry.reason,
         "needs": [plan.components[index].name for index in component.needs],
     }
+
+
+def period_us(plan: Plan, component: ComponentPlan) -> int:
+    """From iteration to iteration; 0 if a component goes on as fast as it can."""
+    if component.rate_hz is None:
+        return plan.period_us
+    return round(US_PER_S / component.rate_hz) if component.rate_hz else 0
 
 
 def times_view(plan: Plan, times: LoopTimes, table: Sequence[HostEntry]) -> dict[str, Any]:
