@@ -21,7 +21,7 @@ def ticks(text: str) -> tuple[int, int]:
     if not found or not (found[1] or found[3]):
         raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100..200")
     first = int(found[1] or 0)
-    return first, int(found[3] or sys.maxsize) if found[2] else first
+    return _ordered(first, int(found[3] or sys.maxsize) if found[2] else first, f"--tick: '{text}'")
 
 
 def times_us(text: str) -> tuple[int, int]:
@@ -33,10 +33,17 @@ def times_us(text: str) -> tuple[int, int]:
     first, dots, last = text.partition("..")
     try:
         if dots and (first or last):
-            return round(float(first or 0) * US_PER_S), round(float(last) * US_PER_S) if last else sys.maxsize
+            first_us, last_us = round(float(first or 0) * US_PER_S), round(float(last or 0) * US_PER_S)
+            return _ordered(first_us, last_us if last else sys.maxsize, f"--time: '{text}'")
     except (ValueError, OverflowError):
         pass
     raise typer.BadParameter(f"--time: '{text}' is no range of seconds; say 1.5..2, or 1.5..")
+
+
+def _ordered(first: int, last: int, said: str) -> tuple[int, int]:
+    if first > last:
+        raise typer.BadParameter(f"{said} begins behind its end; say the smaller one first")
+    return first, last
 
 
 def moment_us(text: str, option: str) -> int:

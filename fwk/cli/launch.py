@@ -1,5 +1,6 @@
 """`fwk-launch FILE`: checks a launch file, runs it in the foreground, says how it went."""
 
+import shutil
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -24,6 +25,7 @@ from fwk.supervisor import DebuggerMissing, PortsInUse, ProfilerMissing, RunOpti
 RUN_BROKEN = 1
 BAD_INPUT = 2
 RECORDING = "log.lcm"
+NOT_BEGUN = (DebuggerMissing, PortsInUse, ProfilerMissing)
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
 
@@ -122,7 +124,11 @@ def launch(
         removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
         if removed:
             typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' would keep one")
-        outcome = run(plan, options)
+        try:
+            outcome = run(plan, options)
+        except NOT_BEGUN:
+            shutil.rmtree(run_dir, ignore_errors=True)  # of no run; 'fwk log' would take it for the newest
+            raise
     signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
     for line in summary(plan, options, outcome):
         typer.echo(line)
@@ -139,7 +145,7 @@ def _ending() -> Iterator[None]:
     """Turns what keeps a run from starting into a sentence and an exit code."""
     try:
         yield
-    except (DebuggerMissing, PlanError, PortsInUse, ProfilerMissing, RunDirError) as error:
+    except (*NOT_BEGUN, PlanError, RunDirError) as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error
     except KeyboardInterrupt as interrupt:

@@ -199,6 +199,7 @@ def test_a_second_run_on_the_same_ports_is_refused_and_disturbs_nothing(launch: 
     second = launch(FILE, "--ticks", "1")
     assert second.wait() == 2
     assert "are used by another run" in second.text
+    assert [path.name.endswith(f"-{first.process.pid}") for path in first.run_dir.parent.iterdir()] == [True]
     first.until_ticks("f/player", 3)
     first.signal(signal.SIGINT)
     assert first.wait(STOP_S) == 0, first.text

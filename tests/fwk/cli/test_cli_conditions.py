@@ -46,6 +46,8 @@ def test_moments() -> None:
     [
         (ticks, "soon", "--tick: 'soon' is no tick; say 120, or 100..200"),
         (ticks, "..", "is no tick"),
+        (ticks, "5..2", "--tick: '5..2' begins behind its end; say the smaller one first"),
+        (times_us, "1.5..0", "--time: '1.5..0' begins behind its end"),
         (ticks, "1..x", "is no tick"),
         (ticks, "9" * 5000, "is no tick"),
         (times_us, "5", "--time: '5' is no range of seconds; say 1.5..2"),
