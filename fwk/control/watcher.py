@@ -47,7 +47,7 @@ class Watcher:
         concerned = self._concerned()
         if not concerned:
             return
-        wrong = mistakes(self._pending & {file for each in concerned.values() for file in each if file.exists()})
+        wrong = mistakes(self._pending & set[Path]().union(*concerned.values()))
         try:
             with Client(supervisor_address(self._plan.bus_port), _TIMEOUT_S) as run:
                 if wrong:

@@ -72,6 +72,21 @@ def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_
     run.end()
 
 
+def test_a_file_that_is_missing_for_a_moment_stops_nobody(run: Steered, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("ADDED = \n")
+    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
+    (tmp_path / "helper.py").unlink()
+    run.launched.until("helper.py: cannot be read: No such file or directory; not reloaded, so the old code runs on")
+    run.ticks_pass()
+    assert starts(run)["helped"] == 1
+    (tmp_path / "new.py").write_text("ADDED = -1000.0\n")
+    (tmp_path / "new.py").rename(tmp_path / "helper.py")
+    run.launched.until("r/helped runs again")
+    run.ticks_pass()
+    assert run.json("bb", "show", "r/helped_imu")["value"]["heading_rad"] <= -1000.0
+    run.end()
+
+
 def test_who_failed_is_started_again_when_its_file_was_put_right(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("1 / 0\n")
     run.launched.until("helper.py changed; reloading r/helped")
