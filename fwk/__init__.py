@@ -12,6 +12,7 @@ from pydantic import Field  # noqa: E402 - after the limits
 from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
 from fwk.aspects.commands import Command, CommandError, Commands, CommandState  # noqa: E402
 from fwk.aspects.commands_each import CommandsEach, ServesEach  # noqa: E402
+from fwk.aspects.log_lines import LogLines  # noqa: E402
 from fwk.aspects.logging import Logger  # noqa: E402
 from fwk.aspects.main_loop import MainLoop  # noqa: E402
 from fwk.aspects.opening import Blackboard, NotOpen  # noqa: E402
@@ -44,6 +45,7 @@ __all__ = [
     "Future",
     "Image",
     "ImagesEach",
+    "LogLines",
     "Logger",
     "MainLoop",
     "NotOpen",

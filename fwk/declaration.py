@@ -8,6 +8,7 @@ from typing import Any, ClassVar, get_args, get_origin
 import numpy as np
 
 from fwk.aspects.blackboard import Reads, ReadsEach
+from fwk.aspects.log_lines import LogLines
 from fwk.aspects.logging import Logger
 from fwk.aspects.main_loop import MainLoop
 from fwk.aspects.opening import Blackboard
@@ -17,7 +18,9 @@ from fwk.aspects.vision import Image
 from fwk.clock import Clock, TimeSource
 from fwk.component import Component
 from fwk.config import LOG_LEVEL, Config, with_log_level
+from fwk.plan.names import LINES
 from fwk.port import IMAGE_KINDS, PORT_KINDS, DeclarationError, Port, declared_port
+from lcmtypes.core import log_t
 from lcmtypes.robot import frame_t
 
 RATE_MAX_HZ = 10_000
@@ -82,6 +85,8 @@ def _read(component: type[Component]) -> Declaration:
             ports.append(declared_port(where, attribute, PORT_KINDS[get_origin(wish)], get_args(wish), default))
         elif wish in IMAGE_KINDS:
             ports.append(declared_port(where, attribute, IMAGE_KINDS[wish], (frame_t,), default))
+        elif wish is LogLines:
+            ports.append(Port(attribute, "lines", log_t, LINES))
         elif wish in _ASPECTS:
             aspects[attribute] = _ASPECTS[wish]
         elif isinstance(wish, type) and issubclass(wish, Aspect):
@@ -99,7 +104,7 @@ def _read(component: type[Component]) -> Declaration:
             raise DeclarationError(
                 f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
                 "annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, Serves, "
-                "ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, "
+                "ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, LogLines, "
                 "numpy.random.Generator, TimeSource, MainLoop, PluginControl, Blackboard or an Aspect, and set plain "
                 "attributes in init()"
             )

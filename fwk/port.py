@@ -25,6 +25,7 @@ PortKind = Literal[
     "image",
     "images_each",
     "vision_master",
+    "lines",
     "commands",
     "serves",
     "sends",

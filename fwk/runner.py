@@ -12,6 +12,7 @@ from fwk import envelope
 from fwk.aspects.blackboard import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach, WritesPlain
 from fwk.aspects.commands import ANSWERS, Commands, Queue, Source
 from fwk.aspects.commands_each import CommandsEach, ServesEach
+from fwk.aspects.log_lines import LogLines
 from fwk.aspects.logging import LEVELS, Logger
 from fwk.aspects.main_loop import MainLoop
 from fwk.aspects.opening import Blackboard
@@ -260,6 +261,8 @@ class Runner:
                 return VisionMaster(made[channels[0]], self._rings[channels[0]])
             return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
         read = {channel: self._reader(channel, port.message_type) for channel in channels}
+        if port.kind == "lines":
+            return LogLines(read[channels[0]], self.name)
         if port.images:
             looked_at = {channel: self._image(channel, read[channel]) for channel in channels}
             return ImagesEach(_by_namespace(looked_at)) if port.each else looked_at[channels[0]]

@@ -85,10 +85,8 @@ def _channel_table(plan: Plan) -> Table:
 
 
 def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
-    if channel.of_tools:
-        return "fwk call", ""
     if channel.writer == NOBODY:
-        return ("programs outside" if channel.name in plan.outside else "nobody"), ""
+        return plan.writer_of(channel) or "nobody", ""
     writer = plan.components[channel.writer]
     if writer.rate_hz is not None:
         return writer.name, rate_word(writer.rate_hz)

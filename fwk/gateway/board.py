@@ -98,15 +98,14 @@ class Board:
 
     def _row(self, channel: ChannelPlan) -> dict[str, Any]:
         names = [component.name for component in self._plan.components]
-        outside = channel.name in self._plan.outside
         data = self._newest.get(channel.name)
         header = Header.of(data) if data else None
         plain_type = channel.name in self._plain
         return {
             "channel": channel.name,
             "type": channel.type_name,
-            "writer": names[channel.writer] if channel.writer != NOBODY else _stranger(channel, outside),
-            "outside": outside,
+            "writer": self._plan.writer_of(channel),
+            "outside": channel.name in self._plan.outside,
             "readers": [names[index] for index in self._readers(channel)],
             "opened": channel.name not in self._channels,
             "messages": self._counts.get(channel.name, 0),
@@ -134,10 +133,6 @@ class Board:
         except MessageError as error:
             raise RequestError(str(error)) from error
         return {**row, "value": value}
-
-
-def _stranger(channel: ChannelPlan, outside: bool) -> str:
-    return "fwk call" if channel.of_tools else "programs outside" if outside else ""
 
 
 def plain(value: Any) -> Any:

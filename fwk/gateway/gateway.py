@@ -20,6 +20,7 @@ from fwk.host.report import Complaints
 from fwk.instances import Fact, Instances, facts_of
 from fwk.messages import Header, MessageError
 from fwk.plan.model import NOBODY, ChannelPlan, Plan
+from fwk.plan.names import LINES
 from fwk.runner import AWAY_TICKS
 from lcmtypes.core import change_t, done_t, fetch_t, gone_t, log_t, tick_record_t
 
@@ -58,7 +59,7 @@ class Gateway:
         self.log = Logger("gateway", self.clock, self._log_line)
         self._complaints = Complaints(self.log)
         self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
-        opened = [channel for channel in plan.channels if channel.of_tools or channel.name in plan.outside]
+        opened = [each for each in plan.channels if each.of_tools or each.name in plan.outside or each.name == LINES]
         self._outside = Outside(opened, self._ports, self._sender, self._inputs, self.clock)
         self._strangers = Strangers(plan, self.take_in, self._complaints)
         self._records = multicast_receiver(self._ports.record)

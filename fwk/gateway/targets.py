@@ -2,14 +2,17 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
-from fwk.aspects.logging import LEVELS
+from fwk.aspects.logging import LEVELS, Logger
 from fwk.gateway import json_log, text_log
 from fwk.gateway.gateway import Sink
 from fwk.gateway.json_log import JsonLog
+from fwk.gateway.log_target import LogTarget
 from fwk.gateway.syslog import Syslog
 from fwk.gateway.text_log import TextLog
-from fwk.plan.model import LogPlan
+from fwk.plan.model import LogPlan, Plan
+from fwk.plan.names import LINES
 from fwk.record.rotating import RotatingFile
 
 _MB = 1_000_000
@@ -42,6 +45,12 @@ def above(sink: Sink, level: str) -> Sink:
 def syslog(log: LogPlan, run: str, report: Callable[[str], None]) -> list[Sink]:
     """The system's log, if it is wanted."""
     return [] if log.syslog == OFF else [above(Syslog(log.syslog_to, run, report), log.syslog)]
+
+
+def components(plan: Plan, take_in: Callable[[str, Any], int], log: Logger) -> list[Sink]:
+    """The components that ask for lines, if there are any."""
+    wanted = any(channel.name == LINES for channel in plan.channels)
+    return [LogTarget(take_in, log)] if wanted else []
 
 
 def files(log: LogPlan, folder: Path, report: Callable[[str], None]) -> list[Sink]:

@@ -4,6 +4,8 @@ import dataclasses
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from fwk.plan.names import LINES
+
 NOBODY = -1
 """As a channel's writer: no component of the plan."""
 
@@ -154,6 +156,14 @@ class Plan:
     log: LogPlan = LogPlan()
     runs: RunsPlan = RunsPlan()
     record: RecordPlan = RecordPlan()
+
+    def writer_of(self, channel: ChannelPlan) -> str:
+        """Who writes a channel, in a word; empty: nobody does."""
+        if channel.writer != NOBODY:
+            return self.components[channel.writer].name
+        if channel.of_tools:
+            return "fwk call"
+        return "programs outside" if channel.name in self.outside else "gateway" if channel.name == LINES else ""
 
     def memory_limit_mb(self, host: int) -> float | None:
         """Memory that a process may take: what its components may together; None if one of them has no limit."""

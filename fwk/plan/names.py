@@ -4,6 +4,8 @@ import re
 
 CHANNEL_BYTES = 63  # LCM_MAX_CHANNEL_NAME_LENGTH
 RESERVED = "fwk/"
+LINES = "fwk/lines"
+"""The channel on which the gateway gives lines of text to components that are targets of the log."""
 
 _NAME = re.compile(r"[A-Za-z_][\w-]*(/[A-Za-z_][\w-]*)*", re.ASCII)
 _PATTERN = re.compile(r"(?=.*\*)[\w*-]+(/[\w*-]+)*/[A-Za-z_][\w-]*", re.ASCII)

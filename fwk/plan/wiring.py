@@ -8,10 +8,11 @@ from fwk import messages
 from fwk.plan.command_lines import CommandLines
 from fwk.plan.errors import hint
 from fwk.plan.model import NOBODY, ChannelPlan
-from fwk.plan.names import mistake_in, mistake_in_pattern
+from fwk.plan.names import LINES, mistake_in, mistake_in_pattern
 from fwk.plan.providers import Granted, with_providers
 from fwk.plan.wish import Report, Wish
 from fwk.port import Port
+from lcmtypes.core import log_t
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class _Wiring:
         self._report = report
         self._may_lack_writer = may_lack_writer
         self._writers = {name: (NOBODY, Port(name, "writes", kind, name)) for name, kind in outside.items()}
+        if any(port.kind == "lines" for wish in wishes for port in wish.declaration.ports):
+            self._writers[LINES] = (NOBODY, Port(LINES, "writes", log_t, LINES))
         self._readers: dict[str, list[int]] = {}
         self._ports: list[dict[str, tuple[str, ...]]] = [{} for _ in wishes]
 
@@ -95,7 +98,10 @@ class _Wiring:
         if own and aspect not in self._granted[self._wishes.index(wish)]:  # told already
             self._ports[self._wishes.index(wish)][port.attribute] = ()
             return False
-        mistake = (mistake_in_pattern if port.each else mistake_in)(wish.pattern(port))
+        pattern = wish.pattern(port)
+        mistake = (mistake_in_pattern if port.each else mistake_in)(pattern)
+        if port.kind == "lines":
+            mistake = "" if pattern == LINES else f"it is a target of the log; take '{pattern}' out of its channels"
         if mistake:
             self._report(wish.name, port.attribute, f"port '{port.attribute}': {mistake}")
             self._ports[self._wishes.index(wish)][port.attribute] = ()

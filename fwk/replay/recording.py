@@ -10,6 +10,7 @@ from fwk.envelope import marked
 from fwk.instances import facts_of
 from fwk.messages import fingerprint
 from fwk.plan.model import NOBODY, Plan
+from fwk.plan.names import LINES
 from fwk.record.log import Event
 from fwk.record.pictures import FRAME, RecordedPicture, picture_of
 from fwk.record.stamped import StampedLog
@@ -74,7 +75,7 @@ class Recording:
                     return
             elif event.channel == FRAME:
                 frames += [picture] if (picture := picture_of(event.data)) else []
-            elif not event.channel.startswith("fwk/"):
+            elif event.channel == LINES or not event.channel.startswith("fwk/"):
                 header = header_of(event.data)
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)

@@ -132,6 +132,7 @@ def _gateway(
         *targets.syslog(plan.log, plan.name, gateway.log.error),
         board,
         calls,
+        *targets.components(plan, gateway.take_in, gateway.log),
         targets.above(sinks.Display(plan, display), plan.log.console),
         sinks.Newest(plan, control, lambda: gateway.lost),
     ]

@@ -11,6 +11,7 @@ from fwk.clock import US_PER_S
 from fwk.component import DEFAULT_STAGES, Component
 from fwk.declaration import declaration
 from fwk.gateway.outside import STAGE, WRITER
+from fwk.plan.names import LINES
 from fwk.plan.wiring import wire
 from fwk.plan.wish import Wish
 from fwk.runner import Runner, Surroundings
@@ -95,6 +96,9 @@ class MemorySystem:
     def tick(self, times: int = 1) -> None:
         """Runs the main loop."""
         for _ in range(times):
+            if LINES in self.sent:
+                for line in self.logged[len(self.sent[LINES]) :]:
+                    self.come_in(LINES, line)
             self.ticks += 1
             if self._time_source and self._time_source.time_source.next_us >= 0:
                 self.now_us = self._time_source.time_source.next_us

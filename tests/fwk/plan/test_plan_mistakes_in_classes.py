@@ -32,7 +32,7 @@ ROWS = {
     "ball: 'Reads[ball_t]'": "Odd: an annotation cannot be read: name 'ball_t' is not defined",
     "ball: Reads": "Odd.ball: Reads is no aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
     "CommandsEach, Sends, SendsEach, Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, "
-    "VisionMaster, a Config, Clock, Logger, numpy.random.Generator, TimeSource, MainLoop, "
+    "VisionMaster, a Config, Clock, Logger, LogLines, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
@@ -43,7 +43,7 @@ ROWS = {
     "channel('world/ball'), or nothing for 'ball'",
     "ball: Reads[odometry_t] = channel(history=-1)": "Odd.ball: history=-1: a history has at least 1 message",
     "ball: Writes[odometry_t] = channel(history=3)": "Odd.ball: history=3: only Reads and ReadsEach keep a history",
-    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "
+    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, LogLines, "
     "not Writes; what a component writes stands in its own class",
     "provides = Settings": "Odd: it provides <class 'odd{}.Settings'>, which is no aspect; derive it from fwk.Aspect",
 }

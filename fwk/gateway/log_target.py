@@ -1,0 +1,41 @@
+"""Lines of text on their way to components that ask for them (`LogLines`)."""
+
+from collections.abc import Callable
+from typing import Any
+
+from fwk.aspects.logging import Logger
+from fwk.gateway.outside import Full
+from fwk.messages import MessageError, decoder
+from fwk.plan.names import LINES
+from lcmtypes.core import log_t
+
+_decode = decoder(log_t, "fwk/log")
+
+
+class LogTarget:
+    """A sink that hands lines in as what comes from outside: stamped, visible from a tick on, recorded."""
+
+    def __init__(self, take_in: Callable[[str, Any], int], log: Logger) -> None:
+        self._take_in = take_in
+        self._log = log
+        self._dropped = 0
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a line."""
+        if channel != "fwk/log":
+            return
+        try:
+            self._take_in(LINES, _decode(data))
+        except Full:
+            self._dropped += 1
+        except MessageError:  # the other targets name it
+            return
+
+    def tick(self) -> None:
+        """A tick is complete: there is room again to say what there was none for."""
+        dropped, self._dropped = self._dropped, 0
+        if dropped:
+            self._log.warning(f"{dropped} lines did not reach the components that ask for lines: too many in one tick")
+
+    def close(self) -> None:
+        """The run is over."""
