@@ -43,7 +43,7 @@ ROWS = {
     "channel('world/ball'), or nothing for 'ball'",
     "ball: Reads[odometry_t] = channel(history=-1)": "Odd.ball: history=-1: a history has at least 1 message",
     "ball: Writes[odometry_t] = channel(history=3)": "Odd.ball: history=3: only Reads and ReadsEach keep a history",
-    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, LogLines, "
+    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "
     "not Writes; what a component writes stands in its own class",
     "provides = Settings": "Odd: it provides <class 'odd{}.Settings'>, which is no aspect; derive it from fwk.Aspect",
 }
