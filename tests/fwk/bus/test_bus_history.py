@@ -1,6 +1,8 @@
 """What a writer keeps for those who lost something."""
 
-from fwk.bus.history import BYTES_MAX, MESSAGES_MAX, TICKS, History
+import pytest
+
+from fwk.bus.history import BYTES_MAX, MESSAGES_MAX, TICKS, History, gaps
 
 
 def numbers(history: History) -> list[int]:
@@ -34,3 +36,16 @@ def test_only_what_is_asked_for_is_given() -> None:
         history.add(1, sequence, b"%d" % sequence)
     assert history.between(2, 3) == [(2, b"2"), (3, b"3")]
     assert history.between(7, 9) == []
+
+
+@pytest.mark.parametrize(
+    ("there", "missing"),
+    [
+        ([], [(3, 7)]),
+        ([3, 4, 5, 6, 7], []),
+        ([4, 6], [(3, 3), (5, 5), (7, 7)]),
+        ([5], [(3, 4), (6, 7)]),
+    ],
+)
+def test_gaps_are_the_ranges_between(there: list[int], missing: list[tuple[int, int]]) -> None:
+    assert list(gaps(there, 3, 7)) == missing
