@@ -64,7 +64,7 @@ class Logger:
     def exception(self, text: str, error: BaseException) -> None:
         """As `error`, with the traceback; the line's place is where the exception was raised."""
         frames = traceback.extract_tb(error.__traceback__)
-        place = (_short(frames[-1].filename), frames[-1].lineno or 0) if frames else ("", 0)
+        place = (short_path(frames[-1].filename), frames[-1].lineno or 0) if frames else ("", 0)
         self.write(log_t.ERROR, f"{text}\n{''.join(traceback.format_exception(error)).rstrip()}", *place)
 
     def write(self, level: int, text: str, file: str, line_number: int) -> None:
@@ -92,7 +92,7 @@ class Logger:
 
     def _write(self, level: int, text: Text) -> None:
         caller = sys._getframe(2)
-        self.write(level, text() if callable(text) else text, _short(caller.f_code.co_filename), caller.f_lineno)
+        self.write(level, text() if callable(text) else text, short_path(caller.f_code.co_filename), caller.f_lineno)
 
     def _emit(self, level: int, text: str, file: str, line_number: int) -> None:
         line = log_t()
@@ -117,7 +117,7 @@ def _sendable(text: object) -> str:
 
 
 @cache
-def _short(path: str) -> str:
+def short_path(path: str) -> str:
     """A source file as it is imported: `procs/camera.py`."""
     folders = [folder for folder in sys.path if folder and path.startswith(f"{folder.rstrip('/')}/")]
     return path[len(max(folders, key=len).rstrip("/")) + 1 :] if folders else path.rpartition("/")[2]

@@ -15,6 +15,7 @@ from fwk.host.blame import Failure
 from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.memory import limit_memory
+from fwk.host.plain_logging import forward_logging
 from fwk.host.process import StopSignal, raise_file_limit
 from fwk.plan.model import ComponentPlan, Plan
 from fwk.port import DeclarationError
@@ -60,6 +61,7 @@ class Place:
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
         host = host_of(self._assignment(told), stop, stop.wakeup)
+        forward_logging(host.log_of_now)
         try:
             if self.debug:
                 return debug(self.debug, host.serve)

@@ -86,6 +86,10 @@ class Host:
         self._message.incarnation = assignment.start.incarnation
         self._report_us = 0
 
+    def log_of_now(self) -> Logger:
+        """That of the component that works now; while none does, the process's own."""
+        return self._members.log_of_now() or self.log
+
     def serve(self) -> None:
         """Initialises the components, answers ticks until it is told to stop, finalizes the components.
 

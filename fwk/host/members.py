@@ -200,6 +200,15 @@ class Members:
         """
         self._blame.put(self.plans[0].name, "its process", error)
 
+    def log_of_now(self) -> Logger | None:
+        """That of the component that works now, if there is one."""
+        if len(self.plans) == 1:
+            name = self.plans[0].name
+        else:
+            working = self._progress.at(self._assignment.host) if self._progress else NOBODY
+            name = self._plan.components[working].name if working != NOBODY else ""
+        return self.runners[name].log if name in self.runners else None
+
     def _works(self, component: int) -> None:
         if self._progress:
             self._progress.works(self._assignment.host, component)

@@ -20,6 +20,7 @@ from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.fresh import forget_modules
 from fwk.host.memory import limit_memory
+from fwk.host.plain_logging import forward_logging
 from fwk.host.process import StopSignal, die_with_parent, end_child, give_memory_back, run_forked, wait_for_end
 from fwk.host.profile import Profile, ProfileRequest
 from fwk.host.progress import Progress
@@ -248,6 +249,7 @@ def _serve_host(
     profile = Profile(profiled, assignment.start.incarnation) if profiled else None
     host = host_of(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
     log_uncaught(host.log)
+    forward_logging(host.log_of_now)
     try:
         if debugged:
             return debug(debugged, host.serve)

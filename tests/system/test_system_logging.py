@@ -27,6 +27,7 @@ from pathlib import Path
 
 from fwk import Clock, Component, Config, Logger, Writes
 from lcmtypes.robot import imu_t
+from thinking import think
 
 
 class TalkerConfig(Config):
@@ -38,6 +39,8 @@ class TalkerConfig(Config):
     """Letters of a long line."""
     thread: bool = False
     """Whether a thread ends by an exception."""
+    thinks: bool = False
+    """Whether a plain module thinks for it."""
     fails_at: int = 0
     """Tick in which it raises."""
     leaves_at: int = 0
@@ -81,10 +84,29 @@ class Talker(Component):
             os.write(2, b"\\xfe no text\\n")
         if self.config.long:
             self.log.warning("x" * self.config.long)
+        if self.config.thinks:
+            think(self.clock.tick)
         if self.config.thread:
             thread = threading.Thread(target=lambda: 1 / 0, name="aside")
             thread.start()
             thread.join()
+'''
+THINKING = '''
+"""Knows nothing of fwk, and logs as every Python module does."""
+
+import logging
+
+log = logging.getLogger(__name__)
+
+
+def think(tick):
+    log.debug("nothing much")
+    log.warning("tick %d is odd", tick)
+    log.info("broken %d", "text")
+    try:
+        1 / 0
+    except ZeroDivisionError:
+        log.exception("cannot divide")
 '''
 LAUNCH = """
 public_url: {url}
@@ -100,7 +122,7 @@ components:
 def talk(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Callable[..., Launched]:
     def start(*arguments: str, log: dict[str, Any] | None = None, **config: Any) -> Launched:
         text = LAUNCH.format(url=ports.public_url, log=json.dumps(log or {}), config=json.dumps(config))
-        write_files(tmp_path, {"parts.py": PARTS, "talk.yaml": text})
+        write_files(tmp_path, {"parts.py": PARTS, "thinking.py": THINKING, "talk.yaml": text})
         return launch("talk.yaml", *arguments)
 
     return start
@@ -163,6 +185,25 @@ def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_th
     times = {line["text"]: (line["tick"], line["time_us"]) for line in lines_of(run, "supervisor")}
     assert times["b/talker ended: exit code 3; starting it again in 0.1 s"] == (7, 350_000)
     assert times["b/talker runs again, start number 2"] == (7, 350_000)
+
+
+@pytest.mark.parametrize("hosting", ["process", "single"])
+def test_what_plain_modules_log_are_lines_of_the_component_that_calls_them(
+    talk: Callable[..., Launched], hosting: str
+) -> None:
+    run = talk(
+        "--ticks", "5", "--hosting", hosting, "--set", "b/*.thinks=true", "--set", "b/*.log_level=debug", thinks=True
+    )
+    assert run.wait() == 0, run.text
+
+    def said(component: str) -> list[tuple[str, int, int, str]]:
+        ours = [line for line in lines_of(run, component) if line["file"] == "thinking.py"]
+        return [(line["level"], line["tick"], line["line"], line["text"].partition("\n")[0]) for line in ours]
+
+    a = [("warning", 3, 11, "tick 3 is odd"), ("error", 3, 16, "cannot divide")]
+    assert said("a/talker") == a
+    assert said("b/talker") == [("debug", 3, 10, "nothing much"), *a]
+    assert any(line["text"].endswith("ZeroDivisionError: division by zero") for line in lines_of(run))
 
 
 def test_levels_and_targets_are_the_launch_files_and_decide_nothing(

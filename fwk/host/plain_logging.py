@@ -1,0 +1,31 @@
+"""What plain modules and libraries say through Python's own `logging` is a line of the component that calls them."""
+
+import logging
+from collections.abc import Callable
+
+from fwk.aspects.logging import Logger, short_path
+from lcmtypes.core import log_t
+
+_LEVELS = ((logging.ERROR, log_t.ERROR), (logging.WARNING, log_t.WARNING), (logging.INFO, log_t.INFO))
+
+
+def forward_logging(log_of_now: Callable[[], Logger]) -> None:
+    """From now on in this process: goes where the lines of the component go, if its `log_level` is such."""
+    root = logging.getLogger()
+    root.addHandler(_Forward(log_of_now))
+    root.setLevel(logging.DEBUG)  # which of it is written is the component's setting
+
+
+class _Forward(logging.Handler):
+    def __init__(self, log_of_now: Callable[[], Logger]) -> None:
+        super().__init__()
+        self._log_of_now = log_of_now
+
+    def emit(self, record: logging.LogRecord) -> None:
+        try:
+            log = self._log_of_now()
+            level = next((ours for theirs, ours in _LEVELS if record.levelno >= theirs), log_t.DEBUG)
+            if log.level <= level:
+                log.write(level, self.format(record), short_path(record.pathname), record.lineno)
+        except Exception:  # a text that cannot be made is no reason to end a component
+            self.handleError(record)
