@@ -53,6 +53,10 @@ class Histogram:
                 return min(longest_us(bucket), self.worst_us)
         return 0
 
+    def rows(self) -> list[tuple[int, int]]:
+        """The longest duration that each bucket counts, and how many it has, the shortest first."""
+        return [(longest_us(bucket), count) for bucket, count in sorted(self.counts.items())]
+
     def since(self, before: "Histogram") -> "Histogram":
         """What was counted after `before` was taken of the same histogram; its worst is that of the highest bucket."""
         left = {bucket: count - before.counts.get(bucket, 0) for bucket, count in self.counts.items()}

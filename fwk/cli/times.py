@@ -13,7 +13,7 @@ _LOOPS = ("loop", "cycle")
 
 
 class Stopwatch:
-    """Turns the run's histograms into percentiles since a moment.
+    """Turns the run's histograms into figures since a moment.
 
     `start`: since the run, or the component, was started; `now`: since the first answer; `picture`: since the last.
     """
@@ -30,24 +30,25 @@ class Stopwatch:
         before = self._before
         if self._since == "picture" or (self._since == "now" and not before):
             self._before = found
-        shown = {key: percentiles(each.since(before[key]) if key in before else each) for key, each in found.items()}
+        shown = {key: figures(each.since(before[key]) if key in before else each) for key, each in found.items()}
         return {
             **{name: shown[name] for name in _LOOPS},
             **{kind: {name: shown[f"{kind} {name}"] for name in answer[kind]} for kind in ("stages", "components")},
         }
 
 
-def percentiles(times: Histogram) -> dict[str, float]:
-    """A histogram in figures, milliseconds."""
+def figures(times: Histogram) -> dict[str, Any]:
+    """A histogram in figures, milliseconds; `histogram` has the longest time that each bucket counts, and how many."""
     return {
         "count": times.count,
         "mean_ms": times.mean_us / 1000,
         **{f"p{percent}_ms": times.percentile_us(percent) / 1000 for percent in (50, 95, 99)},
         "max_ms": times.worst_us / 1000,
+        "histogram": [[longest_us / 1000, count] for longest_us, count in times.rows()],
     }
 
 
-def words(times: Mapping[str, float]) -> list[str]:
+def words(times: Mapping[str, Any]) -> list[str]:
     """The columns of `TITLES`."""
     return [f"{times[key]:.2f}" for key in ("p50_ms", "p95_ms", "p99_ms", "max_ms")]
 

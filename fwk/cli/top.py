@@ -38,7 +38,8 @@ def top(
     """Shows CPU, memory and times of each process of a run, those that take most first; Ctrl-C ends it.
 
     CPU is in percent of one core. Times are wall time, exact to 6 %: of iterations, of stages, and from a tick's
-    beginning to its end (loop) and to the next one's beginning (cycle). With `--json` there is a line for each picture.
+    beginning to its end (loop) and to the next one's beginning (cycle). With `--json` there is a line for each picture,
+    with the histograms in it: pairs of the longest time that a bucket counts and how many it has.
     """
     with asking(), client.supervisor(bus_port) as run:
         meter = _Meter(since)

@@ -45,6 +45,9 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     assert times["components"].keys() == {"r/counter", "r/follower", "r/camera", "r/finder"}
     measured = (*times["stages"].values(), *times["components"].values(), times["loop"], times["cycle"])
     assert all(0 < each["p50_ms"] <= each["p95_ms"] <= each["p99_ms"] <= each["max_ms"] for each in measured)
+    for each in measured:
+        assert sum(count for _, count in each["histogram"]) == each["count"] > 0
+        assert each["p50_ms"] in {longest_ms for longest_ms, _ in each["histogram"]} | {each["max_ms"]}
     (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now"))["times"]]
     assert newer["loop"]["count"] < times["loop"]["count"]
     assert "cycle" in run.fwk("top", "--once", "--interval", "0.1")
