@@ -129,9 +129,11 @@ def launch(
         except NOT_BEGUN:
             shutil.rmtree(run_dir, ignore_errors=True)  # of no run; 'fwk log' would take it for the newest
             raise
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # the run made it a request; from here on it ends things
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # who keeps Ctrl-C pressed means the run, which has ended
     for line in summary(plan, options, outcome):
         typer.echo(line)
+    if profile or video:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # what may take long can be ended
     if profile:
         for line in write_profiles(run_dir):
             typer.echo(line)

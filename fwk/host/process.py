@@ -15,6 +15,8 @@ _PR_SET_PDEATHSIG = 1
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 32 << 20
 
+ENDED_WELL = "exit code 0"
+
 
 def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
     """Asks the kernel to send this process `death_signal` when `parent` ends, however that happens."""

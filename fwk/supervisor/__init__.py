@@ -162,19 +162,27 @@ class Supervisor:
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
 
     def stop(self) -> tuple[status_t, list[str]]:
-        """Stops every process; returns the last view of them, and which components failed in finalize and why."""
+        """Stops every process; returns the last view of them, and what failed meanwhile: components in finalize."""
         self._control.close()
         status = self._publish_status()
         before = self._hosts.failed_components()
-        try:
-            for name in self._hosts.stop_all():
-                self.log.warning(f"{name} did not stop when asked; killed")
-        except RunBroken as broken:
-            self.log.error(f"{broken} while everything was being stopped")
+        broken = self._stop_hosts()
         self._publish_status()
         after = self._hosts.failed_components()
         self._status.complete(status)
-        return status, [f"{name}: {reason}" for name, reason in after.items() if name not in before]
+        return status, broken + [f"{name}: {reason}" for name, reason in after.items() if name not in before]
+
+    def _stop_hosts(self) -> list[str]:
+        """Stops them, whoever else ends meanwhile; returns who did."""
+        broken: list[str] = []
+        while True:
+            try:
+                for name in self._hosts.stop_all():
+                    self.log.warning(f"{name} did not stop when asked; killed")
+                return broken
+            except RunBroken as one:
+                broken.append(f"{one} while everything was being stopped")
+                self.log.error(broken[-1])
 
     def _done(self) -> bool:
         ticks, time_s = self._options.ticks, self._options.time_s

@@ -17,7 +17,7 @@ from fwk.gateway.board import Board
 from fwk.gateway.calls import Calls
 from fwk.gateway.frames import FrameRecorder
 from fwk.gateway.gateway import Gateway
-from fwk.host.process import StopSignal, die_with_parent, end_child, run_forked, wait_for_end
+from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.messages import MessageError
 from fwk.plan.model import Plan
 from fwk.record.log import LogError
@@ -28,7 +28,10 @@ _PATIENCE_S = 5.0
 
 
 class Children:
-    """Forks gateway and display, before the supervisor has sockets of its own."""
+    """Forks gateway and display, before the supervisor has sockets of its own.
+
+    Both end when their connections are closed, and so when the supervisor dies: its death only wakes who was stopped.
+    """
 
     def __init__(self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring]) -> None:
         self.gave_up = ""
@@ -43,14 +46,14 @@ class Children:
             self.control.close()
             gateway_control.close()
             display_feed.close()
-            die_with_parent(parent, signal.SIGTERM)
+            die_with_parent(parent, signal.SIGCONT)
             run_forked(lambda _: _display(plan, display_end, options.plain))
         display_end.close()
         self._gateway = os.fork()
         if self._gateway == 0:
             self.control.close()
             os.setsid()
-            die_with_parent(parent, signal.SIGTERM)
+            die_with_parent(parent, signal.SIGCONT)
             run_forked(lambda _: _gateway(plan, run, options, gateway_control, display_feed, rings))
         gateway_control.close()
         display_feed.close()
@@ -58,7 +61,7 @@ class Children:
         if options.watch and self._watcher == 0:
             self.control.close()
             os.setsid()
-            die_with_parent(parent, signal.SIGTERM)
+            die_with_parent(parent)
             run_forked(partial(_watch, plan))
 
     def gateway_end(self) -> str:
@@ -88,7 +91,9 @@ class Children:
                 when = f"{_PATIENCE_S:g} s after the end"
                 self.gave_up = f"the gateway was not done {when}; killed: the recording may lack its end"
         if self._gateway:
-            os.waitpid(self._gateway, 0)
+            how = wait_for_end(self._gateway)
+            if not self.gave_up and how != ENDED_WELL:
+                self.gave_up = f"the gateway ended: {how}: the recording may lack its end"
         os.waitpid(self._display, 0)
         return newest
 

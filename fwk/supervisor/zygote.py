@@ -167,6 +167,9 @@ class _Forker:
         give_memory_back()  # what a fork costs, and what hosts would fill with other things
         gc.freeze()
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake us
+        # It ends when its connection is closed. Who asks all processes of a run to end, as systemd does, wants them to
+        # finalize, and that needs their parent.
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)
         poller = select.poll()
         poller.register(self._connection, select.POLLIN)
         poller.register(stop.wakeup, select.POLLIN)
