@@ -187,8 +187,3 @@ def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict
     for attribute, aspect in aspects.items():
         if aspect == "time_source":
             raise DeclarationError(f"{where}.{attribute}: a continuous component is no time source; give it a stage")
-        if aspect == "blackboard":
-            raise DeclarationError(
-                f"{where}.{attribute}: a continuous component opens no channels while it runs; declare them, or give "
-                "it a stage"
-            )

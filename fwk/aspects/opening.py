@@ -104,6 +104,7 @@ class Blackboard:
         self._writing: dict[str, OpenWrites[Any]] = {}
         self._holders: dict[str, set[int]] = {}  # of each reader: the handles that want it
         self._wishes: list[list[Any]] = []
+        self._closing: list[OpenWrites[Any]] = []
         self._arrived: list[BlackboardEvent] = []
         self._begun = False
 
@@ -155,7 +156,7 @@ class Blackboard:
         return each
 
     def close(self, handle: Reads[Any] | Writes[Any] | OpenReadsEach[Any]) -> None:
-        """From the next tick on it is not open any more.
+        """From the next tick on it is not open any more; what is written, not from this component's next iteration on.
 
         Raises:
             ValueError: it is declared in the class, closed already, or of somebody else.
@@ -164,6 +165,8 @@ class Blackboard:
         if number is None:
             raise ValueError(f"{self._name}: this was not opened here at run time, or is closed already")
         self._wish(["close", number])
+        if isinstance(handle, OpenWrites):
+            self._closing.append(handle)
 
     def instances(self, pattern: str = "*") -> list[InstanceView]:
         """The channels that there are in this tick and whose names fit, ordered by name."""
@@ -191,8 +194,10 @@ class Blackboard:
         self.events, self._arrived, self._begun = tuple(self._arrived) if self._begun else (), [], True
 
     def take(self) -> list[list[Any]]:
-        """For the framework: what was asked in this iteration."""
-        taken, self._wishes = self._wishes, []
+        """For the framework, at the end of an iteration: what was asked in it."""
+        for writer in self._closing:  # the next iteration of a continuous component may begin before this is granted
+            self._end_writing(writer)
+        taken, self._wishes, self._closing = self._wishes, [], []
         return taken
 
     def take_over(
@@ -220,13 +225,13 @@ class Blackboard:
             handle.refused = fact.reason
             self._numbers.pop(id(handle), None)
         elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.opening:
-            handle.is_open, handle.sequence = True, fact.opening.sequence
-            self._writers[name] = handle
+            if id(handle) in self._numbers:  # it has not been closed meanwhile
+                handle.is_open, handle.sequence = True, fact.opening.sequence
+                self._writers[name] = handle
         elif fact.kind == "read" and not isinstance(handle, OpenWrites):
             self._begin_reading(name, fact.handle, handle)
         elif fact.kind == "close" and isinstance(handle, OpenWrites):
-            handle.is_open = False
-            del self._writers[name]
+            self._end_writing(handle)
         elif fact.kind == "close":
             self._end_reading(name, fact.handle, handle)
 
@@ -250,6 +255,11 @@ class Blackboard:
         if not holders and name not in self._declared:
             del self._readers[name]
             self._reading.pop(name).is_open = False
+
+    def _end_writing(self, handle: OpenWrites[Any]) -> None:
+        handle.is_open = False
+        if self._writers.get(handle.channel) is handle:
+            del self._writers[handle.channel]
 
     def _ask(self, what: str, handle: Handle, name: str, message_type: Any) -> None:
         fingerprint = messages.fingerprint(message_type).hex()

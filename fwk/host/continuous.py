@@ -1,7 +1,7 @@
 """The host of a continuous component: it iterates at its own pace on the newest marks that it was told."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.inbox import Box
@@ -9,6 +9,7 @@ from fwk.clock import US_PER_S, monotonic_us, sleep_s
 from fwk.host.assignment import Assignment
 from fwk.host.attendant import Attendant
 from fwk.host.host import Host
+from fwk.host.opened import Opened
 from fwk.runner import Runner
 from lcmtypes.core import change_t, done_t, tick_t
 
@@ -43,7 +44,7 @@ class ContinuousHost(Host):
         self._told: list[tick_t] = []  # not taken over yet
         self._tick: tick_t | None = None  # the newest one that was taken over
         self._moved: dict[int, Box] = {}  # in which something became visible since the last iteration
-        self._changes: dict[int, change_t] = {}  # of settings by number, for the next iteration
+        self._changes: dict[int, change_t] = {}  # of settings and of the blackboard by number, for the next iteration
         self._runs = 0  # iterations on the marks of that tick
         self._due_us = 0  # wall time of the next iteration; who is late catches up one period at the most
         self._repeat_us = REPEAT_US
@@ -111,17 +112,21 @@ class ContinuousHost(Host):
             self._tick, self._runs = tick, 0
 
     def _run(self) -> None:
-        tick, moved = self._tick, list(self._moved.values())
+        tick = self._tick
         assert tick
+        changes = [self._changes[number] for number in sorted(self._changes)]
+        self._changes = {}
+        if self._opened and changes:
+            self._open(self._opened, changes, tick)
+        moved = list(self._moved.values())
         if not self.inputs.wait(moved, self._handle_own):
             return
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
         self._moved = {}
         self._members.deliver(moved)
-        changes, self._changes = self._changes, {}
         if changes:
-            self._members.configure(list(changes.values()))
+            self._members.configure(changes)
         self._members.tell_holder(tick.main_loop)
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         self._runs += 1
@@ -132,6 +137,15 @@ class ContinuousHost(Host):
         self._answered, self._taken = (tick.tick, tick.stage), False
         self._sent_us, self._repeat_us = monotonic_us(), REPEAT_US
         self._finish(tick, self._names, *ran)
+
+    def _open(self, opened: Opened, changes: Sequence[change_t], tick: tick_t) -> None:
+        """Before an iteration: what is open from now on. Of what is new it wants the newest alone, as of the tick."""
+        new = opened.take_over(changes)
+        self.inputs.advance(tick.channel, tick.sequence, tick.voids)
+        for box in new:
+            box.skip_to(box.mark - 1)
+        moved = {**self._moved, **{box.plan.index: box for box in new if box.mark}}
+        self._moved = {index: box for index, box in moved.items() if index in self.inputs}
 
     def _see_taken(self) -> None:
         """Before the last done: the one before it has to be taken, or its messages would be seen without it."""

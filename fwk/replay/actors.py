@@ -1,8 +1,8 @@
 """A component in a replay: built as in its host process, fed from the recording."""
 
 from collections import deque
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Any
 
@@ -17,6 +17,8 @@ from lcmtypes.core import log_t
 from lcmtypes.robot import frame_t
 
 Written = list[tuple[str, bytes]]
+Newest = dict[tuple[str, bytes], bytes]
+"""The newest message by channel and type, which a channel that is opened again may change."""
 
 
 class Actor:
@@ -79,18 +81,23 @@ class Actor:
         """Something was decided on the blackboard, which it hears of with the next tick that it is told."""
         self._facts.append(fact)
 
-    def take_over(self, newest: Mapping[str, bytes]) -> None:
+    def take_over(self, newest: Newest) -> None:
         """A tick tells it what was decided; a channel that is new to it begins with its newest message."""
         facts, self._facts = self._facts, []
+        for name, data in self._open(facts, newest):
+            self._waiting.pop(name, None)
+            self._arrived.pop(name, None)
+            if data:
+                self._arrived[name] = data
+
+    def _open(self, facts: Sequence[Fact], newest: Newest) -> Iterator[tuple[str, list[bytes]]]:
+        """What was decided; channels that it reads from now on with what they begin with, or does not any more."""
         for fact in facts:
             events = self._instances.apply([fact])
             done = self.runner.blackboard.take_over(self._instances, self.plan.index, fact, events)
-            name = fact.opening.name if fact.opening else ""
-            if done == "opened" and name in newest:
-                self._arrived[name] = [newest[name]]
-            elif done == "closed":
-                self._arrived.pop(name, None)
-                self._waiting.pop(name, None)
+            if done and fact.opening:
+                name, kind = fact.opening.name, bytes.fromhex(fact.opening.fingerprint)
+                yield name, [newest[name, kind]] if done == "opened" and (name, kind) in newest else []
 
     def miss_frame(self, channel: str, number: int) -> None:
         """In the run this frame was overwritten before it came to read it."""
@@ -165,8 +172,11 @@ class _Told:
     tick: int
     time_us: int
     holder: str
-    arrived: dict[str, list[bytes]]
-    changes: list[Mapping[str, Any]]
+    arrived: dict[str, list[bytes]] = field(default_factory=dict)
+    changes: Sequence[Mapping[str, Any]] = ()
+    facts: Sequence[Fact] = ()
+    newest: Newest = field(default_factory=dict)
+    """Of the channels that it begins to read with its next iteration, as of this tick."""
 
 
 class ContinuousActor(Actor):
@@ -175,30 +185,48 @@ class ContinuousActor(Actor):
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self._told: deque[_Told] = deque()
+        self._opening: set[str] = set()  # channels that it begins to read with its next iteration
 
-    def tell_tick(self, tick: int, time_us: int, holder: str) -> None:
-        """A tick says that everything seen so far is visible."""
+    def see(self, channel: str, data: list[bytes]) -> None:
+        """Messages became visible; the next iteration that is told of them has them."""
+        if channel in self._opening:
+            self._arrived.setdefault(channel, []).extend(data)
+        else:
+            super().see(channel, data)
+
+    def tell_tick(self, tick: int, time_us: int, holder: str, newest: Newest) -> None:
+        """A tick says that everything seen so far is visible, and what was decided on the blackboard."""
         arrived, self._arrived = self._arrived, {}
         changes, self._changes = self._changes, []
-        self._told.append(_Told(tick, time_us, holder, arrived, changes))
+        facts, self._facts = self._facts, []
+        self._opening |= self._begun_by(facts)
+        opening = {key: data for key, data in newest.items() if key[0] in self._opening} if self._opening else {}
+        self._told.append(_Told(tick, time_us, holder, arrived, changes, facts, opening))
+
+    def _begun_by(self, facts: Sequence[Fact]) -> set[str]:
+        """Channels that it reads by these decisions."""
+        own = [fact for fact in facts if fact.kind == "read" and fact.component == self.plan.index]
+        return {fact.opening.name for fact in own if fact.opening}
 
     def iterate_on(self, tick: int, number: int) -> Written:
         """Its iteration of that number on the marks of a tick."""
         fresh: dict[str, list[bytes]] = {}
-        while len(self._told) > 1 and self._told[0].tick < tick:
-            self._take(self._told.popleft(), fresh)
-        newest = self._told[0]
-        self._take(newest, fresh)
-        self._told[0] = _Told(newest.tick, newest.time_us, newest.holder, {}, [])
+        told = [self._told.popleft()]
+        while self._told and told[-1].tick < tick:
+            told.append(self._told.popleft())
+        newest = told[-1]
+        self._told.appendleft(_Told(newest.tick, newest.time_us, newest.holder))
+        self._opening = {name for each in self._told for name in self._begun_by(each.facts)}
+        for each in told:
+            for channel, data in each.arrived.items():
+                fresh.setdefault(channel, []).extend(data)
+        fresh |= dict(self._open([fact for each in told for fact in each.facts], newest.newest))
+        fresh = {channel: data for channel, data in fresh.items() if data and channel in self.runner.readers}
+        for settings in (changed for each in told for changed in each.changes):
+            self.runner.configure(settings)
         self.runner.main_loop.holder = newest.holder
         if self.runner.is_new(tick):
             fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
         written = self.runner.iterate(tick, number, "", newest.time_us, self._seen(fresh))
         self.runner.wishes()
         return written
-
-    def _take(self, told: _Told, fresh: dict[str, list[bytes]]) -> None:
-        for channel, data in told.arrived.items():
-            fresh.setdefault(channel, []).extend(data)
-        for settings in told.changes:
-            self.runner.configure(settings)

@@ -14,7 +14,7 @@ from fwk.instances import Fact, Instances, facts_of
 from fwk.messages import MessageError, sequence_of, type_named
 from fwk.plan.model import NOBODY, ComponentPlan
 from fwk.record.difference import Difference, changed, missing
-from fwk.replay.actors import Actor, ContinuousActor, Written
+from fwk.replay.actors import Actor, ContinuousActor, Newest, Written
 from fwk.replay.choice import choose, unrepeatable
 from fwk.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.replay.recording import RecordedTick, Recording, RecordingError
@@ -65,7 +65,7 @@ class Replay:
         self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
         self._answered: dict[int, int] = {}  # host to the newest tick that its process has answered
         self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
-        self._newest: dict[str, bytes] = {}
+        self._newest: Newest = {}
         self._marks: dict[int, int] = {}
         self._sequences: dict[str, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
@@ -136,7 +136,7 @@ class Replay:
             elif event.kind == tick_event_t.TOLD:
                 self._show()
                 for actor in self._continuous():
-                    actor.tell_tick(record.tick, record.time_us, self._holder)
+                    actor.tell_tick(record.tick, record.time_us, self._holder, self._newest)
             elif event.kind == tick_event_t.DONE and event.index == len(self._plan.hosts):
                 self._come_in()
             elif event.kind == tick_event_t.DONE:
@@ -218,7 +218,7 @@ class Replay:
                 actor.configure(settings)
             if component.opens:
                 actor.begin(self._instances)
-            for channel, data in self._newest.items():
+            for (channel, _), data in self._newest.items():
                 actor.see(channel, [data])
             for channel, sequence in self._sequences.items():
                 actor.continue_at(channel, sequence)
@@ -334,7 +334,7 @@ class Replay:
 
     def _show(self) -> None:
         for channel, data in self._revealed:
-            self._newest[channel] = data[-1]
+            self._newest[channel, data[-1][:8]] = data[-1]
             for actors in self._actors.values():
                 for actor in actors:
                     actor.see(channel, data)

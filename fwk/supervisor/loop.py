@@ -131,7 +131,7 @@ class MainLoop:
 
     def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> Change:
         self.newest_change += 1
-        change = Change(component, self.newest_change, text, self._step + 1)
+        change = Change(component, self.newest_change, text, self._ledger.step + 1)
         self.records.change(change)
         for entry in concerned:
             if entry.alive:

@@ -8,6 +8,7 @@ import zlib
 import numpy as np
 
 from fwk import Blackboard, Clock, Component, Config, Logger, Reads, Writes
+from fwk.clock import sleep_s
 from lcmtypes.robot import imu_t, odometry_t
 
 
@@ -40,6 +41,8 @@ class Trader(Component):
             seen += [name, [message.header.sequence for message in each.fresh], each.value.heading_rad]
         seen += [(each.channel, each.is_open, each.refused) for each in self.writing.values()]
         seen += [board.writer("a/diary"), board.readers("a/diary"), board.has_writer("shop/good1")]
+        if self.wrong and self.wrong.is_open:
+            self.wrong.write()
         self.digest = zlib.crc32(repr(seen).encode(), self.digest)
         self.diary.value.heading_rad = self.config.gain * self.digest
         self.diary.write()
@@ -76,6 +79,24 @@ class Trader(Component):
             pass
 
 
+class Wanderer(Trader):
+    """A trader at its own pace: the main loop goes on while it thinks."""
+
+    stage = ()
+    rate_hz = 0
+
+    def loop(self) -> None:
+        before = self.everything()
+        sleep_s(0.05 * self.rng.random())
+        assert self.everything() == before
+        super().loop()
+
+    def everything(self):
+        board = self.blackboard
+        values = [(name, each.value.heading_rad, each.refreshed) for name, each in self.goods.items()]
+        return board.events, board.instances(), values, self.own.is_open
+
+
 class Bystander(Component):
     """Knows of nothing and reads a diary."""
 
@@ -89,8 +110,11 @@ class Bystander(Component):
 '''
 
 
-def market(public_url: str, more: str = "") -> dict[str, str]:
-    """The files of an application with three traders in two stages and a bystander."""
+WANDERER = '  d/trader: {use: "traders:Wanderer", restart: {limit: 100, backoff_s: 0.01}}\n'
+
+
+def market(public_url: str, more: str = "", *, wanderer: bool = False) -> dict[str, str]:
+    """The files of an application: three traders in two stages, if asked for one at its own pace, and a bystander."""
     launch = f"""
 name: market
 period_s: 0.02
@@ -102,7 +126,7 @@ components:
   b/trader: {{use: "traders:Trader", stage: skill, restart: {{limit: 100, backoff_s: 0.01}}}}
   c/trader: {{use: "traders:Trader", restart: {{limit: 100, backoff_s: 0.01}}}}
   a/bystander: {{use: "traders:Bystander"}}
-{more}
+{WANDERER if wanderer else ""}{more}
 """
     return {"traders.py": TRADERS, "launch/market.yaml": launch}
 

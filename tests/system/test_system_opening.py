@@ -19,7 +19,7 @@ from tests.system.system_runs import PortBlock, fwk, pause, replayed, write_file
 pytestmark = pytest.mark.system
 
 GROUPS = "hosts: {stall: [a/trader, c/trader, a/bystander]}"
-TRADERS = ("a/trader", "b/trader", "c/trader")
+TRADERS = ("a/trader", "b/trader", "c/trader", "d/trader")
 
 
 def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
@@ -43,7 +43,7 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
 def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, clock: str, hosts: str
 ) -> None:
-    files = market(ports.public_url, hosts)
+    files = market(ports.public_url, hosts, wanderer=True)
     if clock == "real time":
         files["launch/market.yaml"] = files["launch/market.yaml"].replace("speed: max", "clock: wall")
     write_files(tmp_path, files)
@@ -70,7 +70,7 @@ def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
     kinds = {event.kind for record in Recording(tmp_path / "log.lcm").records for event in record.events}
     assert {tick_event_t.OPENED, tick_event_t.LOST} <= kinds
     replayed(tmp_path)
-    replayed(tmp_path, "--only", "c/trader")
+    replayed(tmp_path, "--only", "c/trader", "--only", "d/trader")
 
 
 def test_a_changed_component_is_found_on_a_channel_that_it_opened(

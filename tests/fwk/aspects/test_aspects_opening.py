@@ -2,9 +2,7 @@
 
 import pytest
 
-from fwk import Blackboard, Component, NotOpen, Reads, Writes
-from fwk.declaration import declaration
-from fwk.port import DeclarationError
+from fwk import Blackboard, Clock, Component, NotOpen, Reads, Writes
 from fwk.testing.bench import Bench
 from fwk.testing.memory import MemorySystem
 from lcmtypes.robot import imu_t, odometry_t
@@ -89,13 +87,58 @@ def test_an_iteration_that_asks_for_too_much_is_refused() -> None:
         board.open_for_reading(imu_t, "a/more")
 
 
-def test_a_continuous_component_opens_nothing() -> None:
-    class Continuous(Component):
-        rate_hz = 5.0
+def test_what_is_closed_is_not_written_in_the_next_iteration_though_it_is_granted_later() -> None:
+    class Twice(Component):
+        stage = ("think", "act")
+        blackboard: Blackboard
+        clock: Clock
+
+        def init(self) -> None:
+            self.spot = self.blackboard.open_for_writing(imu_t, "spot")
+
+        def loop(self) -> None:
+            if self.clock.tick == 2 and self.clock.stage == "think":
+                self.blackboard.close(self.spot)
+            if self.spot.is_open:
+                self.spot.write()
+
+    system = MemorySystem({"a/twice": Twice, "b/opener": Opener})
+    system.tick(2)
+    assert system.runners["b/opener"].component.blackboard.writer("a/spot") == "a/twice"  # type: ignore[attr-defined]
+    system.tick(2)
+    assert [(imu.header.tick, imu.header.stage) for imu in map(imu_t.decode, system.sent["a/spot"])] == [(2, 5)]
+
+
+def test_what_was_closed_before_it_was_open_never_opens() -> None:
+    made = bench()
+    board = made.component.blackboard
+    spot = board.open_for_writing(imu_t, "spot")
+    board.close(spot)
+    made.iterate(3)
+    assert (spot.is_open, spot.refused) == (False, "")
+    again = board.open_for_writing(imu_t, "spot")
+    made.iterate(2)
+    assert again.is_open
+
+
+def test_a_continuous_component_opens_channels_too() -> None:
+    class Roamer(Component):
+        rate_hz = 10.0
         blackboard: Blackboard
 
-    with pytest.raises(DeclarationError, match="a continuous component opens no channels while it runs; declare them"):
-        declaration(Continuous)
+        def init(self) -> None:
+            self.imu = self.blackboard.open_for_reading(imu_t, "a/imu")
+            self.seen = self.blackboard.open_for_writing(odometry_t, "seen")
+
+        def loop(self) -> None:
+            if self.seen.is_open:
+                self.seen.value.x_m = len(self.imu.fresh)
+                self.seen.write()
+
+    system = MemorySystem({"a/opener": Opener, "a/roamer": Roamer})
+    system.tick(7)
+    seen = [odometry_t.decode(data) for data in system.sent["a/seen"]]
+    assert [(each.header.tick, each.x_m) for each in seen] == [(3, 1.0), (5, 2.0), (7, 2.0)]
 
 
 def test_who_opens_late_has_the_newest_value_at_once_and_hears_of_others() -> None:
