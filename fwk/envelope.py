@@ -6,6 +6,7 @@ of this: for it the functions here give its usual codec, chosen once a channel.
 
 import struct
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 from fwk import messages
@@ -29,6 +30,12 @@ def fingerprint(message_type: type[Message]) -> bytes:
     """What messages of this type begin with inside a run."""
     own = messages.fingerprint(message_type)
     return own if messages.has_header(message_type) else marked(own)
+
+
+@cache
+def is_plain(type_name: str) -> bool:
+    """Whether messages of a type travel in an envelope."""
+    return not messages.has_header(messages.type_named(type_name))
 
 
 def mistake_in(message_type: type[Message]) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from typing import Any, Literal
 
+from fwk import envelope, messages
 from fwk.plan.model import NOBODY, Plan
 
 EventKind = Literal[
@@ -37,6 +38,11 @@ class Opening:
     fingerprint: str
     sequence: int = 0
     """Of a writer: number of the newest message so far."""
+
+    @property
+    def begins(self) -> bytes:
+        """What its messages begin with."""
+        return envelope.fingerprint(messages.type_named(self.type_name))
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from fnmatch import fnmatchcase
 from typing import Any, Generic, Literal, TypeVar, cast
 
-from fwk import messages
-from fwk.aspects.blackboard import Reads, Stamp, Writes
+from fwk import envelope, messages
+from fwk.aspects.blackboard import Reads, Stamp, Writes, WritesPlain
 from fwk.instances import BlackboardEvent, Fact, Instance, Instances, InstanceView
 from fwk.plan.names import mistake_in
 
@@ -50,6 +50,10 @@ class OpenWrites(Writes[T]):
         super().write()
 
 
+class OpenWritesPlain(OpenWrites[T], WritesPlain[T]):
+    """The same for a type without our header."""
+
+
 class OpenReadsEach(Mapping[str, Reads[T]], Generic[T]):
     """Readers of every instance that fits a pattern, by channel name; they come and go with the instances."""
 
@@ -83,7 +87,7 @@ class Blackboard:
     """Opens channels that the class does not declare, and tells who has which open.
 
     What is asked in `init` or an iteration happens between that tick and the next, in one order for all components,
-    and is recorded. Names without a slash belong to the component's namespace.
+    and is recorded. Names without a slash belong to the component's namespace, `/JOYSTICK` to none.
     """
 
     def __init__(
@@ -138,7 +142,8 @@ class Blackboard:
         full = self._full(channel)
         writer = self._writing.get(full)
         if writer is None or writer.message_type is not message_type or id(writer) not in self._numbers:
-            writer = OpenWrites(full, message_type, self._stamp)
+            kind = OpenWrites if messages.has_header(cast(Any, message_type)) else OpenWritesPlain
+            writer = kind(full, message_type, self._stamp)
             self._ask("write", writer, full, message_type)
             self._writing[full] = writer
         return writer
@@ -147,10 +152,10 @@ class Blackboard:
         """Readers of all instances of a type whose names fit: `*/ball`, `cyan?/pose`; those too that come later.
 
         Raises:
-            ValueError: it is no type of an interface, or too much was asked in this iteration.
+            ValueError: it is no type of a channel, or too much was asked in this iteration.
         """
         self._check(message_type)
-        full = pattern if "/" in pattern else f"{self._name.rpartition('/')[0]}/{pattern}"
+        full = self._with_namespace(pattern)
         each = OpenReadsEach(full, message_type)
         self._ask("each", each, full, message_type)
         return each
@@ -268,8 +273,10 @@ class Blackboard:
         self._handles[self._newest], self._numbers[id(handle)] = handle, self._newest
 
     def _check(self, message_type: Any) -> None:
-        if not hasattr(message_type, "_get_packed_fingerprint") or not messages.has_header(message_type):
-            raise ValueError(f"{self._name}: {message_type!r} is no LCM type that begins with 'core.header_t header;'")
+        if not hasattr(message_type, "_get_packed_fingerprint"):
+            raise ValueError(f"{self._name}: {message_type!r} is no LCM type; import it from lcmtypes")
+        if mistake := envelope.mistake_in(message_type):
+            raise ValueError(f"{self._name}: {mistake}")
 
     def _wish(self, wish: list[Any]) -> None:
         if len(self._wishes) >= WISHES_MAX:
@@ -277,12 +284,17 @@ class Blackboard:
         self._wishes.append(wish)
 
     def _full(self, channel: str) -> str:
-        namespace = self._name.rpartition("/")[0]
-        full = channel if "/" in channel or not namespace else f"{namespace}/{channel}"
+        full = self._with_namespace(channel)
         mistake = mistake_in(full)
         if mistake:
             raise ValueError(f"{self._name}: {mistake}")
         return full
+
+    def _with_namespace(self, channel: str) -> str:
+        if channel.startswith("/"):
+            return channel[1:]
+        namespace = self._name.rpartition("/")[0]
+        return channel if "/" in channel or not namespace else f"{namespace}/{channel}"
 
     def _asked_of(self, channel: str, question: Callable[[Instances, Instance], T], nothing: T) -> T:
         instance = self._instances.find(self._full(channel)) if self._instances else None

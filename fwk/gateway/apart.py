@@ -2,8 +2,9 @@
 
 import struct
 from collections.abc import Set
+from functools import cache
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.envelope import STAMP
 from fwk.gateway.gateway import Sink
 from fwk.messages import Header
@@ -14,35 +15,33 @@ _FINGERPRINT = messages.fingerprint(stamp_t)
 
 
 class Apart:
-    """A sink that gets, in place of each envelope on one of these channels, a stamp and the plain message."""
+    """A sink that gets, in place of each envelope on one of these channels, a stamp and the plain message.
 
-    def __init__(self, sink: Sink, channels: Set[str]) -> None:
+    Those of `opened` come and go.
+    """
+
+    def __init__(self, sink: Sink, channels: Set[str], opened: Set[str] = frozenset()) -> None:
         self._sink = sink
-        self._begins = {channel: _beginning(channel) for channel in channels}
+        self._channels = channels
+        self._opened = opened
         self.tick = sink.tick
         self.close = sink.close
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         """Passes a message on."""
-        begin = self._begins.get(channel)
-        if begin is not None:
+        if channel in self._channels or channel in self._opened:
             end = Header.of(data).end
-            self._sink.message(STAMP, begin + data[8:end], time_us)
+            self._sink.message(STAMP, _beginning(channel) + data[8:end], time_us)
             data = data[end:]
         self._sink.message(channel, data, time_us)
 
 
 def plain_channels(plan: Plan) -> frozenset[str]:
     """The channels of a plan whose types have no header of ours."""
-    types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
-    return frozenset(name for name, kind in types.items() if not messages.has_header(kind))
+    return frozenset(channel.name for channel in plan.channels if envelope.is_plain(channel.type_name))
 
 
-def apart(sink: Sink, channels: Set[str]) -> Sink:
-    """The sink itself if there is nothing to take apart."""
-    return Apart(sink, channels) if channels else sink
-
-
+@cache
 def _beginning(channel: str) -> bytes:
     """Of an encoded `stamp_t`: everything before the members of its header."""
     name = channel.encode() + b"\0"

@@ -10,7 +10,6 @@ from fwk.control import requests
 from fwk.control.address import gateway_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
-from fwk.gateway.apart import plain_channels
 from fwk.instances import Instance, Instances
 from fwk.messages import Header, MessageError
 from fwk.plan.errors import hint
@@ -27,7 +26,6 @@ class Board:
         self._instances = instances
         self._call = call
         self._channels = {channel.name: channel for channel in plan.channels}
-        self._plain = plain_channels(plan)
         self._newest: dict[str, bytes] = {}
         self._arrived_us: dict[str, int] = {}
         self._counts = dict.fromkeys(self._channels, 0)
@@ -100,7 +98,7 @@ class Board:
         names = [component.name for component in self._plan.components]
         data = self._newest.get(channel.name)
         header = Header.of(data) if data else None
-        plain_type = channel.name in self._plain
+        plain_type = envelope.is_plain(channel.type_name)
         return {
             "channel": channel.name,
             "type": channel.type_name,

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
+from fwk import envelope
 from fwk.aspects.logging import Logger
 from fwk.bus import sync, wire
 from fwk.bus.history import gaps
@@ -49,6 +50,8 @@ class Gateway:
         self.sinks: list[Sink] = []
         self.instances = Instances(plan)
         """Which channels there are, those too that were opened while the run goes on."""
+        self.opened_plain: set[str] = set()
+        """Channels that were opened with a type without our header."""
         self._plan = plan
         self._run = run
         self._control = control
@@ -175,9 +178,14 @@ class Gateway:
         facts = facts_of(change.settings)
         self.instances.apply(facts)
         self._listen(facts)
-        for fact in facts:
-            if fact.kind == "write" and fact.opening and fact.opening.channel >= len(self._plan.channels):
-                self._inputs.comes_from(fact.opening.channel, self._plan.components[fact.component].host)
+        opened = [fact for fact in facts if fact.opening and fact.opening.channel >= len(self._plan.channels)]
+        for component, kind, opening in ((fact.component, fact.kind, fact.opening) for fact in opened):
+            assert opening
+            self.opened_plain.discard(opening.name)
+            if envelope.is_plain(opening.type_name):
+                self.opened_plain.add(opening.name)
+            if kind == "write":
+                self._inputs.comes_from(opening.channel, self._plan.components[component].host)
 
     def _listen(self, facts: Iterable[Fact]) -> None:
         """To channels that were never open before."""

@@ -96,7 +96,7 @@ class Actor:
             events = self._instances.apply([fact])
             done = self.runner.blackboard.take_over(self._instances, self.plan.index, fact, events)
             if done and fact.opening:
-                name, kind = fact.opening.name, bytes.fromhex(fact.opening.fingerprint)
+                name, kind = fact.opening.name, fact.opening.begins
                 yield name, [newest[name, kind]] if done == "opened" and (name, kind) in newest else []
 
     def miss_frame(self, channel: str, number: int) -> None:

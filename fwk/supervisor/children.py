@@ -12,7 +12,7 @@ from fwk.bus.public import PublicBus
 from fwk.cli.display import run_display
 from fwk.control.watcher import Watcher
 from fwk.gateway import sinks, targets
-from fwk.gateway.apart import apart, plain_channels
+from fwk.gateway.apart import Apart, plain_channels
 from fwk.gateway.board import Board
 from fwk.gateway.calls import Calls
 from fwk.gateway.frames import FrameRecorder
@@ -132,7 +132,11 @@ def _gateway(
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already
     gateway.sinks += [
-        *([targets.above(apart(sinks.Mirror(plan, public), ours), plan.log.bus)] if public else []),
+        *(
+            [targets.above(Apart(sinks.Mirror(plan, public), ours, gateway.opened_plain), plan.log.bus)]
+            if public
+            else []
+        ),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         *targets.syslog(plan.log, plan.name, gateway.log.error),
         board,
@@ -149,7 +153,7 @@ def _gateway(
                 if recorded
                 else sinks.Recorder(plan, options.record, gateway.log.error)
             )
-            gateway.sinks.insert(0, targets.above(apart(recorder, plain), plan.log.recording))
+            gateway.sinks.insert(0, targets.above(Apart(recorder, plain, gateway.opened_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     gateway.serve()

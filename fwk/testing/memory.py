@@ -116,11 +116,11 @@ class MemorySystem:
             self._publish(done)
 
     def _open(self, opening: Opening) -> None:
-        for name, channel, done in opening.decide():
-            if done == "closed":
+        for name, channel, first in opening.decide():
+            if first < 0:
                 del self._seen[name][channel]
             else:
-                self._seen[name][channel] = max(0, len(self.sent[channel]) - 1)
+                self._seen[name][channel] = first
 
     def come_in(self, channel: str, message: Any) -> None:
         """Between two ticks: a program outside writes a message, visible from the next tick on."""
@@ -149,6 +149,8 @@ class MemorySystem:
     def _run(self, runner: Runner, number: int, stage: str, visible: Mapping[str, int]) -> list[tuple[str, bytes]]:
         seen = self._seen[runner.name]
         fresh = {channel: self.sent[channel][seen[channel] : visible[channel]] for channel in seen}
+        if self._opening:
+            fresh = self._opening.of_their_types(runner, fresh)
         for channel in seen:
             seen[channel] = visible[channel]
         runner.main_loop.holder = self._holding.holder

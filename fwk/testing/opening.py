@@ -1,9 +1,8 @@
 """Channels opened at run time where there are no processes: wishes are granted between two ticks, as in a run."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Literal
 
-from fwk import messages
+from fwk import envelope, messages
 from fwk.instances import Fact, Instances
 from fwk.openings import Openings
 from fwk.plan.model import Plan
@@ -31,8 +30,8 @@ class Opening:
         if wishes:
             self._openings.ask(tick, place, runner.name, wishes)
 
-    def decide(self) -> Iterator[tuple[str, str, Literal["opened", "closed"]]]:
-        """Between two ticks: which component reads a channel that it did not, or does not any more."""
+    def decide(self) -> Iterator[tuple[str, str, int]]:
+        """Between two ticks: which component reads a channel that it did not, from which message on; -1: no more."""
         if not self._openings.asked:
             return
         facts, _ = self._openings.decide()
@@ -41,17 +40,26 @@ class Opening:
             for index, runner in self._runners.items():
                 done = runner.blackboard.take_over(self._table, index, fact, events)
                 if done and fact.opening:
-                    yield runner.name, fact.opening.name, done
+                    sent, begins = self._sent[fact.opening.name], fact.opening.begins
+                    alike = [place for place, data in enumerate(sent) if data.startswith(begins)]
+                    yield runner.name, fact.opening.name, [len(sent), *alike][-1] if done == "opened" else -1
+
+    def of_their_types(self, runner: Runner, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
+        """Of a channel that was opened again with another type a reader sees its own type alone."""
+        for channel in fresh.keys() & self.types.keys():
+            begins = envelope.fingerprint(runner.readers[channel].message_type)
+            fresh[channel] = [data for data in fresh[channel] if data.startswith(begins)]
+        return fresh
 
     def _numbered(self, fact: Fact) -> Fact:
         if not fact.opening:
             return fact
-        name, kind = fact.opening.name, bytes.fromhex(fact.opening.fingerprint or "00")
+        name, begins = fact.opening.name, fact.opening.begins
         self._sent.setdefault(name, [])
-        self.types.setdefault(name, messages.type_named(fact.opening.type_name))
-        return fact.numbered(_newest_of(kind, self._sent[name]))
+        self.types[name] = messages.type_named(fact.opening.type_name)
+        return fact.numbered(_newest_of(begins, self._sent[name]))
 
 
-def _newest_of(fingerprint: bytes, sent: Sequence[bytes]) -> int:
+def _newest_of(begins: bytes, sent: Sequence[bytes]) -> int:
     """Number of the newest message of that type."""
-    return next((messages.sequence_of(data) for data in reversed(sent) if data.startswith(fingerprint)), 0)
+    return next((messages.sequence_of(data) for data in reversed(sent) if data.startswith(begins)), 0)

@@ -10,6 +10,7 @@ import numpy as np
 from fwk import Blackboard, Clock, Component, Config, Logger, Reads, Writes
 from fwk.clock import sleep_s
 from lcmtypes.robot import imu_t, odometry_t
+from lcmtypes.soccer import obstacle_t
 
 
 class TraderConfig(Config):
@@ -31,6 +32,8 @@ class Trader(Component):
         self.writing = {}
         self.reading = {}
         self.wrong = None
+        self.plain = None
+        self.oddments = self.blackboard.open_multiple_for_reading(obstacle_t, "*/odd?")
         self.digest = 0
 
     def loop(self) -> None:
@@ -39,10 +42,15 @@ class Trader(Component):
         readers = {**self.goods, **self.reading}
         for name, each in readers.items():
             seen += [name, [message.header.sequence for message in each.fresh], each.value.heading_rad]
+        for name, each in self.oddments.items():
+            seen += [name, each.header.sequence, each.header.writer, [odd.x_m for odd in each.fresh]]
         seen += [(each.channel, each.is_open, each.refused) for each in self.writing.values()]
         seen += [board.writer("a/diary"), board.readers("a/diary"), board.has_writer("shop/good1")]
         if self.wrong and self.wrong.is_open:
             self.wrong.write()
+        if self.plain and self.plain.is_open:
+            self.plain.value.x_m += 1.0
+            self.plain.write()
         self.digest = zlib.crc32(repr(seen).encode(), self.digest)
         self.diary.value.heading_rad = self.config.gain * self.digest
         self.diary.write()
@@ -71,6 +79,9 @@ class Trader(Component):
             self.wrong = board.open_for_writing(odometry_t, name)
         elif what == 6:
             self.close(self.wrong)
+        elif what == 7:
+            self.close(self.plain)
+            self.plain = board.open_for_writing(obstacle_t, f"/shop/odd{self.rng.integers(2)}")
 
     def close(self, handle) -> None:
         try:
@@ -119,7 +130,7 @@ def market(public_url: str, more: str = "", *, wanderer: bool = False) -> dict[s
 name: market
 period_s: 0.02
 speed: max
-spare_channels: 12
+spare_channels: 14
 public_url: {public_url}
 components:
   a/trader: {{use: "traders:Trader", restart: {{limit: 100, backoff_s: 0.01}}}}

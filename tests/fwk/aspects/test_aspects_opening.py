@@ -2,10 +2,12 @@
 
 import pytest
 
-from fwk import Blackboard, Clock, Component, NotOpen, Reads, Writes
+from fwk import Blackboard, Clock, Component, NotOpen, Reads, Writes, envelope
 from fwk.testing.bench import Bench
 from fwk.testing.memory import MemorySystem
+from lcmtypes.core import header_t
 from lcmtypes.robot import imu_t, odometry_t
+from lcmtypes.soccer import obstacle_t
 
 
 class Opener(Component):
@@ -71,7 +73,8 @@ def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
     [
         (imu_t, "a/ball!", "'a/ball!' is no name"),
         (imu_t, "fwk/tick", "names that begin with 'fwk/' are the framework's own"),
-        (int, "a/ball", "is no LCM type that begins with 'core.header_t header;'"),
+        (int, "a/ball", "is no LCM type; import it from lcmtypes"),
+        (header_t, "a/ball", "core.header_t is the framework's own and does not begin with 'core.header_t header;'"),
     ],
 )
 def test_what_can_never_be_opened_is_refused_at_once(kind: type, name: str, what: str) -> None:
@@ -119,6 +122,24 @@ def test_what_was_closed_before_it_was_open_never_opens() -> None:
     again = board.open_for_writing(imu_t, "spot")
     made.iterate(2)
     assert again.is_open
+
+
+def test_a_channel_is_opened_again_with_another_type_and_each_reader_sees_its_own() -> None:
+    system = MemorySystem({"a/opener": Opener, "b/opener": Opener})
+    system.tick()
+    a, b = (system.runners[f"{name}/opener"].component.blackboard for name in "ab")  # type: ignore[attr-defined]
+    for kind in (imu_t, obstacle_t, imu_t):  # the second has no header of ours
+        writer, reader = a.open_for_writing(kind, "/SPOT"), b.open_for_reading(kind, "/SPOT")
+        system.tick(2)
+        writer.write()
+        system.tick(2)
+        assert (reader.message_type, reader.header.writer, reader.has_value) == (kind, "a/opener", True)
+        a.close(writer)
+        b.close(reader)
+        system.tick(2)
+    assert [data[:8] for data in system.sent["SPOT"]] == [
+        envelope.fingerprint(kind) for kind in (imu_t, obstacle_t, imu_t)
+    ]
 
 
 def test_a_continuous_component_opens_channels_too() -> None:
