@@ -172,6 +172,8 @@ class Blackboard:
         self._wish(["close", number])
         if isinstance(handle, OpenWrites):
             self._closing.append(handle)
+        if isinstance(handle, OpenReadsEach) and not handle:
+            del self._handles[number]
 
     def instances(self, pattern: str = "*") -> list[InstanceView]:
         """The channels that there are in this tick and whose names fit, ordered by name."""
@@ -215,8 +217,12 @@ class Blackboard:
         before = len(self._readers)
         self._instances = instances
         self._arrived += events
-        if fact.component == component and fact.handle in self._handles:
-            self._settle(fact, self._handles[fact.handle])
+        handle = self._handles.get(fact.handle) if fact.component == component else None
+        if handle is not None:
+            self._settle(fact, handle)
+            ended = fact.kind in ("close", "refuse") and self._numbers.get(id(handle)) != fact.handle
+            if ended and not (isinstance(handle, OpenReadsEach) and handle):
+                del self._handles[fact.handle]
         after = len(self._readers)
         return "opened" if after > before else "closed" if after < before else ""
 
@@ -229,6 +235,7 @@ class Blackboard:
         if fact.kind == "refuse" and not isinstance(handle, OpenReadsEach):
             handle.refused = fact.reason
             self._numbers.pop(id(handle), None)
+            _forget(self._writing if isinstance(handle, OpenWrites) else self._reading, handle)
         elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.opening:
             if id(handle) in self._numbers:  # it has not been closed meanwhile
                 handle.is_open, handle.sequence = True, fact.opening.sequence
@@ -263,8 +270,8 @@ class Blackboard:
 
     def _end_writing(self, handle: OpenWrites[Any]) -> None:
         handle.is_open = False
-        if self._writers.get(handle.channel) is handle:
-            del self._writers[handle.channel]
+        _forget(self._writers, handle)
+        _forget(self._writing, handle)
 
     def _ask(self, what: str, handle: Handle, name: str, message_type: Any) -> None:
         fingerprint = messages.fingerprint(message_type).hex()
@@ -299,3 +306,8 @@ class Blackboard:
     def _asked_of(self, channel: str, question: Callable[[Instances, Instance], T], nothing: T) -> T:
         instance = self._instances.find(self._full(channel)) if self._instances else None
         return question(self._instances, instance) if self._instances and instance else nothing
+
+
+def _forget(table: dict[str, Any], handle: OpenReads[Any] | OpenWrites[Any]) -> None:
+    if table.get(handle.channel) is handle:
+        del table[handle.channel]

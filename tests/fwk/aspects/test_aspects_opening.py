@@ -1,5 +1,9 @@
 """The blackboard aspect as a component sees it, on a bench and in a system in memory."""
 
+import gc
+import weakref
+from typing import Any
+
 import pytest
 
 from fwk import Blackboard, Clock, Component, NotOpen, Reads, Writes, envelope
@@ -190,3 +194,32 @@ def test_who_opens_late_has_the_newest_value_at_once_and_hears_of_others() -> No
     refused = b.open_for_reading(odometry_t, "a/imu")
     system.tick(2)
     assert "b/opener wants it as robot.odometry_t" in refused.refused
+
+
+def test_what_was_closed_or_refused_takes_no_memory() -> None:
+    class Restless(Component):
+        stage = "think"
+        blackboard: Blackboard
+
+        def init(self) -> None:
+            self.asked: list[Any] = []
+            self.kept: list[weakref.ref[Any]] = []
+
+        def loop(self) -> None:
+            for handle in self.asked:
+                if not getattr(handle, "refused", ""):
+                    self.blackboard.close(handle)
+            self.asked = [
+                self.blackboard.open_for_reading(imu_t, "r/other"),
+                self.blackboard.open_for_writing(imu_t, "own"),
+                self.blackboard.open_for_writing(odometry_t, "own"),  # of another type: refused
+                self.blackboard.open_for_writing(imu_t, f"own{len(self.kept)}"),  # soon there is no channel left
+                self.blackboard.open_multiple_for_reading(imu_t, "*/own"),
+                self.blackboard.open_multiple_for_reading(odometry_t, "*/nothing"),
+            ]
+            self.kept += map(weakref.ref, self.asked)
+
+    bench = Bench(Restless, name="r/restless")
+    bench.iterate(100)
+    gc.collect()
+    assert len({id(each()) for each in bench.component.kept if each() is not None}) <= 2 * 6
