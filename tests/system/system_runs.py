@@ -1,5 +1,6 @@
 """Runs `fwk-launch` as a user would, on ports of its own, and leaves no process behind whatever happens."""
 
+import contextlib
 import os
 import signal
 import socket
@@ -201,6 +202,15 @@ def replayed(folder: Path, *words: str, log: str | Path = "log.lcm", code: int =
     said = fwk(folder, "replay", log, "--verify", *words, code=code)
     assert code or "equal: " in said, said
     return said
+
+
+def fill(disk: Path) -> Path:
+    """A file that takes all that is free."""
+    big = disk / "big"
+    with open(big, "wb", buffering=0) as file, contextlib.suppress(OSError):
+        while file.write(bytes(4096)):
+            pass
+    return big
 
 
 def write_files(folder: Path, files: dict[str, str]) -> None:

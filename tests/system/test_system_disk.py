@@ -1,6 +1,5 @@
 """A disk that is full, and processes that are killed while they write: what was acknowledged stays, the run goes on."""
 
-import contextlib
 import json
 import os
 import random
@@ -16,21 +15,12 @@ from fwk.control.yaml_edit import read
 from fwk.record.log import LogReader
 from fwk.record.text_log import read_lines
 from tests.system.control_system import Steered, write_system
-from tests.system.system_runs import BIN, Launched, PortBlock, fwk
+from tests.system.system_runs import BIN, Launched, PortBlock, fill, fwk
 
 pytestmark = pytest.mark.system
 
 Disk = Callable[[int], Path]
 Launch = Callable[..., Launched]
-
-
-def fill(disk: Path) -> Path:
-    """A file that takes all that is free."""
-    big = disk / "big"
-    with open(big, "wb", buffering=0) as file, contextlib.suppress(OSError):
-        while file.write(bytes(4096)):
-            pass
-    return big
 
 
 def test_log_and_recording_on_a_full_disk(tmp_path: Path, ports: PortBlock, launch: Launch, small_disk: Disk) -> None:

@@ -1,7 +1,9 @@
 """Recorded frames: components on the frames of a device that cannot be run again; without them, a clear refusal."""
 
 import os
+import re
 import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import cv2
@@ -13,7 +15,7 @@ from fwk.record.pictures import FRAME, pictures_in
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import difference
-from tests.system.system_runs import PortBlock, fwk, replayed, write_files
+from tests.system.system_runs import PortBlock, fill, fwk, replayed, write_files
 
 pytestmark = pytest.mark.system
 
@@ -187,6 +189,34 @@ def test_a_frame_that_is_not_in_the_recording_is_named(launch: Launch, eyes: Pat
     said = replayed(eyes, "--only", "a/watcher", code=2)
     assert "frame 40 of r/image is not in the recording" in said
     assert "equal" in replayed(eyes, "--only", "a/watcher", "--to-tick", "19")
+
+
+@pytest.mark.parametrize("clock", ["lockstep", "real time"])
+def test_frames_on_a_full_disk_are_missing_and_told_and_what_is_before_them_replays(
+    launch: Launch, eyes: Path, ports: PortBlock, small_disk: Callable[[int], Path], clock: str
+) -> None:
+    wants(eyes, "record: {frames: [r, g/image]}")
+    wants(eyes, "speed: 4" if clock == "lockstep" else "clock: wall\nperiod_s: 0.02")
+    log = small_disk(16) / "log.lcm"
+    run = Steered(launch("eyes.yaml", "--record", str(log)), ports)
+    run.launched.until_true(lambda: any(picture.tick > 5 for picture in pictures_in(log)), "pictures on the disk")
+    big = fill(log.parent)
+    run.launched.until("log.lcm: cannot record: No space left on device")
+    run.ticks_pass(20)
+    big.unlink()
+    run.launched.until("log.lcm: there is room again; ")
+    room_at = run.tick
+    run.ticks_pass(20)
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    assert "messages are missing in the recording" in run.launched.text
+    assert len({(picture.camera, picture.frame) for picture in pictures_in(log)}) == len(list(pictures_in(log)))
+    assert max(picture.tick for picture in pictures_in(log)) > room_at
+    told = replayed(eyes, log=log, code=2)
+    said = re.search(r"messages are missing after tick (\d+).*replay what is before it", told)
+    assert said, told
+    assert int(said[1]) > 5
+    assert "equal" in replayed(eyes, "--to-tick", said[1], log=log)
 
 
 def test_a_camera_that_is_not_there_is_a_mistake_in_the_launch_file(launch: Launch, eyes: Path) -> None:
