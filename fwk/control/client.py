@@ -17,6 +17,10 @@ class ControlError(Exception):
     """The run cannot be asked, or refuses; says why and what would be right."""
 
 
+class NoAnswerError(ControlError):
+    """The run has not answered in time; says whom its loop waits for."""
+
+
 class RefusedError(ControlError):
     """The run was asked for something that it cannot do, or that does not exist."""
 
@@ -26,6 +30,7 @@ class Client:
 
     def __init__(self, socket_address: str, timeout_s: float = TIMEOUT_S) -> None:
         self._rest = b""
+        self._address = socket_address
         self._timeout_s = timeout_s
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         self._socket.settimeout(timeout_s)
@@ -48,7 +53,10 @@ class Client:
             ControlError: refused, or no answer in time.
         """
         self._send(verb, fields)
-        return self._answer(timeout_s or self._timeout_s)
+        try:
+            return self._answer(timeout_s or self._timeout_s)
+        except NoAnswerError as error:
+            raise NoAnswerError(f"{error}{self._waits() if verb != 'status' else ''}") from error
 
     def follow(self, verb: str, within_s: float | None = None, **fields: Any) -> Iterator[dict[str, Any]]:
         """Sends a request and gives all its answers, until the run ends or that much time has passed.
@@ -79,7 +87,7 @@ class Client:
             except TimeoutError as error:
                 if end_us is not None:
                     raise EOFError from error
-                raise ControlError(f"the run has not answered within {timeout_s:g} s") from error
+                raise NoAnswerError(f"the run has not answered within {timeout_s:g} s") from error
             except ConnectionError:
                 data = b""
             if not data:
@@ -92,6 +100,15 @@ class Client:
         if not answer.get("ok"):
             raise RefusedError(str(answer.get("error")))
         return answer
+
+    def _waits(self) -> str:
+        """For what happens at a tick's end only: what keeps the tick from ending."""
+        try:
+            with Client(self._address, 1.0) as other:
+                waits_for = ", ".join(other.ask("status").get("waits_for", []))
+        except ControlError:
+            return ""
+        return f"; its loop waits for {waits_for}: what does not come back can be stopped" if waits_for else ""
 
 
 def find_run(bus_port: int | None) -> int:

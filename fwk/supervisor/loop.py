@@ -264,8 +264,8 @@ class MainLoop:
         for index in self._outstanding:
             entry = self._hosts.table[index]
             if entry.leaves and now_us >= entry.asked_us + STUCK_US:
-                self._log.warning(f"{entry.name}: shall stop, but does not come out of its iteration; killed")
-                entry.asked_us = now_us
+                entry.asked_us, entry.reason = now_us, "did not come out of its iteration; killed"
+                self._log.warning(f"{entry.name}: shall stop, but {entry.reason}")
                 self._hosts.kill(entry)
 
     def _on_done(self, done: done_t) -> None:
