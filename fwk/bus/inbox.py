@@ -33,7 +33,7 @@ class Box:
             self._newest = sequence
         else:
             held = self._held.get(sequence)
-            if held is None or _incarnation(held) < _incarnation(data):
+            if held is None or _age(held) < _age(data):
                 self._held[sequence] = data
 
     def collect(self) -> bool:
@@ -80,10 +80,14 @@ class Box:
         """What is here and was not taken yet, of these numbers, oldest first."""
         return sorted((number, data) for number, data in self._held.items() if first <= number <= last and data)
 
-    def void(self, above: int, before_incarnation: int) -> None:
-        """Forgets what a writer that died had sent beyond the marks."""
+    def void(self, above: int, up_to_tick: int, before_incarnation: int) -> None:
+        """Forgets what a writer that died in a tick had sent beyond the marks.
+
+        What its next start, or another component that may write the channel later on, has sent is younger.
+        """
         for number in [number for number in self._held if number > above]:
-            if _incarnation(self._held[number]) < before_incarnation:
+            tick, incarnation = _age(self._held[number])
+            if tick <= up_to_tick and incarnation < before_incarnation:
                 del self._held[number]
         self._newest = max(self._held, default=self.floor)
 
@@ -144,10 +148,10 @@ class Inbox(Box):
         self._drain()
         return super().give_up(first, last)
 
-    def void(self, above: int, before_incarnation: int) -> None:
+    def void(self, above: int, up_to_tick: int, before_incarnation: int) -> None:
         """Forgets what a writer that died had sent beyond the marks, also what still waits in the socket."""
         self._drain()
-        super().void(above, before_incarnation)
+        super().void(above, up_to_tick, before_incarnation)
 
     def _drain(self) -> None:
         while self._receive():
@@ -185,10 +189,14 @@ class Inbox(Box):
         self.put(messages.sequence_of(data), data)
 
 
-def _incarnation(data: bytes) -> int:
-    """Which start of its writer sent a message: 1, or the number after '#' in the header's writer."""
+def _age(data: bytes) -> tuple[int, int]:
+    """Tick of a message, and which start of its writer sent it: 1, or the number after '#' in the header's writer.
+
+    Of two with the same number the older one was sent by somebody who died before its done.
+    """
     try:
-        writer = Header.of(data).writer
+        header = Header.of(data)
     except MessageError:
-        return 0
-    return int(writer.rpartition("#")[2]) if "#" in writer else 1
+        return -1, 0
+    writer = header.writer
+    return header.tick, int(writer.rpartition("#")[2]) if "#" in writer else 1

@@ -66,7 +66,7 @@ class Inputs:
         for void in voids:
             box = self._boxes.get(void.channel)
             if box is not None:
-                box.void(void.above_sequence, void.before_incarnation)
+                box.void(void.above_sequence, void.up_to_tick, void.before_incarnation)
         moved = []
         for index, sequence in zip(channels, sequences, strict=True):
             box = self._boxes.get(index)

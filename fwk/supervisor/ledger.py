@@ -13,6 +13,7 @@ class Void:
 
     channel: int
     above_sequence: int
+    up_to_tick: int
     before_incarnation: int
     since: int
 
@@ -28,6 +29,8 @@ class Ledger:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.step = 0
+        self.tick = 0
+        """The newest tick."""
         channels = len(plan.channels) + plan.spare_channels
         self.marks = [0] * channels
         """Highest visible sequence number of each channel."""
@@ -112,7 +115,8 @@ class Ledger:
 
     def void(self, host: int, incarnation: int) -> None:
         """A host died; its next start is `incarnation`."""
-        self.voids += [Void(channel, self._latest[channel], incarnation, self.step) for channel in self._written[host]]
+        for channel in self._written[host]:
+            self.voids.append(Void(channel, self._latest[channel], self.tick, incarnation, self.step))
 
     def voids_since(self, since: int) -> list[Void]:
         """Voids that somebody who was told at step `since` last may not know."""

@@ -120,6 +120,6 @@ def void_messages(ledger: Ledger, since: int) -> list[void_t]:
     for void in ledger.voids_since(since):
         message = void_t()
         message.channel, message.above_sequence = void.channel, void.above_sequence
-        message.before_incarnation = void.before_incarnation
+        message.up_to_tick, message.before_incarnation = void.up_to_tick, void.before_incarnation
         made.append(message)
     return made

@@ -17,9 +17,9 @@ WRITER, STRANGER = 1, 2
 """Ports, counted from the channel's."""
 
 
-def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0) -> bytes:
+def pose(sequence: int, writer: str = "cyan1/localization", x_m: float = 0.0, tick: int = 0) -> bytes:
     made = pose_t()
-    made.header.sequence, made.header.writer, made.x_m = sequence, writer, x_m
+    made.header.sequence, made.header.writer, made.x_m, made.header.tick = sequence, writer, x_m, tick
     return made.encode()
 
 
@@ -31,9 +31,9 @@ class Wired:
         self.inbox = Inbox(PLAN, port, writers, lambda channel, text: self.complaints.append(f"{channel}: {text}"))
         self.sender = Sender(port + WRITER)
 
-    def send(self, *sequences: int, writer: str = "cyan1/localization") -> None:
+    def send(self, *sequences: int, writer: str = "cyan1/localization", tick: int = 0) -> None:
         for sequence in sequences:
-            self.sender.publish(b"cyan1/pose", pose(sequence, writer), self.port)
+            self.sender.publish(b"cyan1/pose", pose(sequence, writer, tick=tick), self.port)
 
     def taken(self) -> list[int]:
         return [pose_t.decode(data).header.sequence for data in self.inbox.take()]
@@ -107,14 +107,27 @@ def test_what_a_dead_writer_sent_beyond_the_marks_is_void(wired: Wired, new_firs
     for writer in reversed(writers) if new_first else writers:
         wired.send(2, writer=writer)
     wired.inbox.mark = 2
-    wired.inbox.void(above=1, before_incarnation=2)
+    wired.inbox.void(above=1, up_to_tick=0, before_incarnation=2)
     assert wired.inbox.collect()
     assert [pose_t.decode(data).header.writer for data in wired.inbox.take()] == writers
 
 
+@pytest.mark.parametrize("void_first", [False, True])
+def test_what_another_component_writes_after_a_death_is_not_void(wired: Wired, void_first: bool) -> None:
+    wired.send(1, tick=4)
+    wired.send(2, writer="cyan1/dead", tick=5)
+    if void_first:
+        wired.inbox.void(above=1, up_to_tick=5, before_incarnation=2)
+    wired.send(2, writer="cyan1/heir", tick=6)
+    wired.inbox.void(above=1, up_to_tick=5, before_incarnation=2)
+    wired.inbox.mark = 2
+    assert wired.inbox.collect()
+    assert [pose_t.decode(data).header.writer for data in wired.inbox.take()] == ["cyan1/localization", "cyan1/heir"]
+
+
 def test_a_dead_writers_message_alone_is_forgotten(wired: Wired) -> None:
     wired.send(1, 2)
-    wired.inbox.void(above=1, before_incarnation=2)
+    wired.inbox.void(above=1, up_to_tick=0, before_incarnation=2)
     wired.inbox.mark = 2
     assert not wired.inbox.collect()
     assert wired.inbox.missing() == [2]

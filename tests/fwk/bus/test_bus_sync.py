@@ -22,7 +22,8 @@ def ticks(draw: some.DrawFn) -> tick_t:
     tick.n_absent = len(tick.absent)
     for _ in range(draw(some.integers(0, 3))):
         void = void_t()
-        void.channel, void.above_sequence, void.before_incarnation = draw(INT32), draw(INT64), draw(INT32)
+        void.channel, void.above_sequence = draw(INT32), draw(INT64)
+        void.up_to_tick, void.before_incarnation = draw(INT64), draw(INT32)
         tick.voids.append(void)
     tick.n_voids = len(tick.voids)
     for _ in range(draw(some.integers(0, 2))):

@@ -69,7 +69,7 @@ class Followed:
             made.n_marks, made.channel, made.sequence = 1, [0], [mark]
         if void_above is not None:
             void = void_t()
-            void.channel, void.above_sequence, void.before_incarnation = 0, void_above, 2
+            void.channel, void.above_sequence, void.up_to_tick, void.before_incarnation = 0, void_above, tick, 2
             made.n_voids, made.voids = 1, [void]
         self.supervisor.publish(b"fwk/record", made.encode(), self.ports.record)
 

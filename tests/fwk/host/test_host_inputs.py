@@ -187,7 +187,7 @@ def test_the_dead_writers_unfinished_messages_are_dropped_for_its_successors(mak
     pair = make()
     pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])  # of 2 the done never came
     void = void_t()
-    void.channel, void.above_sequence, void.before_incarnation = 0, 1, 2
+    void.channel, void.above_sequence, void.up_to_tick, void.before_incarnation = 0, 1, 2, 2
     moved = pair.inputs.advance([0], [1], [void])
     assert pair.inputs.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [1]
