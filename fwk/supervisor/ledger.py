@@ -1,6 +1,6 @@
 """The ledger of marks: which sequence number of each channel is visible, and what a stage has to be told of it."""
 
-from bisect import insort
+from bisect import bisect_left, insort
 from dataclasses import dataclass
 
 from fwk.instances import Instances
@@ -35,6 +35,7 @@ class Ledger:
         self.marks = [0] * channels
         """Highest visible sequence number of each channel."""
         self.voids: list[Void] = []
+        """In the order in which they came, of a long run with many deaths a long list."""
         self._latest = [0] * channels  # published, visible from the next step on
         self._dirty: list[int] = []
         self._changed = [-1] * channels  # step at which the mark moved last; -1: never
@@ -120,7 +121,7 @@ class Ledger:
 
     def voids_since(self, since: int) -> list[Void]:
         """Voids that somebody who was told at step `since` last may not know."""
-        return [void for void in self.voids if void.since >= since]
+        return self.voids[bisect_left(self.voids, since, key=lambda void: void.since) :]
 
     def sequences(self, host: int) -> dict[str, int]:
         """Where a restarted host's channels go on."""
