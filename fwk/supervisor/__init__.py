@@ -204,7 +204,7 @@ class Supervisor:
     def _publish_status(self) -> status_t:
         status = self._status.message()
         self._control.published(status)
-        self._hosts.printed.tell_dropped()
+        self._hosts.printed.look()
         self._sender.publish(b"fwk/status", status.encode(), self._ports.status)
         return status
 

@@ -26,11 +26,20 @@ class Captured:
         self._level = level
         self._lines = 0
         self._rest = b""
+        self._waits = b""  # what of it was there at the last look already
         self.open = True
         os.set_blocking(descriptor, False)
         mailbox.watch(descriptor, self._read)
 
-    def tell_dropped(self) -> None:
+    def look(self) -> None:
+        """Once a second: what does not end in a line by then is logged as it is; says how many lines were dropped."""
+        if self._rest and self._rest == self._waits:
+            self._write(self._rest, self._lines + 1)
+            self._rest = b""
+        self._waits = self._rest
+        self._tell_dropped()
+
+    def _tell_dropped(self) -> None:
         """Says how many lines were dropped, if that second is over or nothing more can come."""
         dropped = self._limit.dropped() if self.open else self._limit.rest()
         if dropped:
@@ -53,13 +62,16 @@ class Captured:
             if not self._limit.passes():
                 self._limit.drop(sum(map(bool, lines[number - 1 :])))
                 break
-            self._log.write(self._level, _text(line), self._stream, self._lines + number)
+            self._write(line, self._lines + number)
         self._lines += len(lines)
         if not data:
             self.open = False
             self._mailbox.unwatch(self._descriptor)
             os.close(self._descriptor)
-        self.tell_dropped()
+        self._tell_dropped()
+
+    def _write(self, line: bytes, number: int) -> None:
+        self._log.write(self._level, _text(line), self._stream, number)
 
 
 class Printed:
@@ -77,10 +89,10 @@ class Printed:
         for descriptor, stream, level in ((output, "stdout", log_t.INFO), (errors, "stderr", log_t.WARNING)):
             self._streams.append(Captured(descriptor, self._mailbox, log, RateLimit(self._lines_per_s), stream, level))
 
-    def tell_dropped(self) -> None:
-        """Says how much was too much for the log."""
+    def look(self) -> None:
+        """Once a second: what waits for the end of its line, and how much was too much for the log."""
         for each in self._streams:
-            each.tell_dropped()
+            each.look()
         self._streams = [each for each in self._streams if each.open]
 
 

@@ -37,6 +37,8 @@ class TalkerConfig(Config):
     """Lines printed in the first iteration."""
     long: int = 0
     """Letters of a long line."""
+    asks: bool = False
+    """Whether it prints a line without an end."""
     thread: bool = False
     """Whether a thread ends by an exception."""
     thinks: bool = False
@@ -84,6 +86,8 @@ class Talker(Component):
             os.write(2, b"\\xfe no text\\n")
         if self.config.long:
             self.log.warning("x" * self.config.long)
+        if self.config.asks:
+            print("how much? ", end="", flush=True)
         if self.config.thinks:
             think(self.clock.tick)
         if self.config.thread:
@@ -156,6 +160,11 @@ def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[...,
     assert [line["line"] for line in shown] == [int(line["text"].split()[1]) + 1 for line in shown]
     errors = [line["text"] for line in lines_of(run) if line["file"] == "stderr"]
     assert errors == ["to the other stream", "\\xfe no text"]
+
+
+def test_what_has_no_end_of_line_is_logged_while_the_process_goes_on(talk: Callable[..., Launched]) -> None:
+    run = talk("--speed", "1", asks=True)
+    run.until("a/talker: how much?  (stdout:1)")
 
 
 def test_long_lines_come_with_their_ends(talk: Callable[..., Launched]) -> None:
