@@ -25,7 +25,6 @@ from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
 REPORT_US = US_PER_S
-MISSED_MAX = 2_000  # that fit into a done
 
 
 class Host:
@@ -186,7 +185,7 @@ class Host:
 
     def _with_missed(self, wishes: str) -> str:
         """The recording says what this host never saw, so that a replay keeps it from its components, too."""
-        missed = self.inputs.missed()[:MISSED_MAX]
+        missed = self.inputs.missed()
         return json.dumps({**json.loads(wishes or "{}"), "missed": missed}) if missed else wishes
 
     def _publish(
