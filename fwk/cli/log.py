@@ -12,7 +12,7 @@ import typer
 from fwk.cli.asking import BusPort, Json, ask, asking
 from fwk.cli.conditions import moment_us, pattern, ticks, times_us
 from fwk.cli.lines import log_line
-from fwk.cli.run_dir import RUNS
+from fwk.cli.run_dir import RUNS, in_use, named
 from fwk.control.address import running
 from fwk.control.client import ControlError
 from fwk.gateway.json_log import FILE
@@ -32,7 +32,9 @@ class Level(StrEnum):
 def log(
     run_dir: Annotated[
         Path | None,
-        typer.Argument(metavar="RUN", help="run directory; by default that of the run that goes on, or the newest"),
+        typer.Argument(
+            metavar="RUN", help="run directory or its name; by default that of the run that goes on, or the newest"
+        ),
     ] = None,
     follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
     level: Annotated[Level, typer.Option(help="lines of this level and worse")] = Level.DEBUG,
@@ -80,14 +82,14 @@ def _find(run_dir: Path | None, bus_port: int | None) -> tuple[Path, Callable[[]
     if run_dir is None:
         try:
             run = ask(bus_port, "run")
-            pid = int(run["pid"])
-            return _there(Path(run["run_dir"])), lambda: _lives(pid)
+            run_dir = Path(run["run_dir"])
         except ControlError:
             folders = sorted((Path.home() / RUNS).glob("*"))
             if bus_port is not None or running() or not folders:
                 raise
             run_dir = folders[-1]
-    return _there(run_dir), lambda: False
+    folder = named(run_dir)
+    return _there(folder), lambda: in_use(folder)
 
 
 def _there(run_dir: Path) -> Path:
@@ -95,7 +97,3 @@ def _there(run_dir: Path) -> Path:
         right = "name a run directory; one of a plan with 'log: {json_lines: off}' has none"
         raise typer.BadParameter(f"{run_dir}: there is no {FILE} in it; {right}")
     return run_dir / FILE
-
-
-def _lives(pid: int) -> bool:
-    return os.path.exists(f"/proc/{pid}")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import typer
 
+from fwk.cli.run_dir import named
 from fwk.record.log import SYNC, LogError
 from fwk.typegen import TypeGenerationError
 
@@ -22,11 +23,12 @@ def failing(code: int) -> Iterator[None]:
 
 
 def find_log(path: Path) -> Path:
-    """The log that is meant: the file itself, or the one log in a run directory.
+    """The log that is meant: the file itself, or the one log in a run directory, which may be said by its name alone.
 
     Raises:
         LogError: the directory holds no log, or several.
     """
+    path = named(path)
     if not os.path.isdir(path):  # False, too, for what can be no path or is forbidden
         return path
     found = [file for file in sorted(path.iterdir()) if file.is_file() and _is_log(file)]

@@ -21,7 +21,7 @@ DIFFERENT, UNUSABLE = 1, 2
 
 
 def replay(
-    run: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="a run directory or its log")],
+    run: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="a run directory, its name, or its log")],
     verify: Annotated[bool, typer.Option("--verify", help="compare every output; exit 1 at a difference")] = False,
     only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
     from_tick: Annotated[

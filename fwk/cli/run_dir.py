@@ -61,7 +61,7 @@ def run_dirs(runs: Path) -> list[RunDir]:
     """All run directories, the oldest first; what has another name is none."""
     found = [path for path in runs.glob("*") if _NAME.fullmatch(path.name) and path.is_dir() and not path.is_symlink()]
     found.sort(key=lambda path: path.name)
-    return [RunDir(path, _size(path), _in_use(path), (path / KEEP).exists()) for path in found]
+    return [RunDir(path, _size(path), in_use(path), (path / KEEP).exists()) for path in found]
 
 
 def prune(runs: Path, keep: int, max_bytes: int) -> list[RunDir]:
@@ -96,7 +96,14 @@ def _alone(folder: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
-def _in_use(path: Path) -> bool:
+def named(path: Path) -> Path:
+    """The run directory that has the name as `fwk runs list` shows it, if nothing is there as typed."""
+    own = Path.home() / RUNS / path.name
+    return own if str(path) == path.name and not os.path.lexists(path) and os.path.isdir(own) else path
+
+
+def in_use(path: Path) -> bool:
+    """Whether a process of that run directory's run still lives."""
     try:
         descriptor = os.open(path / IN_USE, os.O_RDWR)
     except OSError:

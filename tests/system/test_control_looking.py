@@ -1,6 +1,7 @@
 """A real run is looked at from another terminal, and its settings are changed."""
 
 import json
+import os
 import socket
 import subprocess
 from collections.abc import Callable
@@ -12,7 +13,7 @@ from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.client import RefusedError
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
-from tests.system.system_runs import BIN, PortBlock, fwk
+from tests.system.system_runs import BIN, TIMEOUT_S, PortBlock, fwk
 
 pytestmark = pytest.mark.system
 
@@ -177,3 +178,20 @@ def test_without_a_run_the_commands_say_so(tmp_path: Path) -> None:
     done = subprocess.run([BIN / "fwk", "status", "--bus-port", "1"], capture_output=True, text=True, check=False)
     assert done.returncode == 1
     assert done.stderr.startswith("error: no run on this machine has --bus-port 1")
+
+
+def test_the_log_of_a_run_that_is_named_is_followed_until_it_ends(run: Steered) -> None:
+    folder = run.launched.folder
+    command = [str(BIN / "fwk"), "log", run.launched.run_dir.name, "--follow"]
+    with subprocess.Popen(
+        command, cwd=folder, env={**os.environ, "HOME": str(folder)}, stdout=subprocess.PIPE, text=True
+    ) as following:
+        assert following.stdout
+        run.fwk("note", "here it begins")
+        following.stdout.readline()
+        run.ticks_pass(10)
+        run.fwk("note", "found again")
+        run.end()
+        said, _ = following.communicate(timeout=TIMEOUT_S)
+    assert "found again" in said
+    assert "counted enough" in said

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from fwk.cli.run_dir import IN_USE, RUNS, RunDirError, make_run_dir, prune, run_dirs
+from fwk.cli.run_dir import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
 from fwk.cli.runs import runs
 from tests.fwk.cli.cli_processes import PROCS, launch, write_files
 
@@ -88,6 +88,16 @@ def test_what_is_in_use_by_any_process_of_the_run_stays(tmp_path: Path) -> None:
         os.sched_yield()
     prune(tmp_path, 1, 0)
     assert there(tmp_path) == [newest]
+
+
+def test_one_is_found_by_the_name_that_is_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.chdir(tmp_path)
+    made = make_run_dir("garden")
+    assert named(Path(made.name)) == made
+    assert named(Path("other")) == Path("other")
+    (tmp_path / made.name).mkdir()
+    assert named(Path(made.name)) == Path(made.name)
 
 
 def test_a_new_one_is_in_use(tmp_path: Path) -> None:
