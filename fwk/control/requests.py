@@ -83,7 +83,7 @@ class SetSettings(_Request):
     """New values as `NAME.SETTING=VALUE`; answered when the components have them, `check`: only whether they could."""
 
     verb: Literal["set"]
-    changes: Names
+    changes: Annotated[list[str], Field(max_length=1000)]  # as long as a request may be
     check: bool = False
     origin: str = Field("fwk config set", max_length=500)
 

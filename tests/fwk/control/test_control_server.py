@@ -13,7 +13,7 @@ from hypothesis import strategies as some
 
 from fwk.control import address, server
 from fwk.control.client import Client, ControlError, RefusedError
-from fwk.control.requests import RequestError, parsed, to_gateway, to_supervisor
+from fwk.control.requests import RequestError, SetSettings, parsed, to_gateway, to_supervisor
 from fwk.control.server import Connection, Server
 
 Connect = Callable[[], socket.socket]
@@ -100,6 +100,13 @@ def test_what_is_no_request_is_refused_and_the_next_one_answered(
     assert not refused["ok"]
     assert error in refused["error"]
     assert answered == {"ok": True, "verb": "run"}
+
+
+def test_a_value_may_be_as_long_as_a_request() -> None:
+    change = f"a/b.levels={[1.5] * 10_000}"
+    asked = parsed(to_supervisor, json.dumps({"verb": "set", "changes": [change]}).encode())
+    assert isinstance(asked, SetSettings)
+    assert asked.changes == [change]
 
 
 @given(some.lists(some.binary(max_size=200), max_size=5))
