@@ -117,6 +117,10 @@ class ReadsHistory(Reads[T]):
         """The newest messages, oldest first; after a restart it begins anew."""
         return self._history
 
+    def keep(self, length: int) -> None:
+        """For the framework: from now on so many at the least."""
+        self._history.keep(length)
+
 
 class History(Sequence[T]):
     """The newest messages of a channel, each decoded when it is looked at first."""
@@ -125,6 +129,11 @@ class History(Sequence[T]):
         self._decode = decode
         self._raw: deque[bytes] = deque(maxlen=length)
         self._values: deque[T | None] = deque(maxlen=length)
+
+    def keep(self, length: int) -> None:
+        """From now on so many at the least."""
+        if length > (self._raw.maxlen or 0):
+            self._raw, self._values = deque(self._raw, length), deque(self._values, length)
 
     def add(self, fresh: Sequence[bytes]) -> None:
         """Newer ones push the oldest out."""

@@ -5,7 +5,7 @@ from fnmatch import fnmatchcase
 from typing import Any, Generic, Literal, TypeVar, cast
 
 from fwk import envelope, messages
-from fwk.aspects.blackboard import Reads, Stamp, Writes, WritesPlain
+from fwk.aspects.blackboard import Reads, ReadsHistory, Stamp, Writes, WritesPlain
 from fwk.instances import BlackboardEvent, Fact, Instance, Instances, InstanceView
 from fwk.plan.names import mistake_in
 
@@ -19,12 +19,15 @@ class NotOpen(Exception):  # noqa: N818 - a state
     """A channel is written that is not open; says which and since when not."""
 
 
-class OpenReads(Reads[T]):
+class OpenReads(ReadsHistory[T]):
     """A reader that was opened at run time; it has nothing before it `is_open`, and keeps its value when closed."""
 
     is_open = False
     refused = ""
     """Why it was not opened; empty if it was, or nobody has decided yet."""
+
+    def __init__(self, channel: str, message_type: type[T], length: int = 0) -> None:
+        super().__init__(channel, message_type, max(1, length))
 
     def freeze(self, fresh: list[bytes]) -> None:
         """For the framework: begins an iteration. Of what was there before it was opened it sees the newest."""
@@ -57,9 +60,10 @@ class OpenWritesPlain(OpenWrites[T], WritesPlain[T]):
 class OpenReadsEach(Mapping[str, Reads[T]], Generic[T]):
     """Readers of every instance that fits a pattern, by channel name; they come and go with the instances."""
 
-    def __init__(self, pattern: str, message_type: type[T]) -> None:
+    def __init__(self, pattern: str, message_type: type[T], length: int = 0) -> None:
         self.pattern = pattern
         self.message_type = message_type
+        self.length = length
         self._readers: dict[str, Reads[T]] = {}
 
     def __getitem__(self, channel: str) -> Reads[T]:
@@ -112,21 +116,23 @@ class Blackboard:
         self._arrived: list[BlackboardEvent] = []
         self._begun = False
 
-    def open_for_reading(self, message_type: type[T], channel: str) -> Reads[T]:
+    def open_for_reading(self, message_type: type[T], channel: str, *, history: int = 0) -> Reads[T]:
         """A reader of a channel, whether the plan has it or somebody opens it now or later.
 
-        One that the class declares is given as it is. A first iteration with it open has the newest value.
+        One that the class declares is given as it is. A first iteration with it open has the newest value. It keeps as
+        many of the newest messages as `history` says, from then on.
 
         Raises:
-            ValueError: no such name or type can be, or too much was asked in this iteration.
+            ValueError: no such name, type or history can be, or too much was asked in this iteration.
         """
-        self._check(message_type)
+        self._check(message_type, history)
         full = self._full(channel)
         if full in self._declared and full in self._readers:
             return cast(Reads[T], self._readers[full])
         reader = self._reading.get(full)
         if reader is None or reader.message_type is not message_type:
             reader = OpenReads(full, message_type)
+        reader.keep(history)
         if id(reader) not in self._numbers:
             self._ask("read", reader, full, message_type)
             self._reading[full] = reader
@@ -148,15 +154,15 @@ class Blackboard:
             self._writing[full] = writer
         return writer
 
-    def open_multiple_for_reading(self, message_type: type[T], pattern: str) -> OpenReadsEach[T]:
+    def open_multiple_for_reading(self, message_type: type[T], pattern: str, *, history: int = 0) -> OpenReadsEach[T]:
         """Readers of all instances of a type whose names fit: `*/ball`, `cyan?/pose`; those too that come later.
 
         Raises:
-            ValueError: it is no type of a channel, or too much was asked in this iteration.
+            ValueError: it is no type of a channel, no history, or too much was asked in this iteration.
         """
-        self._check(message_type)
+        self._check(message_type, history)
         full = self._with_namespace(pattern)
-        each = OpenReadsEach(full, message_type)
+        each = OpenReadsEach(full, message_type, history)
         self._ask("each", each, full, message_type)
         return each
 
@@ -257,6 +263,8 @@ class Blackboard:
             self._readers[name] = self._reading[name] = made
         self._holders.setdefault(name, set()).add(number)
         if isinstance(handle, OpenReadsEach):
+            if isinstance(reader, OpenReads):
+                reader.keep(handle.length)
             handle.put(reader)
 
     def _end_reading(self, name: str, number: int, handle: Handle) -> None:
@@ -279,7 +287,9 @@ class Blackboard:
         self._wish([what, self._newest, name, messages.type_name(message_type), fingerprint])
         self._handles[self._newest], self._numbers[id(handle)] = handle, self._newest
 
-    def _check(self, message_type: Any) -> None:
+    def _check(self, message_type: Any, history: int = 0) -> None:
+        if history < 0:
+            raise ValueError(f"{self._name}: history={history}: a history has at least 1 message")
         if not hasattr(message_type, "_get_packed_fingerprint"):
             raise ValueError(f"{self._name}: {message_type!r} is no LCM type; import it from lcmtypes")
         if mistake := envelope.mistake_in(message_type):

@@ -1,22 +1,32 @@
 """What is asked of the blackboard and what is granted, without processes."""
 
-from fwk import Blackboard, Component, Reads, Writes
+from typing import Any
+
+import pytest
+
+from fwk import Blackboard, Component, Reads, VisionMaster, Writes
 from fwk.instances import BlackboardEvent, Fact, Instances, facts_of, text_of
 from fwk.messages import fingerprint, type_name
 from fwk.openings import Openings
 from fwk.plan.model import Plan
 from fwk.testing.plans import plan_of
-from lcmtypes.robot import imu_t, odometry_t
+from lcmtypes.robot import frame_t, imu_t, odometry_t
 
 A, B, READER = 0, 1, 2
 IMU = (type_name(imu_t), fingerprint(imu_t).hex())
 ODOMETRY = (type_name(odometry_t), fingerprint(odometry_t).hex())
+FRAME = (type_name(frame_t), fingerprint(frame_t).hex())
 
 
 class Opener(Component):
     stage = "think"
     blackboard: Blackboard
     imu: Writes[imu_t]
+
+
+class Camera(Component):
+    stage = "act"
+    image: VisionMaster
 
 
 class Reader(Component):
@@ -94,14 +104,41 @@ def test_wishes_are_granted_in_the_order_of_tick_place_component_and_asking() ->
     ]
 
 
-def test_what_is_refused_names_both_sides() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["write", 1, "b/imu", *IMU], ["read", 2, "b/imu", *ODOMETRY]])
-    second_writer, other_type = [reason for _, _, reason in decided(openings)]
-    assert second_writer == "b/imu: b/opener is its writer by the plan; a/opener can only read it"
-    assert other_type == (
-        f"b/imu: a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener"
-    )
+@pytest.mark.parametrize(
+    ("wish", "reason"),
+    [
+        (["write", 1, "b/imu", *IMU], "b/opener is its writer by the plan; a/opener can only read it"),
+        (["write", 1, "out/joy", *IMU], "programs outside write it by the plan; a/opener can only read it"),
+        (["write", 1, "b/spot", *IMU], "b/opener is its writer; a/opener has to wait"),
+        (
+            ["read", 1, "b/imu", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener",
+        ),
+        (
+            ["read", 1, "out/joy", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]})",
+        ),
+        (
+            ["write", 1, "x/read", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener",
+        ),
+        (["read", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
+        (["write", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
+        (
+            ["read", 1, "x/more", *IMU],
+            "2 channels were opened at run time already; say 'spare_channels: N' in the launch file for more",
+        ),
+    ],
+)
+def test_what_is_refused_names_both_sides(wish: list[Any], reason: str) -> None:
+    components: dict[str, type[Component]] = {"a/opener": Opener, "b/opener": Opener, "c/camera": Camera}
+    openings = Openings(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
+    for component in range(len(components)):
+        openings.came(component, 1)
+    openings.ask(1, 0, "b/opener", [["write", 1, "b/spot", *IMU], ["read", 2, "x/read", *IMU]])
+    openings.decide()
+    openings.ask(2, 0, "a/opener", [wish])
+    assert decided(openings) == [("refuse", A, f"{wish[2]}: {reason}")]
 
 
 def test_there_are_as_many_channels_as_the_plan_has_spare() -> None:

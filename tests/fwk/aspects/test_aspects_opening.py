@@ -24,6 +24,11 @@ class Opener(Component):
         self.imu.write()
 
 
+class Watcher(Component):
+    stage = "act"
+    blackboard: Blackboard
+
+
 class Reader(Component):
     stage = "act"
     blackboard: Blackboard
@@ -144,6 +149,21 @@ def test_a_channel_is_opened_again_with_another_type_and_each_reader_sees_its_ow
     assert [data[:8] for data in system.sent["SPOT"]] == [
         envelope.fingerprint(kind) for kind in (imu_t, obstacle_t, imu_t)
     ]
+
+
+def test_a_reader_opened_at_run_time_keeps_as_many_as_who_wants_most_of_it_says() -> None:
+    system = MemorySystem({"a/opener": Opener, "b/reader": Watcher})
+    system.tick(3)
+    board = system.runners["b/reader"].component.blackboard  # type: ignore[attr-defined]
+    few = board.open_for_reading(imu_t, "a/imu", history=2)
+    system.tick(5)
+    assert [imu.heading_rad for imu in few.history] == [7.0, 8.0]
+    many = board.open_multiple_for_reading(imu_t, "*/imu", history=3)
+    system.tick(6)
+    assert many["a/imu"] is few
+    assert [imu.heading_rad for imu in few.history] == [12.0, 13.0, 14.0]
+    with pytest.raises(ValueError, match="b/reader: history=-1: a history has at least 1 message"):
+        board.open_for_reading(imu_t, "a/imu", history=-1)
 
 
 def test_a_continuous_component_opens_channels_too() -> None:
