@@ -4,6 +4,9 @@ from collections.abc import Sequence
 
 from fwk.plan.selection import matches, nearest
 
+WISHES_MAX = 64
+"""That a component may have in an iteration; more is taken for a mistake."""
+
 PluginWish = tuple[str, tuple[str, ...]]
 """Action, and names or patterns."""
 
@@ -56,4 +59,6 @@ class PluginControl:
         for pattern in names if self.components else ():  # on a test bench there are no others
             if not any(matches(name, pattern) for name in self.components):
                 raise ValueError(f"{self._name}: no component '{pattern}'; {nearest(pattern, self.components)}")
+        if len(self._wishes) >= WISHES_MAX:
+            raise ValueError(f"{self._name}: more than {WISHES_MAX} wishes in one iteration; name several in one")
         self._wishes.append((action, names))

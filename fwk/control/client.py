@@ -105,10 +105,13 @@ class Client:
         """For what happens at a tick's end only: what keeps the tick from ending."""
         try:
             with Client(self._address, 1.0) as other:
-                waits_for = ", ".join(other.ask("status").get("waits_for", []))
+                waits_for = other.ask("status").get("waits_for", [])
         except ControlError:
             return ""
-        return f"; its loop waits for {waits_for}: what does not come back can be stopped" if waits_for else ""
+        if not waits_for:
+            return ""
+        hint = "" if waits_for == ["gateway"] else ": what does not come back can be stopped"
+        return f"; its loop waits for {', '.join(waits_for)}{hint}"
 
 
 def find_run(bus_port: int | None) -> int:

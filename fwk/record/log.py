@@ -58,6 +58,8 @@ class LogWriter:
         self._good_bytes = 0  # length of the file up to its last whole event
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_fifo():  # opening it would stand still until somebody reads
+                raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; take a file")
             self._file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
         except OSError as error:
             raise LogError(f"{path}: cannot write a log there: {error.strerror}") from error

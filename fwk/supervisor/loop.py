@@ -112,7 +112,9 @@ class MainLoop:
 
     @property
     def waits_for(self) -> list[str]:
-        """Names of the hosts that the running stage waits for longer than usual."""
+        """Names of the hosts that the running stage waits for longer than usual, or the gateway."""
+        if self.records.stalled:
+            return ["gateway"]
         if monotonic_us() < self._began_us + WAITS_US:
             return []
         return [self._hosts.table[index].name for index in sorted(self._outstanding)]

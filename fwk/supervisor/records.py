@@ -19,6 +19,7 @@ from lcmtypes.core import change_t, fetch_t, tick_record_t, void_t
 KEPT = 64  # ticks at the least: all that the gateway has not taken yet
 FIRST_WAIT_US = 20_000
 LONGEST_WAIT_US = 100_000
+STALLED_US = 200_000
 
 
 class Records:
@@ -27,6 +28,8 @@ class Records:
     def __init__(self, ports: Ports, run: int, sender: Sender, mailbox: Mailbox) -> None:
         self.taken = -1  # newest tick that the gateway has; 0: it hears whatever is sent from now on
         self.heard = 0  # newest change of the blackboard that the gateway was told of beforehand
+        self.stalled = False
+        """Whether the gateway is waited for longer than usual."""
         self._ports = ports
         self._run = run
         self._sender = sender
@@ -84,13 +87,15 @@ class Records:
 
     def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> None:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us = FIRST_WAIT_US
+        wait_us, began_us = FIRST_WAIT_US, monotonic_us()
         while self.taken < tick and not interrupted():
+            self.stalled = monotonic_us() >= began_us + STALLED_US
             before = self.taken
             self._mailbox.pump(wait_us)
             if self.taken == before:
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
                 self.repeat(self.taken + 1, tick + KEPT)
+        self.stalled = False
 
     def repeat(self, first: int, last: int) -> None:
         """Sends the records of these ticks again, but not too many at once."""

@@ -14,8 +14,9 @@ from lcmtypes.core import tick_event_t
 from tests.faults.conftest import RUN, TICKS
 from tests.faults.faults_after import Aftermath
 from tests.system.conftest import Launch
+from tests.system.control_system import Steered
 from tests.system.system_logs import Recording
-from tests.system.system_runs import Launched, pause, write_files
+from tests.system.system_runs import Launched, PortBlock, pause, write_files
 
 pytestmark = pytest.mark.system
 
@@ -58,6 +59,16 @@ def test_in_lockstep_everybody_waits(launch: Launch, traced: Path, after: Afterm
     run.until_ticks("f/player", 5)
     run.signal(signal.SIGINT)
     after.check(run)
+
+
+def test_the_state_names_a_gateway_that_stands_still(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    run = Steered(launch(*RUN), ports)
+    gateway = run.launched.gateway()
+    os.kill(gateway, signal.SIGSTOP)
+    run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["gateway"], "that the gateway is waited for")
+    os.kill(gateway, signal.SIGCONT)
+    run.ticks_pass()
+    run.end()
 
 
 @pytest.mark.parametrize("who", ["a component", "the supervisor"])

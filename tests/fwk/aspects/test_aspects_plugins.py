@@ -34,6 +34,15 @@ def test_names_that_do_not_exist_are_refused_at_once() -> None:
     assert plugins.take() == [("unload", ("r/*",)), ("restart", ("r",))]
 
 
+def test_an_iteration_that_wishes_too_much_is_refused() -> None:
+    plugins = PluginControl("r/director", ["r/director", "r/one"])
+    for _ in range(64):
+        plugins.restart("r/one")
+    with pytest.raises(ValueError, match="r/director: more than 64 wishes in one iteration; name several in one"):
+        plugins.restart("r/one")
+    assert len(plugins.take()) == 64
+
+
 def test_a_system_in_memory_has_no_processes_to_control() -> None:
     with pytest.raises(ValueError, match="r/director asks for PluginControl, and here are no processes"):
         MemorySystem({"r/director": Director})

@@ -1,5 +1,6 @@
 """The log writer and reader against LCM's own, and against torn, damaged and hostile files."""
 
+import os
 import random
 import resource
 import struct
@@ -181,10 +182,12 @@ def test_a_disk_that_is_full_from_the_beginning_stops_nobody() -> None:
 
 def test_refusals_name_the_file(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
+    os.mkfifo(tmp_path / "pipe")
     cases: list[tuple[Callable[[], object], str]] = [
         (lambda: LogReader(tmp_path / "none"), f"{tmp_path}/none: cannot read: No such file"),
         (lambda: LogReader(tmp_path), f"{tmp_path}: not an ordinary file"),
         (lambda: LogWriter(tmp_path / "file" / "log", refuse), f"{tmp_path}/file/log: cannot write a log there: "),
+        (lambda: LogWriter(tmp_path / "pipe", refuse), f"{tmp_path}/pipe: cannot write a log there: a pipe cannot be"),
     ]
     for make, text in cases:
         with pytest.raises(LogError) as caught:
