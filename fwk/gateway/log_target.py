@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from fwk.aspects.logging import Logger
+from fwk.clock import US_PER_S, monotonic_us
 from fwk.gateway.outside import Full
 from fwk.messages import MessageError, decoder
 from fwk.plan.names import LINES
@@ -19,6 +20,7 @@ class LogTarget:
         self._take_in = take_in
         self._log = log
         self._dropped = 0
+        self._say_us = 0
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Takes a line."""
@@ -32,9 +34,10 @@ class LogTarget:
             return
 
     def tick(self) -> None:
-        """A tick is complete: there is room again to say what there was none for."""
-        dropped, self._dropped = self._dropped, 0
-        if dropped:
+        """A tick is complete: there is room again to say what there was none for, at most once a second."""
+        now_us = monotonic_us()
+        if self._dropped and now_us >= self._say_us:
+            dropped, self._dropped, self._say_us = self._dropped, 0, now_us + US_PER_S
             self._log.warning(f"{dropped} lines did not reach the components that ask for lines: too many in one tick")
 
     def close(self) -> None:

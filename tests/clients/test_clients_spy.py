@@ -40,7 +40,8 @@ def display(needs: Callable[..., None]) -> Iterator[str]:
     needs("Xvfb")
     with process(["Xvfb", "-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"]) as server:
         assert server.stdout
-        yield f":{server.stdout.readline().strip()}"
+        number = next(line.strip() for line in server.stdout if line.strip().isdigit())  # others may take one before it
+        yield f":{number}"
 
 
 def build_agent(folder: Path) -> Path:

@@ -27,6 +27,8 @@ pytestmark = pytest.mark.system
 HOSTS, CHANNELS = 9, 14  # of the orchestra
 RUN = ("launch/orchestra.yaml", "--ticks", "60", "--seed", "7", "--record", "log.lcm")
 
+UNHURRIED = ("--speed", "1")  # strangers that share its processors have their say before it ends
+
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -139,7 +141,7 @@ def test_strangers_on_every_inner_port_are_named_and_change_nothing(
 ) -> None:
     inner = Ports(ports.bus, HOSTS, CHANNELS)
     ears = Ears(inner)
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     while run.process.poll() is None:
         ears.listen()
         for group, port in all_ports(inner):
@@ -185,10 +187,10 @@ def test_who_borrows_the_ports_of_the_run_at_another_address_is_a_stranger(
     inner = Ports(ports.bus, HOSTS, CHANNELS)
     disguised = [Stranger("127.0.0.2", port) for port in inner.members]
     ears = Ears(inner)
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     while run.process.poll() is None:
-        ears.listen()
         for stranger in disguised:
+            ears.listen()
             for group, port in all_ports(inner):
                 for channel, data in plausible(ears.run) + mean(ears.run) * (port == inner.sync):
                     stranger.say(channel, data, port, group)
@@ -208,7 +210,7 @@ def test_who_borrows_the_ports_of_the_run_at_another_address_is_a_stranger(
 def test_strangers_on_the_public_bus_are_named_and_change_nothing(
     launch: Launch, folder: Path, ports: PortBlock, reference: Path, stranger: Stranger
 ) -> None:
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     bus = lcm.LCM(ports.public_url)
     public_port = int(ports.public_url.split(":")[2].split("?")[0])
     while run.process.poll() is None:
