@@ -45,6 +45,7 @@ class Recording:
         self.path = path
         self._reader = StampedLog(path)
         self.plan = self._plan()
+        self._channels = {channel.index for channel in self.plan.channels}  # and those opened while the run went on
 
     @property
     def skipped_bytes(self) -> int:
@@ -107,7 +108,8 @@ class Recording:
         try:
             record = tick_record_t.decode(event.data)
             told = {change.number for change in record.changes if self._readable(change)}
-            sound = all(self._possible(event, told) for event in record.events)
+            sound = self._channels.issuperset(record.channel)
+            sound &= all(self._possible(event, told) for event in record.events)
         except _BROKEN:
             sound = False
         if not sound:
@@ -124,6 +126,8 @@ class Recording:
             return False
         for fact in facts_of(change.settings):
             self.plan.components[fact.component].name  # noqa: B018 - it raises if there is none
+            if fact.opening:
+                self._channels.add(fact.opening.channel)
         return True
 
     def _possible(self, event: tick_event_t, told: set[int]) -> bool:
@@ -136,7 +140,7 @@ class Recording:
             return 0 <= event.index < len(plan.components) and 0 <= event.stage < len(plan.channels)
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
-        if event.kind == tick_event_t.MISSED and not 0 <= event.stage < len(plan.channels) + plan.spare_channels:
+        if event.kind == tick_event_t.MISSED and event.stage not in self._channels:
             return False
         return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
 

@@ -166,11 +166,12 @@ def test_a_plan_that_is_none_is_named(tmp_path: Path, text: str) -> None:
 def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None:
     change = change_t()
     change.settings = "{"
-    unknown, broken = record(9, [1, 5]), record(9, [1, 5])
+    unknown, strange, broken = record(9, [1, 5]), record(9, [1, 5]), record(9, [1, 5])
     unknown.events[1].index = 77
+    strange.n_marks, strange.channel, strange.sequence = 1, [65_536], [1]
     broken.changes, broken.n_changes = [change], 1
     entries = [(each.channel, each.data) for each in LogReader(log)]
-    for wrong in (unknown, broken):
+    for wrong in (unknown, strange, broken):
         write(log, [*entries, ("fwk/record", wrong.encode())])
         with pytest.raises(RecordingError, match=f"event {len(entries)}, a record of the main loop"):
             replay(log)
