@@ -137,7 +137,8 @@ class Recording:
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
         if event.kind == tick_event_t.FRAME_MISSED:
-            return 0 <= event.index < len(plan.components) and 0 <= event.stage < len(plan.channels)
+            cameras = [channel.index for channel in plan.channels if channel.images]
+            return 0 <= event.index < len(plan.components) and event.stage in cameras
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
         if event.kind == tick_event_t.MISSED and event.stage not in self._channels:

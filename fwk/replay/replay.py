@@ -23,6 +23,8 @@ from lcmtypes.core import change_t, done_t, tick_event_t
 
 Made = list[tuple[Actor, Written]]
 Iteration = Callable[[], Written | None]
+MESSAGES_MAX = 1_000_000
+"""Of a channel in one tick; a record that names more is damaged."""
 
 
 class Replay:
@@ -158,6 +160,11 @@ class Replay:
         for index, mark in zip(tick.record.channel, tick.record.sequence, strict=True):
             channel = self._names[index]
             before, self._marks[index] = self._marks.get(index, 0), mark
+            if mark - before > MESSAGES_MAX:
+                raise RecordingError(
+                    f"{self.recording.path}: damaged: {channel} cannot have {mark - before} messages in tick "
+                    f"{tick.record.tick}; replay what is before it with --to-tick {tick.record.tick - 1}"
+                )
             if len(here.get(channel, ())) < mark - before:
                 self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
 

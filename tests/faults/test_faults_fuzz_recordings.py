@@ -166,15 +166,25 @@ def test_a_plan_that_is_none_is_named(tmp_path: Path, text: str) -> None:
 def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None:
     change = change_t()
     change.settings = "{"
-    unknown, strange, broken = record(9, [1, 5]), record(9, [1, 5]), record(9, [1, 5])
+    unknown, blind, strange, broken = (record(9, [1, 5]) for _ in range(4))
     unknown.events[1].index = 77
+    blind.events[1].kind, blind.events[1].stage = tick_event_t.FRAME_MISSED, 0  # which is no camera's
     strange.n_marks, strange.channel, strange.sequence = 1, [65_536], [1]
     broken.changes, broken.n_changes = [change], 1
     entries = [(each.channel, each.data) for each in LogReader(log)]
-    for wrong in (unknown, strange, broken):
+    for wrong in (unknown, blind, strange, broken):
         write(log, [*entries, ("fwk/record", wrong.encode())])
         with pytest.raises(RecordingError, match=f"event {len(entries)}, a record of the main loop"):
             replay(log)
+
+
+def test_a_mark_that_no_channel_can_have_is_refused_and_takes_no_memory(log: Path) -> None:
+    entries = [(each.channel, each.data) for each in LogReader(log)]
+    far = record(9, [1, 5])
+    far.n_marks, far.channel, far.sequence = 1, [0], [1 << 60]
+    write(log, [*entries, ("fwk/record", far.encode())])
+    with pytest.raises(RecordingError, match=r"cannot have 1\d{18} messages in tick 9; .* --to-tick 8"):
+        replay(log)
 
 
 def test_a_component_that_fails_in_replay_is_named_with_its_place(log: Path) -> None:
