@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from fwk import envelope, messages
 from fwk.bus import wire
-from fwk.bus.sockets import LOOPBACK, multicast_receiver, told
+from fwk.bus.sockets import multicast_receiver, port_of, told
 from fwk.messages import Header, MessageError
 from fwk.plan.model import ChannelPlan
 
@@ -162,7 +162,7 @@ class Inbox(Box):
             datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
         except OSError:  # nothing there, or closed
             return False
-        if address[1] not in self._senders or address[0] != LOOPBACK:
+        if port_of(address) not in self._senders:
             self._complain(self.plan.name, f"datagram from {told(address)}, which is not the writer's; refused")
             return True
         if wire.is_short(datagram) and datagram.startswith(self._usual, 8) and len(datagram) >= self._least:

@@ -65,8 +65,11 @@ class Actor:
 
     def see(self, channel: str, data: list[bytes]) -> None:
         """Messages became visible; the next iteration has them."""
-        if channel in self.runner.readers:
+        if self._reads(channel):
             self._arrived.setdefault(channel, []).extend(data)
+
+    def _reads(self, channel: str) -> bool:
+        return channel in self.runner.readers
 
     def miss(self, channel: str, sequence: int) -> None:
         """A message that is there in the recording never came to its process."""
@@ -187,12 +190,8 @@ class ContinuousActor(Actor):
         self._told: deque[_Told] = deque()
         self._opening: set[str] = set()  # channels that it begins to read with its next iteration
 
-    def see(self, channel: str, data: list[bytes]) -> None:
-        """Messages became visible; the next iteration that is told of them has them."""
-        if channel in self._opening:
-            self._arrived.setdefault(channel, []).extend(data)
-        else:
-            super().see(channel, data)
+    def _reads(self, channel: str) -> bool:
+        return channel in self._opening or super()._reads(channel)
 
     def tell_tick(self, tick: int, time_us: int, holder: str, newest: Newest) -> None:
         """A tick says that everything seen so far is visible, and what was decided on the blackboard."""

@@ -45,6 +45,7 @@ class Recording:
         self.path = path
         self._reader = StampedLog(path)
         self.plan = self._plan()
+        self._cameras = {channel.index for channel in self.plan.channels if channel.images}
         self._channels = {channel.index for channel in self.plan.channels}  # and those opened while the run went on
 
     @property
@@ -137,8 +138,7 @@ class Recording:
         if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
             return False
         if event.kind == tick_event_t.FRAME_MISSED:
-            cameras = [channel.index for channel in plan.channels if channel.images]
-            return 0 <= event.index < len(plan.components) and event.stage in cameras
+            return 0 <= event.index < len(plan.components) and event.stage in self._cameras
         if event.kind == tick_event_t.DONE and event.stage < 0:
             return event.index == len(plan.hosts)  # the gateway: messages from outside
         if event.kind == tick_event_t.MISSED and event.stage not in self._channels:

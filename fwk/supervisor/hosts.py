@@ -262,7 +262,7 @@ class Hosts:
         self.leaving.discard(entry.index)
         culprit = self._culprit(entry)
         entry.ended(code, monotonic_us(), self._stopping, core, culprit)
-        self._ledger.void(entry.index, entry.incarnation + 1)
+        self._ledger.void(entry.index, entry.incarnation + 1, self._clock.tick)
         if not asked:
             self.on_lost(entry)
         if not entry.expected and not self._stopping:

@@ -29,8 +29,6 @@ class Ledger:
     def __init__(self, plan: Plan) -> None:
         self.plan = plan
         self.step = 0
-        self.tick = 0
-        """The newest tick."""
         channels = len(plan.channels) + plan.spare_channels
         self.marks = [0] * channels
         """Highest visible sequence number of each channel."""
@@ -114,10 +112,10 @@ class Ledger:
         if self.marks[channel]:
             self._changed[channel] = self.step + 1  # whoever reads it already has it; who is new has not
 
-    def void(self, host: int, incarnation: int) -> None:
-        """A host died; its next start is `incarnation`."""
+    def void(self, host: int, incarnation: int, tick: int) -> None:
+        """A host died in that tick, the newest; its next start is `incarnation`."""
         for channel in self._written[host]:
-            self.voids.append(Void(channel, self._latest[channel], self.tick, incarnation, self.step))
+            self.voids.append(Void(channel, self._latest[channel], tick, incarnation, self.step))
 
     def voids_since(self, since: int) -> list[Void]:
         """Voids that somebody who was told at step `since` last may not know."""

@@ -162,7 +162,7 @@ class MainLoop:
             self._decide()
         if self.opening and self.opening.asked:
             self.opening.decide()
-        self.tick = self._ledger.tick = self.tick + 1
+        self.tick += 1
         if self._came_in:
             self._take_in()
         now_us = monotonic_us()

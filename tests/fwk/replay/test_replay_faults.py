@@ -187,15 +187,21 @@ def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> 
     assert replay.compared == 4
 
 
-def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Path) -> None:
-    """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
-    made = Made(tmp_path / "log.lcm", SHARED)
+def started_anew(folder: Path, *never_got: Event) -> Made:
+    """Two ticks; in the second a process in the place of one that died has answered for another component."""
+    made = Made(folder / "log.lcm", SHARED)
     made.sensed(1)
     made.counted(1, 1.0, tick=1)
     made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
     made.sensed(2)
     lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
-    made.tick(lost, started, stage(ACT), done(COUNTER, 2, ACT), marks=(2, 1))
+    made.tick(lost, started, stage(ACT), *never_got, done(COUNTER, 2, ACT), marks=(2, 1))
+    return made
+
+
+def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Path) -> None:
+    """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
+    made = started_anew(tmp_path)
     made.sensed(3)
     made.counted_anew(2, 2.0, tick=3)
     made.tick(missed(3), done(COUNTER, 3, THINK), marks=(3, 2))
@@ -203,13 +209,7 @@ def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Pa
 
 
 def test_the_newest_that_a_new_process_never_got_nobody_in_it_has(tmp_path: Path) -> None:
-    made = Made(tmp_path / "log.lcm", SHARED)
-    made.sensed(1)
-    made.counted(1, 1.0, tick=1)
-    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
-    made.sensed(2)
-    lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
-    made.tick(lost, started, stage(ACT), missed(2), done(COUNTER, 2, ACT), marks=(2, 1))
+    made = started_anew(tmp_path, missed(2))
     made.sensed(3)
     made.counted_anew(2, 3.0, tick=3)
     made.tick(done(COUNTER, 3, THINK), marks=(3, 2))

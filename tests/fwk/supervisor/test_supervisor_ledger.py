@@ -98,8 +98,7 @@ def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Ledger) -> None:
 def test_a_dead_writers_channels_are_void_above_what_it_published_and_go_on_there(ledger: Ledger) -> None:
     step = ledger.begin()
     ledger.publish(IMU, 9)
-    ledger.tick = 3
-    ledger.void(host=0, incarnation=2)
+    ledger.void(host=0, incarnation=2, tick=3)
     assert ledger.voids_since(step) == [Void(IMU, 9, 3, 2, step)]
     ledger.begin()
     assert ledger.voids_since(ledger.begin()) == []

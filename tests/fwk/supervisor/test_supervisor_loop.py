@@ -79,7 +79,7 @@ class Played:
 
     def die(self, entry: HostEntry) -> None:
         entry.ended(-9, 0, stopping=False)
-        self.ledger.void(entry.index, entry.incarnation + 1)
+        self.ledger.void(entry.index, entry.incarnation + 1, self.loop.tick)
         self._hosts.on_lost(entry)
 
     def return_(self, entry: HostEntry) -> None:
