@@ -4,6 +4,7 @@ PYTHON ?= $(shell for each in python3 python3.11 python3.12 python3.13; do \
 	$$each -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$each && break; done)
 BIN := .venv/bin
 READY := .venv/.ready
+DOCS_READY := .venv/.docs-ready
 
 # Tests wait more than they compute: a worker more than processors.
 WORKERS ?= $(shell expr $$(nproc) + 1)
@@ -39,10 +40,16 @@ test: lint  ## Everything that has to hold before a commit
 test-fast: types  ## The tests of parts, and of the whole what breaks first
 	$(BIN)/pytest $(PARALLEL) -m '(not system or core) and not slow'
 
-docs: types  ## Writes docs/commands.md from the commands themselves
+# The generator of the site is installed by the first `make docs`; tests need none of it.
+$(DOCS_READY): $(READY)
+	$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[docs]'
+	@touch $@
+
+docs: types $(DOCS_READY)  ## Writes docs/commands.md, and the documentation site to build/site
 	$(BIN)/python -m fwk.cli.reference > .venv/commands.md && mv .venv/commands.md docs/commands.md
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
 
 clean:  ## Removes what was made, the environment too
-	rm -rf .venv build/lib build/bdist.* dist fwk.egg-info lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 -include tools/bench/bench.mk
