@@ -24,7 +24,7 @@ $(READY): pyproject.toml fwk/packaging/build_backend.py
 	@touch $@
 
 types: $(READY)  ## Generates Python classes from lcmtypes/*.lcm
-	@$(BIN)/python -P fwk/typegen.py lcmtypes
+	@$(BIN)/python -P fwk/lcm/typegen.py lcmtypes
 
 soccer: types  ## Plays five against five; Ctrl-C ends the match
 	@$(BIN)/fwk-launch soccer.yaml

@@ -9,22 +9,22 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from pydantic import Field  # noqa: E402 - after the limits
 
-from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
-from fwk.aspects.commands import Command, CommandError, Commands, CommandState  # noqa: E402
-from fwk.aspects.commands_each import CommandsEach, ServesEach  # noqa: E402
-from fwk.aspects.log_lines import LogLines  # noqa: E402
-from fwk.aspects.logging import Logger  # noqa: E402
-from fwk.aspects.main_loop import MainLoop  # noqa: E402
-from fwk.aspects.opening import Blackboard, NotOpen  # noqa: E402
-from fwk.aspects.plugins import PluginControl  # noqa: E402
-from fwk.aspects.provided import Aspect  # noqa: E402
-from fwk.aspects.rpc import Call, Calls, CallsEach, Request, Serves  # noqa: E402
-from fwk.aspects.sending import Future, Sends, SendsEach  # noqa: E402
-from fwk.aspects.vision import Image, ImagesEach, VisionMaster  # noqa: E402
 from fwk.clock import Clock, TimeSource  # noqa: E402
-from fwk.component import Component  # noqa: E402
-from fwk.config import Config  # noqa: E402
-from fwk.instances import BlackboardEvent  # noqa: E402
+from fwk.component.aspect import Aspect  # noqa: E402
+from fwk.component.blackboard import Blackboard, NotOpen  # noqa: E402
+from fwk.component.channels import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
+from fwk.component.commands import Command, CommandError, Commands, CommandState  # noqa: E402
+from fwk.component.component import Component  # noqa: E402
+from fwk.component.config import Config  # noqa: E402
+from fwk.component.images import Image, ImagesEach, VisionMaster  # noqa: E402
+from fwk.component.log import Logger  # noqa: E402
+from fwk.component.log_lines import LogLines  # noqa: E402
+from fwk.component.main_loop import MainLoop  # noqa: E402
+from fwk.component.plugins import PluginControl  # noqa: E402
+from fwk.component.requests import Call, Calls, CallsEach, Request, Serves  # noqa: E402
+from fwk.component.sending import Future, Sends, SendsEach  # noqa: E402
+from fwk.component.services_each import CommandsEach, ServesEach  # noqa: E402
+from fwk.model.channel_table import BlackboardEvent  # noqa: E402
 
 __all__ = [
     "Aspect",

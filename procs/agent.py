@@ -2,11 +2,11 @@
 
 import math
 
-from fwk.aspects.blackboard import Reads, Writes, channel
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes, channel
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, role_t, skill_command_t, skill_status_t, world_model_t
 from procs.behaviour import roles

@@ -3,8 +3,8 @@
 import numpy as np
 
 from fwk import Component, Logger, Reads, Writes
-from fwk.aspects.transforms import Transforms
-from fwk.transform_tree import TransformError
+from fwk.component.transform_tree import TransformError
+from fwk.component.transforms import Transforms
 from lcmtypes.soccer import ball_percept_t, ball_spot_t
 
 

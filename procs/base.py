@@ -2,11 +2,11 @@
 
 from pydantic import PositiveFloat
 
-from fwk.aspects.blackboard import Reads, Writes
-from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S, Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.physics.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
 from procs.physics.odometry import Odometry

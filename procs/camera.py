@@ -6,12 +6,12 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Reads, channel
-from fwk.aspects.logging import Logger
-from fwk.aspects.vision import VisionMaster
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, channel
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.images import VisionMaster
+from fwk.component.log import Logger
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.field import Field
 from procs.vision.colours import CYAN, MAGENTA

@@ -8,11 +8,11 @@ import numpy as np
 from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
-from fwk.aspects.logging import Logger
-from fwk.aspects.vision import VisionMaster
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.images import VisionMaster
+from fwk.component.log import Logger
 from procs.vision.colours import Picture
 from procs.vision.live import Backoff, Live, Wanted, check_device, open_device, open_stream
 from procs.vision.recorded import Endless, Folder, Recorded, SourceError, Video

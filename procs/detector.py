@@ -2,9 +2,9 @@
 
 from abc import ABC, abstractmethod
 
-from fwk.aspects.vision import Image
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.images import Image
 from procs.vision.colours import Picture
 from procs.vision.settings import MirrorConfig
 

@@ -3,8 +3,8 @@
 from pydantic import Field
 
 from fwk import Component, Config, Reads, Writes, channel
-from fwk.aspects.transforms import Transforms, message_of
-from fwk.transform_tree import Transform, TransformTree
+from fwk.component.transform_tree import Transform, TransformTree
+from fwk.component.transforms import Transforms, message_of
 from lcmtypes.robot import transforms_t
 from lcmtypes.soccer import pose_t
 

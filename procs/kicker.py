@@ -2,11 +2,11 @@
 
 from pydantic import PositiveFloat
 
-from fwk.aspects.blackboard import Reads, Writes
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
 
 

@@ -3,11 +3,11 @@
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Reads, Writes
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import line_points_t, pose_t
 from procs.estimation.frames import Floats, plausible, rotation, wrap

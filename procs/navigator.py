@@ -2,10 +2,10 @@
 
 import math
 
-from fwk.aspects.blackboard import Reads, Writes
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
 from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles

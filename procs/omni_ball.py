@@ -2,7 +2,7 @@
 
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Writes
+from fwk.component.channels import Writes
 from lcmtypes.soccer import ball_percept_t
 from procs.detector import Detector, DetectorConfig
 from procs.vision.ball import BallFinder, BallSighting

@@ -3,7 +3,7 @@
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Writes
+from fwk.component.channels import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.detector import Detector, DetectorConfig
 from procs.vision.algebra import Floats

@@ -6,11 +6,11 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Writes
-from fwk.aspects.vision import ImagesEach
 from fwk.clock import US_PER_S, Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.images import ImagesEach
 from lcmtypes.robot import picture_t
 from procs.vision.colours import Picture
 

@@ -3,10 +3,10 @@
 import numpy as np
 from pydantic import Field
 
-from fwk.aspects.blackboard import ReadsEach, WritesEach
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import ReadsEach, WritesEach
+from fwk.component.component import Component
+from fwk.component.config import Config
 from lcmtypes.soccer import team_inbox_t, team_message_t
 from procs.estimation.radio_links import RadioLinks, RadioSettings
 

@@ -1,10 +1,10 @@
 """Leads the match: calls goals, balls out and fouls, places the ball, keeps time and score."""
 
-from fwk.aspects.blackboard import Reads, Writes
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, match_event_t, match_events_t
 from procs.behaviour.restarts import State, Team
 from procs.behaviour.rules import Referee as Whistle

@@ -6,11 +6,11 @@ import numpy as np
 from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
-from fwk.aspects.blackboard import Reads, ReadsEach, Writes, WritesEach, channel
-from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S, Clock, TimeSource
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, ReadsEach, Writes, WritesEach, channel
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
 from lcmtypes.soccer import ball_placement_t, ground_truth_t, match_events_t
 from procs.field import Field

@@ -1,10 +1,10 @@
 """Runs the skill that the agent asks for: says where to drive, when to handle the ball and when to kick."""
 
-from fwk.aspects.blackboard import Reads, Writes, channel
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes, channel
+from fwk.component.component import Component
+from fwk.component.config import Config
+from fwk.component.log import Logger
 from lcmtypes.robot import kick_command_t, kicker_state_t
 from lcmtypes.soccer import drive_target_t, game_state_t, skill_command_t, skill_status_t, world_model_t
 from procs.behaviour.game import Whose, game_of

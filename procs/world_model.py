@@ -8,10 +8,10 @@ counts.
 
 from pydantic import Field as Setting
 
-from fwk.aspects.blackboard import Reads, Writes
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
+from fwk.component.config import Config
 from lcmtypes.robot import kicker_state_t, odometry_t
 from lcmtypes.soccer import (
     ball_percept_t,

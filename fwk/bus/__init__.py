@@ -1,1 +1,1 @@
-"""LCM on plain sockets: the wire format, the ports of a run, and channels that notice what they lost."""
+"""Sockets of a run: sending, receiving, waiting, the public bus and port locks."""

@@ -6,8 +6,8 @@ import socket
 import struct
 from urllib.parse import parse_qs, urlsplit
 
-from fwk.bus import wire
 from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
+from fwk.lcm import wire
 
 _SO_ATTACH_FILTER = 26
 _DATAGRAMS_AT_ONCE = 5000  # more than the largest message has

@@ -5,9 +5,9 @@ import secrets
 import select
 import socket
 
-from fwk.bus import wire
 from fwk.clock import US_PER_S, sleep_s
-from fwk.messages import MessageError
+from fwk.lcm import wire
+from fwk.lcm.messages import MessageError
 
 GROUP = "239.255.76.67"  # LCM's default group
 LOOPBACK = "127.0.0.1"

@@ -3,7 +3,7 @@
 import struct
 from collections.abc import Sequence
 
-from fwk.messages import MessageError, decoder, encoder
+from fwk.lcm.messages import MessageError, decoder, encoder
 from lcmtypes.core import done_t, tick_record_t, tick_t
 
 TICK = b"fwk/tick"

@@ -6,18 +6,18 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk import messages
-from fwk.aspects.commands import ANSWERS
 from fwk.cli.arguments import seconds
 from fwk.cli.asking import FAILED, BusPort, Json, ask, asking
 from fwk.cli.bb import field_lines
 from fwk.cli.send import made
+from fwk.component.commands import ANSWERS
 from fwk.control import client
 from fwk.control.client import RefusedError
-from fwk.messages import MessageError
-from fwk.plan.command_lines import OUTSIDE
-from fwk.plan.errors import hint
-from fwk.record.types import use_types_of
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import hint
+from fwk.plan.wiring.command_wiring import OUTSIDE
 
 TIMEOUT_S = 10.0
 

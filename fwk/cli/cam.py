@@ -7,14 +7,14 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from fwk.aspects.vision import Ring
 from fwk.cli import picture_out
 from fwk.cli.asking import BAD_INPUT, BusPort, Json, ask, asking
 from fwk.cli.cam_recorded import Recorded
 from fwk.cli.logs import failing, find_log
 from fwk.cli.picture_out import Pixels, fail
+from fwk.component.images import Ring
 from fwk.control import client
-from fwk.plan.errors import hint
+from fwk.model.errors import hint
 
 FRAME_TYPE = "robot.frame_t"
 

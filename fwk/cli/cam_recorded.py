@@ -8,10 +8,10 @@ from fwk.cli import picture_out
 from fwk.cli.asking import BAD_INPUT
 from fwk.cli.picture_out import Pixels, fail
 from fwk.clock import US_PER_S
-from fwk.plan.errors import hint
-from fwk.plan.model import NOBODY
-from fwk.record.pictures import RecordedPicture, pictures_in
-from fwk.replay.recording import Recording, RecordingError
+from fwk.model.errors import hint
+from fwk.model.plan import NOBODY
+from fwk.recording.pictures import RecordedPicture, pictures_in
+from fwk.recording.replay.recording import Recording, RecordingError
 
 
 class Recorded:

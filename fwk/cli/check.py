@@ -9,9 +9,9 @@ from rich.table import Table
 
 from fwk.cli.arguments import Hosting
 from fwk.clock import US_PER_S, rate_word
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
+from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import NOBODY, ChannelPlan, Plan
 
 BAD_INPUT = 2
 WIDTH_IN_A_PIPE = 240

@@ -7,8 +7,8 @@ import typer
 
 from fwk.cli.arguments import folder
 from fwk.cli.logs import failing, find_log
-from fwk.record.compare import Comparison
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.compare import Comparison
 
 EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
 

@@ -14,14 +14,14 @@ from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, Json, asking
 from fwk.cli.conditions import pattern
 from fwk.control import client
 from fwk.control.client import ControlError
-from fwk.control.files_again import differences
-from fwk.control.keep import KeepError, Kept, forget, keep
+from fwk.control.host_file import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
+from fwk.control.settings_diff import differences
+from fwk.model.errors import PlanError
 from fwk.plan.classes import UnusableError
-from fwk.plan.errors import PlanError
-from fwk.plan.files import host_file, shown
-from fwk.plan.json_schema import schema_of_component, schema_of_file, schema_of_files
+from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
+from fwk.plan.files.launch_file import host_file, shown
 from fwk.plan.load import load_plan
 
 WIDTH_IN_A_PIPE = 200

@@ -12,12 +12,12 @@ import typer
 from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, ask, asking
 from fwk.control import client
 from fwk.control.client import ControlError, RefusedError
-from fwk.host.by_hand import NoPlace, Place
+from fwk.host.attach import NoPlace, Place
 from fwk.host.debugger import LEFT, DebuggerMissing, DebugRequest, check
-from fwk.host.guarded import run_guarded
-from fwk.plan.errors import PlanError, Problems, hint
-from fwk.plan.folders import join
-from fwk.plan.model import ComponentPlan, Plan
+from fwk.host.terminal_guard import run_guarded
+from fwk.model.errors import PlanError, Problems, hint
+from fwk.model.plan import ComponentPlan, Plan
+from fwk.plan.files.folders import join
 
 WAIT_S = 60.0  # the component may be in a long iteration
 

@@ -4,9 +4,9 @@ from typing import Annotated
 
 import typer
 
-from fwk.bus.ports import Ports
 from fwk.cli.doctor_checks import Level, all_checks
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
 
 _HOSTS, _CHANNELS = 100, 250  # a soccer match, every component a process
 

@@ -11,9 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fwk.bus.ports import PortLock, Ports, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUse
 from fwk.bus.sockets import BUFFER_BYTES, GROUP, LOOPBACK
-from fwk.typegen import lcm_gen
+from fwk.lcm.typegen import lcm_gen
+from fwk.model.ports import Ports
 
 _WAIT_S = 1.0
 _PORTS_END = 65536

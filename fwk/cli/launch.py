@@ -15,12 +15,12 @@ from fwk.cli.profile import write_profiles
 from fwk.cli.run_dir import RunDirError, make_run_dir, prune
 from fwk.cli.run_files import write_run_files
 from fwk.cli.runs import GB
-from fwk.cli.summary import introduction, summary
-from fwk.plan.errors import PlanError, hint
+from fwk.display.summary import introduction, summary
+from fwk.launcher.run import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
+from fwk.lcm.event_log import LogError
+from fwk.model.errors import PlanError, hint
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import Plan
-from fwk.record.log import LogError
-from fwk.supervisor import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
 
 RUN_BROKEN = 1
 BAD_INPUT = 2
@@ -168,7 +168,7 @@ def _check_video(plan: Plan, video: Path | None) -> None:
 
 
 def _draw(plan: Plan, record: Path, video: Path) -> None:
-    from fwk.record.video import VideoError, drawing, render_video  # OpenCV, for those who ask for it
+    from fwk.recording.video import VideoError, drawing, render_video  # OpenCV, for those who ask for it
 
     try:
         video.parent.mkdir(parents=True, exist_ok=True)

@@ -11,13 +11,13 @@ import typer
 
 from fwk.cli.asking import BusPort, Json, ask, asking
 from fwk.cli.conditions import moment_us, pattern, ticks, times_us
-from fwk.cli.lines import log_line
 from fwk.cli.run_dir import RUNS, in_use, named
 from fwk.control.address import running
 from fwk.control.client import ControlError
-from fwk.gateway.json_log import FILE
-from fwk.record.rotating import names
-from fwk.record.text_log import Filter, from_plain, read_lines
+from fwk.display.lines import log_line
+from fwk.logs.json_lines import FILE
+from fwk.logs.reader import Filter, from_plain, read_lines
+from fwk.logs.rotating import names
 
 
 class Level(StrEnum):

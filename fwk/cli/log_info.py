@@ -12,9 +12,9 @@ from rich.table import Table
 
 from fwk.cli.arguments import folder
 from fwk.cli.logs import failing, find_log
-from fwk.record.log_info import ChannelInfo, LogInfo
-from fwk.record.log_info import log_info as read_info
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.log_info import ChannelInfo, LogInfo
+from fwk.recording.log_info import log_info as read_info
 
 WIDTH_IN_A_PIPE = 200
 

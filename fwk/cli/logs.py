@@ -8,8 +8,8 @@ from pathlib import Path
 import typer
 
 from fwk.cli.run_dir import named
-from fwk.record.log import SYNC, LogError
-from fwk.typegen import TypeGenerationError
+from fwk.lcm.event_log import SYNC, LogError
+from fwk.lcm.typegen import TypeGenerationError
 
 
 @contextmanager

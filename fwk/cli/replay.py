@@ -8,14 +8,14 @@ from typing import Annotated
 import typer
 
 from fwk.cli.logs import failing, find_log
-from fwk.host.blame import Failure
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
-from fwk.plan.errors import hint
-from fwk.record.difference import Difference
-from fwk.record.types import use_types_of
-from fwk.replay.recording import Recording, RecordingError
-from fwk.replay.replay import Replay
+from fwk.host.failures import Failure
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import hint
+from fwk.recording.difference import Difference
+from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.replay.replay import Replay
 
 DIFFERENT, UNUSABLE = 1, 2
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from fwk.cli.check import value_at
 from fwk.cli.run_dir import RunDirError
-from fwk.plan.files import INSTALLED
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
+from fwk.plan.files.launch_file import INSTALLED
 
 LIBRARIES = ("fwk", "lcm", "numpy", "opencv-python-headless", "pymunk", "filterpy", "pydantic")
 

@@ -10,8 +10,8 @@ from rich.table import Table
 
 from fwk.cli.asking import BAD_INPUT, Json
 from fwk.cli.run_dir import KEEP, RUNS, RunDir, prune, run_dirs
-from fwk.plan.errors import hint
-from fwk.plan.model import RunsPlan
+from fwk.model.errors import hint
+from fwk.model.plan import RunsPlan
 
 GB = 1_000_000_000
 _MB = 1_000_000

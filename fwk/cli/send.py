@@ -5,14 +5,14 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk import messages
 from fwk.bus.public import PublicBus
 from fwk.cli.asking import BAD_INPUT, FAILED, BusPort, asking
 from fwk.control import client
-from fwk.messages import MessageError
-from fwk.plan.errors import Problems, hint
-from fwk.plan.source import read_value
-from fwk.record.types import use_types_of
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import Problems, hint
+from fwk.plan.files.source import read_value
 
 
 def send(

@@ -6,10 +6,10 @@ from typing import Annotated
 import typer
 
 from fwk.cli.arguments import folder
-from fwk.plan.model import Plan
-from fwk.record.spy import SpyError, build_jar, cache_folder, class_path, start
-from fwk.record.types import source_folders, use_types_of
-from fwk.typegen import TypeGenerationError
+from fwk.lcm.spy_jar import SpyError, build_jar, cache_folder, class_path, start
+from fwk.lcm.type_registry import source_folders, use_types_of
+from fwk.lcm.typegen import TypeGenerationError
+from fwk.model.plan import Plan
 
 
 def spy(

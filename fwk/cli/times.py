@@ -5,7 +5,7 @@ from typing import Any, Literal
 
 from rich.table import Table
 
-from fwk.histogram import Histogram
+from fwk.model.histogram import Histogram
 
 Since = Literal["start", "now", "picture"]
 TITLES = ("p50 ms", "p95 ms", "p99 ms", "max ms")

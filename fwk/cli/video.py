@@ -8,9 +8,9 @@ import typer
 
 from fwk.cli.arguments import folder, video_file
 from fwk.cli.logs import failing, find_log
-from fwk.record.types import use_types_of
-from fwk.record.video import VideoError, drawing, render_video
-from fwk.replay.recording import Recording, RecordingError
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.video import VideoError, drawing, render_video
 
 
 def video(

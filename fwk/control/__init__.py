@@ -1,1 +1,1 @@
-"""Looking at and steering a run from another terminal: the connection, its requests, and the side that asks."""
+"""The control protocol of a run: address, client, server, requests, settings."""

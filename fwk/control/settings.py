@@ -10,15 +10,15 @@ from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel
 
-from fwk.config import Config
+from fwk.component.config import Config
+from fwk.component.declaration import declaration
 from fwk.control.requests import RequestError
-from fwk.declaration import declaration
-from fwk.plan.errors import PlanError, Problems
-from fwk.plan.model import ComponentPlan, Plan
-from fwk.plan.overrides import PLACE, overrides
-from fwk.plan.selection import matches, nearest
+from fwk.model.errors import PlanError, Problems
+from fwk.model.plan import ComponentPlan, Plan
+from fwk.model.selection import matches, nearest
+from fwk.plan.files.overrides import PLACE, overrides
+from fwk.plan.files.source import Node
 from fwk.plan.settings import effective
-from fwk.plan.source import Node
 
 _NOW = "now"
 

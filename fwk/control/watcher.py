@@ -6,9 +6,9 @@ from typing import Any
 
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError, RefusedError
-from fwk.plan.application import Sources, mistakes
-from fwk.plan.files import shown
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
+from fwk.plan.files.launch_file import shown
+from fwk.plan.files.source_files import Sources, mistakes
 
 _LOOK_MS = 200  # how often to look whether to end
 _TIMEOUT_S = 60.0

@@ -8,8 +8,8 @@ from typing import Any
 
 import yaml
 
-from fwk.plan.errors import Problems
-from fwk.plan.source import read_value
+from fwk.model.errors import Problems
+from fwk.plan.files.source import read_value
 
 _COMMA = re.compile(r"\s*,\s*")
 _PLAIN_KEY = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)

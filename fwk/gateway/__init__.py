@@ -1,1 +1,1 @@
-"""The gateway: one process that sees everything; it records, mirrors to the public bus, and feeds the display."""
+"""The gateway: follows the run, shows every channel on the public bus, takes foreign messages in."""

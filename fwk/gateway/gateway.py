@@ -6,23 +6,23 @@ import struct
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
-from fwk import envelope
-from fwk.aspects.logging import Logger
-from fwk.bus import sync, wire
-from fwk.bus.history import gaps
-from fwk.bus.ports import Ports
+from fwk.bus import sync
+from fwk.bus.complaints import Complaints
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
 from fwk.clock import Clock
-from fwk.gateway.outside import Outside
-from fwk.gateway.strangers import Strangers
+from fwk.component.log import Logger
+from fwk.engine.message_history import gaps
+from fwk.engine.runner import AWAY_TICKS
+from fwk.gateway.ingress import Outside
+from fwk.gateway.ingress_filter import Strangers
 from fwk.host.inputs import Inputs
-from fwk.host.report import Complaints
-from fwk.instances import Fact, Instances, facts_of
-from fwk.messages import Header, MessageError
-from fwk.plan.model import NOBODY, ChannelPlan, Plan
-from fwk.plan.names import LINES
-from fwk.runner import AWAY_TICKS
+from fwk.lcm import envelope, wire
+from fwk.lcm.messages import Header, MessageError
+from fwk.model.channel_table import Fact, Instances, facts_of
+from fwk.model.names import LINES
+from fwk.model.plan import NOBODY, ChannelPlan, Plan
+from fwk.model.ports import Ports
 from lcmtypes.core import change_t, done_t, fetch_t, gone_t, log_t, tick_record_t
 
 SUPERVISOR_CHANNEL = -1

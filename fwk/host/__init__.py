@@ -1,1 +1,1 @@
-"""A host process: one or more components, run in step with the supervisor's ticks."""
+"""A host process: its components, from `init` to `finalize`."""

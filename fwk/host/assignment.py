@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from fwk.aspects.vision import Ring
-from fwk.declaration import Declaration
-from fwk.host.progress import Progress
-from fwk.plan.model import Plan
+from fwk.component.declaration import Declaration
+from fwk.component.images import Ring
+from fwk.host.crash_marker import Progress
+from fwk.model.plan import Plan
 
 
 @dataclass(frozen=True)

@@ -4,13 +4,13 @@ import math
 from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
-from fwk.bus.inbox import Box
 from fwk.clock import US_PER_S, monotonic_us, sleep_s
+from fwk.engine.channel_buffer import ChannelBuffer
+from fwk.engine.runner import Runner
 from fwk.host.assignment import Assignment
-from fwk.host.attendant import Attendant
+from fwk.host.background_server import Attendant
+from fwk.host.dynamic_channels import Opened
 from fwk.host.host import Host
-from fwk.host.opened import Opened
-from fwk.runner import Runner
 from lcmtypes.core import change_t, done_t, tick_t
 
 REPEAT_US = 2_000  # a done that was not taken is sent again after so long, later less and less often
@@ -43,7 +43,7 @@ class ContinuousHost(Host):
         self._attendant = Attendant(self._sender.socket.fileno(), self._attend)
         self._told: list[tick_t] = []  # not taken over yet
         self._tick: tick_t | None = None  # the newest one that was taken over
-        self._moved: dict[int, Box] = {}  # in which something became visible since the last iteration
+        self._moved: dict[int, ChannelBuffer] = {}  # in which something became visible since the last iteration
         self._changes: dict[int, change_t] = {}  # of settings and of the blackboard by number, for the next iteration
         self._runs = 0  # iterations on the marks of that tick
         self._due_us = 0  # wall time of the next iteration; who is late catches up one period at the most

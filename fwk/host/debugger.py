@@ -12,8 +12,8 @@ from importlib import import_module
 from types import FrameType
 from typing import Any
 
-from fwk.host.blame import Failure
-from fwk.plan.model import ComponentPlan
+from fwk.host.failures import Failure
+from fwk.model.plan import ComponentPlan
 
 LEFT = 75
 """Exit code of a host whose debugger was left: it is given back to the supervisor, which starts it normally."""

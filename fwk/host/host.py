@@ -6,21 +6,22 @@ import socket
 import struct
 from collections.abc import Callable, Sequence
 
-from fwk.aspects.logging import Logger
-from fwk.bus import sync, wire
-from fwk.bus.ports import Ports
+from fwk.bus import sync
+from fwk.bus.complaints import Complaints
 from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
 from fwk.clock import US_PER_S, Clock, monotonic_us
+from fwk.component.log import Logger
+from fwk.engine.runner import Runner, is_new
 from fwk.host.assignment import Assignment
+from fwk.host.component_group import Members
+from fwk.host.dynamic_channels import Opened
 from fwk.host.inputs import Inputs
-from fwk.host.leaving import Leaving
-from fwk.host.members import Members
-from fwk.host.opened import Opened
 from fwk.host.outputs import Outputs
 from fwk.host.process import give_memory_back
-from fwk.host.report import Complaints
-from fwk.messages import MessageError
-from fwk.runner import Runner, is_new
+from fwk.host.shutdown import Leaving
+from fwk.lcm import wire
+from fwk.lcm.messages import MessageError
+from fwk.model.ports import Ports
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
 
 READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes

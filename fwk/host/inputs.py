@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Sequence
 
-from fwk.bus.inbox import Box, Complain, Inbox
-from fwk.bus.ports import Ports
+from fwk.bus.channel_socket import ChannelSocket, Complain
 from fwk.bus.sockets import Sender
 from fwk.bus.waiting import Waiting
 from fwk.clock import monotonic_us
-from fwk.plan.model import NOBODY, ChannelPlan, Plan
+from fwk.engine.channel_buffer import ChannelBuffer
+from fwk.model.plan import NOBODY, ChannelPlan, Plan
+from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, void_t
 
 FIRST_WAIT_US = 200  # on one machine a message is there before the tick that names it, unless it was lost
@@ -44,13 +45,13 @@ class Inputs:
         self._complain = complain
         self._writer_host = {channel.index: self._host_of(channel.writer) for channel in read}
         own = {channel.name for channel in local}
-        self._boxes: dict[int, Box] = {}
+        self._boxes: dict[int, ChannelBuffer] = {}
         for channel in read:
             if channel.name in own and not restarted:
-                self._boxes[channel.index] = Box(channel)
+                self._boxes[channel.index] = ChannelBuffer(channel)
             else:
                 senders = (ports.host(self._writer_host[channel.index]), ports.host(ports.gateway))
-                self._boxes[channel.index] = Inbox(channel, ports.channel(channel.index), senders, complain)
+                self._boxes[channel.index] = ChannelSocket(channel, ports.channel(channel.index), senders, complain)
         self.local = {channel.name: self._boxes[channel.index] for channel in local}
         self.fetched = 0  # messages that were lost and came after asking
         self.lost = 0  # messages that could not be had any more
@@ -58,10 +59,12 @@ class Inputs:
     def close(self) -> None:
         """Gives all sockets back."""
         for box in self._boxes.values():
-            if isinstance(box, Inbox):
+            if isinstance(box, ChannelSocket):
                 box.close()
 
-    def advance(self, channels: Sequence[int], sequences: Sequence[int], voids: Sequence[void_t]) -> list[Box]:
+    def advance(
+        self, channels: Sequence[int], sequences: Sequence[int], voids: Sequence[void_t]
+    ) -> list[ChannelBuffer]:
         """Takes over a tick's marks; returns the boxes in which something becomes visible."""
         for void in voids:
             box = self._boxes.get(void.channel)
@@ -75,7 +78,7 @@ class Inputs:
                 moved.append(box)
         return moved
 
-    def open(self, channel: ChannelPlan, writer_host: int | None = None) -> Box:
+    def open(self, channel: ChannelPlan, writer_host: int | None = None) -> ChannelBuffer:
         """From now on a channel is read that was not.
 
         Its messages come from that host; without one from where the plan says.
@@ -84,7 +87,7 @@ class Inputs:
             writer_host = self._host_of(channel.writer)
         self._writer_host[channel.index] = writer_host
         # Its writer may change, sooner than this process hears of it: whatever comes from the run is taken.
-        box = Inbox(channel, self._ports.channel(channel.index), self._ports.members, self._complain)
+        box = ChannelSocket(channel, self._ports.channel(channel.index), self._ports.members, self._complain)
         self._boxes[channel.index] = box
         return box
 
@@ -96,7 +99,7 @@ class Inputs:
     def close_channel(self, channel: int) -> None:
         """Nobody here reads a channel any more."""
         box = self._boxes.pop(channel)
-        if isinstance(box, Inbox):
+        if isinstance(box, ChannelSocket):
             box.close()
 
     def __contains__(self, channel: int) -> bool:
@@ -105,7 +108,7 @@ class Inputs:
     def _host_of(self, writer: int) -> int:
         return self._ports.gateway if writer == NOBODY else self._plan.components[writer].host
 
-    def box(self, channel: int) -> Box:
+    def box(self, channel: int) -> ChannelBuffer:
         """The channel with that index."""
         return self._boxes[channel]
 
@@ -117,10 +120,10 @@ class Inputs:
     def forget_predecessor(self) -> None:
         """From now on what this process reads of itself never comes from outside."""
         for box in self.local.values():
-            if isinstance(box, Inbox):
+            if isinstance(box, ChannelSocket):
                 box.close()
 
-    def wait(self, boxes: Sequence[Box], serve: Callable[[], bool]) -> bool:
+    def wait(self, boxes: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> bool:
         """Waits until everything visible in `boxes` is here; false if `serve` says that waiting is over.
 
         `serve` is called whenever the process's own port has something, because who waits must still answer others.
@@ -133,7 +136,7 @@ class Inputs:
         waiting = Waiting()
         waiting.add(self._sender.socket)
         for box in lacking:
-            if isinstance(box, Inbox) and not box.closed:
+            if isinstance(box, ChannelSocket) and not box.closed:
                 waiting.add(box)
         began_us = monotonic_us()
         next_us, ask_us, asked = SECOND_WAIT_US, began_us + FIRST_WAIT_US, 0
@@ -178,13 +181,13 @@ class Inputs:
                 box.missed = []
         return found
 
-    def _ask(self, lacking: Sequence[Box], *, patient: bool) -> None:
+    def _ask(self, lacking: Sequence[ChannelBuffer], *, patient: bool) -> None:
         for box in lacking:
             missing = box.missing()
             if missing:
                 self._fetch(box, missing, self._writer_host[box.plan.index] if patient else self._ports.gateway)
 
-    def _fetch(self, box: Box, missing: Sequence[int], host: int) -> None:
+    def _fetch(self, box: ChannelBuffer, missing: Sequence[int], host: int) -> None:
         fetch = fetch_t()
         fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
         fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]

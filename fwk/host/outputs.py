@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 
-from fwk.bus.history import History, gaps
-from fwk.bus.inbox import Box
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.messages import tick_and_sequence_of
-from fwk.plan.model import ChannelPlan
+from fwk.engine.channel_buffer import ChannelBuffer
+from fwk.engine.message_history import History, gaps
+from fwk.lcm.messages import tick_and_sequence_of
+from fwk.model.plan import ChannelPlan
+from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t
 
 LARGE_BYTES = 64 << 10
@@ -23,7 +23,7 @@ class Outputs:
         written: Mapping[str, ChannelPlan],
         ports: Ports,
         sender: Sender,
-        local: Mapping[str, Box],
+        local: Mapping[str, ChannelBuffer],
         sequences: Mapping[str, int],
     ) -> None:
         self._written = {

@@ -3,7 +3,7 @@
 import logging
 from collections.abc import Callable
 
-from fwk.aspects.logging import Logger, short_path
+from fwk.component.log import Logger, short_path
 from lcmtypes.core import log_t
 
 _LEVELS = ((logging.ERROR, log_t.ERROR), (logging.WARNING, log_t.WARNING), (logging.INFO, log_t.INFO))

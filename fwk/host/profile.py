@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
-from fwk.plan.model import ComponentPlan
-from fwk.runner import Runner
+from fwk.engine.runner import Runner
+from fwk.model.plan import ComponentPlan
 
 INTERVAL_S = 0.0001  # iterations often take less than a millisecond
 KEEP_US = 5 * US_PER_S  # how often what was found is written down, for a component that is killed

@@ -5,7 +5,7 @@ import threading
 from types import TracebackType
 from typing import TYPE_CHECKING
 
-from fwk.aspects.logging import Logger
+from fwk.component.log import Logger
 
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs

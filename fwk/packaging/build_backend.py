@@ -38,7 +38,7 @@ def build_editable(
 
 def _generate_types() -> None:
     # Loaded by its path: importing fwk needs the very types that are generated here, and libraries that a build lacks.
-    spec = importlib.util.spec_from_file_location("typegen", ROOT / "fwk" / "typegen.py")
+    spec = importlib.util.spec_from_file_location("typegen", ROOT / "fwk" / "lcm" / "typegen.py")
     assert spec
     assert spec.loader
     typegen = importlib.util.module_from_spec(spec)

@@ -1,1 +1,1 @@
-"""The plan: a launch file, checked and fully resolved before the first process starts."""
+"""From a launch file to a plan, or to all of its mistakes at once."""

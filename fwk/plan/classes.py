@@ -12,10 +12,10 @@ from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, TracebackType
 
-from fwk.component import Component
-from fwk.declaration import Declaration, declaration
-from fwk.plan.errors import hint
-from fwk.port import DeclarationError
+from fwk.component.component import Component
+from fwk.component.declaration import Declaration, declaration
+from fwk.component.port import DeclarationError
+from fwk.model.errors import hint
 
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 

@@ -3,7 +3,7 @@
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal
 
-from fwk.plan.model import HostPlan
+from fwk.model.plan import HostPlan
 
 Hosting = Literal["process", "robot", "single"]
 ALL = "all"

@@ -4,22 +4,31 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from fwk.bus.ports import Ports
 from fwk.clock import US_PER_S
-from fwk.plan.errors import Problems
-from fwk.plan.expand import expand
-from fwk.plan.files import Files, find_launch_file, lay_over, read_files
-from fwk.plan.folders import folders_of, join
+from fwk.model.errors import Problems
+from fwk.model.plan import ComponentPlan, Plan, RecordPlan, RestartPolicy
+from fwk.model.ports import Ports
+from fwk.model.selection import chosen, groups_of
+from fwk.plan.files.folders import folders_of, join
+from fwk.plan.files.launch_file import Files, find_launch_file, lay_over, read_files
+from fwk.plan.files.overrides import overrides
+from fwk.plan.files.templates import expand
 from fwk.plan.hosting import Hosting, share_out
-from fwk.plan.model import ComponentPlan, Plan, RecordPlan, RestartPolicy
-from fwk.plan.needs import check_left_out, granted_by, needs_of
-from fwk.plan.overrides import overrides
 from fwk.plan.resolve import Resolved, add_settings, check_clock, resolve
-from fwk.plan.selection import chosen, groups_of
+from fwk.plan.run_section import (
+    function_of,
+    last,
+    log_of,
+    merged,
+    outside_of,
+    public_url_of,
+    record_of,
+    runs_of,
+)
 from fwk.plan.stages import stages_of
-from fwk.plan.starting import check_groups, check_processes, check_starts
-from fwk.plan.surroundings import function_of, last, log_of, merged, outside_of, public_url_of, record_of, runs_of
-from fwk.plan.wiring import Wiring, wire
+from fwk.plan.wiring.needs import check_left_out, granted_by, needs_of
+from fwk.plan.wiring.start_order import check_groups, check_processes, check_starts
+from fwk.plan.wiring.wiring import Wiring, wire
 
 _PORTS_END = 65536
 SPARE_CHANNELS = 64

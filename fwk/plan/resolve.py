@@ -5,16 +5,16 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from fwk.declaration import Declaration
+from fwk.component.declaration import Declaration
+from fwk.model.errors import Problems
+from fwk.model.selection import matches, nearest
 from fwk.plan.classes import UnusableError, find_class
-from fwk.plan.errors import Problems
-from fwk.plan.expand import Asked
-from fwk.plan.files import Files
-from fwk.plan.selection import matches, nearest
+from fwk.plan.files.launch_file import Files
+from fwk.plan.files.substitution import substitute
+from fwk.plan.files.templates import Asked
 from fwk.plan.settings import effective
 from fwk.plan.stages import stages_in
-from fwk.plan.substitution import substitute
-from fwk.plan.wish import Wish
+from fwk.plan.wiring.component_spec import Wish
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from fwk.config import Config
-from fwk.plan.source import Node
-from fwk.plan.validation import Path, validated
+from fwk.component.config import Config
+from fwk.plan.files.source import Node
+from fwk.plan.files.validation import Path, validated
 
 DEFAULT = "default"
 

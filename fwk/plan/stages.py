@@ -3,12 +3,12 @@
 import re
 from collections.abc import Sequence
 
-from fwk.bus.ports import STAGES_MAX
-from fwk.component import DEFAULT_STAGES
-from fwk.declaration import Declaration
-from fwk.plan.errors import Problems, hint
-from fwk.plan.expand import Asked
-from fwk.plan.files import Files
+from fwk.component.component import DEFAULT_STAGES
+from fwk.component.declaration import Declaration
+from fwk.model.errors import Problems, hint
+from fwk.model.ports import STAGES_MAX
+from fwk.plan.files.launch_file import Files
+from fwk.plan.files.templates import Asked
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 

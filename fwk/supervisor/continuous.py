@@ -3,12 +3,12 @@
 from collections import deque
 
 from fwk.bus import sync
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
-from fwk.plan.model import Plan
-from fwk.supervisor.ledger import Ledger
-from fwk.supervisor.records import Records, change_message, void_messages
-from fwk.supervisor.table import HostEntry
+from fwk.engine.visibility import Ledger
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.tick_log import Records, change_message, void_messages
 from lcmtypes.core import done_t, tick_event_t, tick_t
 
 _TICKS_KEPT = 4096

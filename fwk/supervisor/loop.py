@@ -3,26 +3,26 @@
 import json
 from collections.abc import Callable
 
-from fwk.aspects.logging import Logger
 from fwk.bus import sync
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.clock import monotonic_us
-from fwk.plan.model import NOBODY, Plan
+from fwk.component.log import Logger
+from fwk.engine.visibility import Ledger
+from fwk.model.plan import NOBODY, Plan
+from fwk.model.ports import Ports
+from fwk.supervisor.channel_requests import Opening
 from fwk.supervisor.continuous import Continuous
-from fwk.supervisor.hosts import Hosts
-from fwk.supervisor.ledger import Ledger
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.mailbox import Mailbox
-from fwk.supervisor.missed import Missed
-from fwk.supervisor.opening import Opening
-from fwk.supervisor.pace import Pace
-from fwk.supervisor.patience import Patience
-from fwk.supervisor.records import Records, void_messages
-from fwk.supervisor.table import Change, HostEntry
-from fwk.supervisor.telling import Telling
-from fwk.supervisor.turns import Turns
-from fwk.supervisor.wishes import Wishes
+from fwk.supervisor.loss_report import Missed
+from fwk.supervisor.processes.host_process import Change, HostEntry
+from fwk.supervisor.processes.hosts import Hosts
+from fwk.supervisor.requests import Wishes
+from fwk.supervisor.retransmission_timeout import Patience
+from fwk.supervisor.run_clock import Pace
+from fwk.supervisor.schedule import Turns
+from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.tick_log import Records, void_messages
+from fwk.supervisor.tick_sender import Telling
 from lcmtypes.core import done_t, tick_event_t
 
 REPEAT_LONGEST_US = 100_000

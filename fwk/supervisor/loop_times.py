@@ -3,11 +3,11 @@
 import sys
 from collections.abc import Sequence
 
-from fwk.aspects.logging import Logger
 from fwk.clock import US_PER_S
-from fwk.histogram import Histogram
-from fwk.plan.model import Plan
-from fwk.supervisor.table import HostEntry
+from fwk.component.log import Logger
+from fwk.model.histogram import Histogram
+from fwk.model.plan import Plan
+from fwk.supervisor.processes.host_process import HostEntry
 
 TOLERANCE = 1.1  # a tick that takes up to so many times the desired time is no reason for a warning
 _QUIET_US = 10 * US_PER_S

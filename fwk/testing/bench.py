@@ -2,14 +2,14 @@
 
 from typing import Any
 
-from fwk import envelope
-from fwk.aspects.commands import ANSWERS
-from fwk.aspects.vision import Ring, VisionMaster
 from fwk.clock import US_PER_S
-from fwk.component import Component
-from fwk.declaration import Declaration, declaration
-from fwk.port import Port
-from fwk.runner import Runner, Surroundings
+from fwk.component.commands import ANSWERS
+from fwk.component.component import Component
+from fwk.component.declaration import Declaration, declaration
+from fwk.component.images import Ring, VisionMaster
+from fwk.component.port import Port
+from fwk.engine.runner import Runner, Surroundings
+from fwk.lcm import envelope
 from fwk.testing.opening import Opening
 from fwk.testing.plans import alone
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench
@@ -104,7 +104,7 @@ class Bench:
         """Makes a frame visible to the next iteration of an `Image` port, or of one of an `ImagesEach` port."""
         port = self.port(attribute, namespace)
         if port.channel not in self._camera:
-            from fwk.aspects.blackboard import Writes
+            from fwk.component.channels import Writes
 
             writer: Any = Writes(port.channel, port.message_type)
             self._camera[port.channel] = VisionMaster(writer, self._rings[port.channel])

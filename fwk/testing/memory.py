@@ -4,17 +4,17 @@ from collections import ChainMap
 from collections.abc import Mapping, MutableMapping, Sequence
 from typing import Any
 
-from fwk import envelope, messages
-from fwk.aspects.main_loop import Holding
-from fwk.aspects.vision import Ring
 from fwk.clock import US_PER_S
-from fwk.component import DEFAULT_STAGES, Component
-from fwk.declaration import declaration
-from fwk.gateway.outside import STAGE, WRITER
-from fwk.plan.names import LINES
-from fwk.plan.wiring import wire
-from fwk.plan.wish import Wish
-from fwk.runner import Runner, Surroundings
+from fwk.component.component import DEFAULT_STAGES, Component
+from fwk.component.declaration import declaration
+from fwk.component.images import Ring
+from fwk.component.main_loop import Holding
+from fwk.engine.runner import Runner, Surroundings
+from fwk.gateway.ingress import STAGE, WRITER
+from fwk.lcm import envelope, messages
+from fwk.model.names import LINES
+from fwk.plan.wiring.component_spec import Wish
+from fwk.plan.wiring.wiring import wire
 from fwk.testing.opening import Opening
 from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t

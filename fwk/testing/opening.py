@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from fwk import envelope, messages
-from fwk.instances import Fact, Instances
-from fwk.openings import Openings
-from fwk.plan.model import Plan
-from fwk.runner import Runner
+from fwk.engine.channel_grants import Openings
+from fwk.engine.runner import Runner
+from fwk.lcm import envelope, messages
+from fwk.model.channel_table import Fact, Instances
+from fwk.model.plan import Plan
 
 
 class Opening:

@@ -4,14 +4,14 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fwk.clock import US_PER_S
-from fwk.component import DEFAULT_STAGES, Component
-from fwk.declaration import declaration
-from fwk.messages import type_named
+from fwk.component.component import DEFAULT_STAGES, Component
+from fwk.component.declaration import declaration
+from fwk.lcm.messages import type_named
+from fwk.model.plan import ComponentPlan, HostPlan, Plan, RestartPolicy
 from fwk.plan.load import SPARE_CHANNELS
-from fwk.plan.model import ComponentPlan, HostPlan, Plan, RestartPolicy
-from fwk.plan.needs import granted_by
-from fwk.plan.wiring import wire
-from fwk.plan.wish import Wish
+from fwk.plan.wiring.component_spec import Wish
+from fwk.plan.wiring.needs import granted_by
+from fwk.plan.wiring.wiring import wire
 
 
 def plan_of(

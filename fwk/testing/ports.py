@@ -2,8 +2,8 @@
 
 from typing import Any, cast
 
-from fwk import envelope, messages
 from fwk.clock import US_PER_S
+from fwk.lcm import envelope, messages
 from lcmtypes.core import answer_t, command_t, header_t
 
 

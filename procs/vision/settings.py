@@ -4,7 +4,7 @@ import math
 
 from pydantic import Field
 
-from fwk.config import Config
+from fwk.component.config import Config
 from procs.vision.colours import Picture
 from procs.vision.mirror import Mirror
 

@@ -9,8 +9,8 @@ from pathlib import Path
 import lcm
 
 from fwk.clock import monotonic_us, sleep_s
-from fwk.record.log import LogReader
-from fwk.typegen import lcm_gen
+from fwk.lcm.event_log import LogReader
+from fwk.lcm.typegen import lcm_gen
 
 PROBE = "fwk/probe"
 _DEADLINE_S = 60.0  # a busy machine is slow; nothing waits that long when it works

@@ -9,10 +9,10 @@ from pathlib import Path
 import lcm
 import pytest
 
-from fwk.record.compare import FRAMEWORK
-from fwk.record.log import LogReader
+from fwk.lcm.event_log import LogReader
+from fwk.recording.compare import FRAMEWORK
 from tests.clients.clients_bus import Bus, process, program
-from tests.fwk.record.record_made import entry, world_model
+from tests.fwk.recording.recording_made import entry, world_model
 from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system

@@ -4,10 +4,10 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.compare import compare
-from fwk.record.log_info import log_info
+from fwk.recording.compare import compare
+from fwk.recording.log_info import log_info
 from tests.clients.clients_bus import Bus
-from tests.fwk.record.record_made import entries, write
+from tests.fwk.recording.recording_made import entries, write
 from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system

@@ -15,10 +15,10 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.messages import has_header, type_name
-from fwk.record.types import by_fingerprint
+from fwk.lcm.messages import has_header, type_name
+from fwk.lcm.type_registry import by_fingerprint
 from tests.clients.clients_bus import Bus, process, wait_until
-from tests.fwk.record.record_made import Entry, write
+from tests.fwk.recording.recording_made import Entry, write
 from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system

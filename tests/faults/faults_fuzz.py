@@ -5,9 +5,9 @@ from typing import Any
 
 from hypothesis import strategies as some
 
-from fwk import messages
 from fwk.bus import sync
-from fwk.record.types import by_fingerprint
+from fwk.lcm import messages
+from fwk.lcm.type_registry import by_fingerprint
 from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
 HOSTILE_TEXT = [

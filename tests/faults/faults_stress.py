@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
 from tests.system.control_system import Steered
 from tests.system.system_everything import everything
 from tests.system.system_fate import Fate

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
 from tests.faults.faults_after import Aftermath
 from tests.system.command_system import command_system
 from tests.system.conftest import Launch

@@ -8,9 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
-from fwk import messages
-from fwk.bus import wire
-from fwk.messages import Header, MessageError, to_dict
+from fwk.lcm import messages, wire
+from fwk.lcm.messages import Header, MessageError, to_dict
 from tests.faults.faults_fuzz import DECODERS, all_types, damaged, sync_messages
 
 PARTS = wire.datagrams(7, b"a/large", bytes(range(256)) * 600)

@@ -13,14 +13,14 @@ from typer import Typer
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from fwk import messages
 from fwk.cli import launch as launching
 from fwk.cli.bb import _message
 from fwk.cli.launch import app as fwk_launch
 from fwk.cli.main import app as fwk
 from fwk.cli.send import made
-from fwk.gateway.board import plain
-from fwk.messages import MessageError
+from fwk.gateway.channel_server import plain
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
 from tests.faults.faults_fuzz import HOSTILE_TEXT, all_types
 from tests.system.system_runs import PortBlock, write_files
 

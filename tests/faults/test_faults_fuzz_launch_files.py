@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 
 GARBLED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])

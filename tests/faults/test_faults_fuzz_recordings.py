@@ -13,11 +13,11 @@ from typer.testing import CliRunner
 
 from fwk import Component, Reads, Writes
 from fwk.cli.main import app as fwk
-from fwk.record.compare import Comparison
-from fwk.record.log import LogError, LogReader, LogWriter
-from fwk.record.log_info import log_info
-from fwk.replay.recording import Recording, RecordingError
-from fwk.replay.replay import Replay
+from fwk.lcm.event_log import LogError, LogReader, LogWriter
+from fwk.recording.compare import Comparison
+from fwk.recording.log_info import log_info
+from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.replay.replay import Replay
 from fwk.testing import MemorySystem
 from fwk.testing.plans import plan_of
 from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t

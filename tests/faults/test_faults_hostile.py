@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from fwk.bus import wire
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import GROUP, LOOPBACK, multicast_receiver
 from fwk.control.address import gateway_address, supervisor_address
+from fwk.lcm import wire
+from fwk.model.ports import Ports
 from tests.faults.conftest import RUN, TICKS
 from tests.faults.faults_after import Aftermath
 from tests.system.conftest import Launch

@@ -7,9 +7,9 @@ from pathlib import Path
 import psutil
 import pytest
 
-from fwk.bus import wire
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import multicast_receiver
+from fwk.lcm import wire
+from fwk.model.ports import Ports
 from tests.faults.conftest import RUN, TICKS
 from tests.faults.faults_after import Aftermath
 from tests.system.conftest import Launch

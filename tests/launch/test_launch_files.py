@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import Plan
 
 FOLDER = Path(__file__).parents[2] / "launch"
 SYSTEMS = {"soccer.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from fwk.aspects.blackboard import Reads, ReadsEach, Writes, channel
 from fwk.clock import Clock
-from fwk.component import Component
-from fwk.config import Config
+from fwk.component.channels import Reads, ReadsEach, Writes, channel
+from fwk.component.component import Component
+from fwk.component.config import Config
 from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
 from procs.physics.teams import team_of
 

@@ -8,9 +8,9 @@ from typing import Any
 import cv2
 import numpy as np
 
-from fwk.aspects.blackboard import Writes
 from fwk.clock import Clock, sleep_s
-from fwk.component import Component
+from fwk.component.channels import Writes
+from fwk.component.component import Component
 from fwk.testing import MemorySystem
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.camera import Camera

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from fwk.component import Component
+from fwk.component.component import Component
 from fwk.testing import Bench
 from lcmtypes.soccer import (
     ball_estimate_t,

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fwk.component import Component
+from fwk.component.component import Component
 from fwk.testing import MemorySystem
 from lcmtypes.soccer import game_state_t, match_event_t
 from procs.agent import Agent

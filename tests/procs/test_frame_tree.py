@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from fwk import Component, Writes
+from fwk.component.transform_tree import TransformError
 from fwk.testing.bench import Bench
 from fwk.testing.memory import MemorySystem
-from fwk.transform_tree import TransformError
 from lcmtypes.robot import transforms_t
 from lcmtypes.soccer import ball_percept_t, pose_t
 from procs.ball_spot import BallSpot

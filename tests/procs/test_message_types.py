@@ -1,7 +1,7 @@
 """Message types of robot and match: none can be taken for another."""
 
-from fwk import messages
-from fwk.record.types import by_fingerprint
+from fwk.lcm import messages
+from fwk.lcm.type_registry import by_fingerprint
 
 PACKAGES = ("core.", "robot.", "soccer.")
 

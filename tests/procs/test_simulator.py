@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk.aspects.blackboard import Reads, Writes
-from fwk.component import Component
+from fwk.component.channels import Reads, Writes
+from fwk.component.component import Component
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.robot import (
     imu_t,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
 from tests.system.system_orchestra import TYPES, orchestra
 from tests.system.system_runs import Launched, PortBlock, write_files
 

@@ -10,7 +10,7 @@ import lcm
 
 from fwk.control.address import gateway_address
 from fwk.control.client import Client, ControlError
-from fwk.messages import type_named
+from fwk.lcm.messages import type_named
 from lcmtypes.robot import motor_command_t
 from tests.system.control_system import Steered
 from tests.system.system_orchestra import PLAYERS

@@ -4,10 +4,10 @@ from collections import defaultdict
 from pathlib import Path
 from typing import Any
 
-from fwk.messages import Header
-from fwk.record import types
-from fwk.record.compare import Comparison
-from fwk.record.log import LogReader
+from fwk.lcm import type_registry as types
+from fwk.lcm.event_log import LogReader
+from fwk.lcm.messages import Header
+from fwk.recording.compare import Comparison
 from lcmtypes.core import tick_record_t
 
 

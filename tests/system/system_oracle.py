@@ -9,7 +9,7 @@ import zlib
 from collections.abc import Iterator
 from typing import Any
 
-from fwk.messages import Header, type_named
+from fwk.lcm.messages import Header, type_named
 from tests.system.system_logs import Recording
 from tests.system.system_orchestra import PLAYERS
 

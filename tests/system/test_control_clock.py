@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fwk.control.client import RefusedError
-from fwk.record.compare import Comparison
+from fwk.recording.compare import Comparison
 from tests.system.control_system import Steered, write_system
 from tests.system.system_logs import Recording
 from tests.system.system_runs import PortBlock

@@ -9,8 +9,8 @@ import pytest
 
 from fwk.control.address import gateway_address
 from fwk.control.client import Client, RefusedError
-from fwk.messages import type_named
-from fwk.record.types import use_types_of
+from fwk.lcm.messages import type_named
+from fwk.lcm.type_registry import use_types_of
 from tests.system.command_system import TYPES, command_system
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered

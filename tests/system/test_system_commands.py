@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
 from tests.system.command_system import TYPES, command_system
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording, difference

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.compare import Comparison
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.compare import Comparison
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording
 from tests.system.system_runs import PortBlock, replayed, write_files

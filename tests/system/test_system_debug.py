@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fwk.clock import sleep_s
-from fwk.record.compare import Comparison
+from fwk.recording.compare import Comparison
 from tests.system.system_runs import PortBlock, write_files
 from tests.system.system_terminals import FILES, LOOP_LINE, Terminal
 

@@ -125,7 +125,7 @@ from importlib import import_module
 from pathlib import Path
 
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.record.log import LogWriter
+from fwk.lcm.event_log import LogWriter
 from fwk.testing import MemorySystem
 
 ticks, seed = map(int, sys.argv[1:])

@@ -11,12 +11,12 @@ from typing import Any
 import lcm
 import pytest
 
-from fwk.envelope import STAMP
-from fwk.messages import Header, type_named
-from fwk.record.log import LogReader, LogWriter
-from fwk.record.stamped import StampedLog
-from fwk.record.types import use_types_of
-from fwk.replay.recording import Recording
+from fwk.lcm.envelope import STAMP
+from fwk.lcm.event_log import LogReader, LogWriter
+from fwk.lcm.messages import Header, type_named
+from fwk.lcm.stamped_log import StampedLog
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.replay.recording import Recording
 from tests.clients.clients_bus import Bus, process, program, wait_until
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered

@@ -12,8 +12,8 @@ import pytest
 
 from fwk.clock import sleep_s
 from fwk.control.yaml_edit import read
-from fwk.record.log import LogReader
-from fwk.record.text_log import read_lines
+from fwk.lcm.event_log import LogReader
+from fwk.logs.reader import read_lines
 from tests.system.control_system import Steered, write_system
 from tests.system.system_runs import BIN, Launched, PortBlock, fill, fwk
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.types import use_types_of
+from fwk.lcm.type_registry import use_types_of
 from lcmtypes.core import tick_event_t
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
@@ -45,8 +45,8 @@ import json
 from pathlib import Path
 import sys
 
-from fwk.replay.recording import Recording
-from fwk.replay.replay import Replay
+from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.replay import Replay
 
 sys.path.append(".")
 found = {}

@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.record.log import LogReader
-from fwk.record.pictures import FRAME, pictures_in
+from fwk.lcm.event_log import LogReader
+from fwk.recording.pictures import FRAME, pictures_in
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import difference

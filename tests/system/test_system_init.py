@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.compare import Comparison
+from fwk.recording.compare import Comparison
 from tests.system.conftest import Launch
 from tests.system.system_logs import Recording
 from tests.system.system_runs import PortBlock, replayed, write_files

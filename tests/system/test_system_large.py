@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.compare import compare
+from fwk.recording.compare import compare
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording

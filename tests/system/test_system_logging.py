@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from fwk.record.text_log import read_lines
+from fwk.logs.reader import read_lines
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording
 from tests.system.system_runs import Launched, PortBlock, write_files

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.record.compare import compare
+from fwk.recording.compare import compare
 from lcmtypes.core import tick_event_t
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered

@@ -12,10 +12,11 @@ import lcm
 import psutil
 import pytest
 
-from fwk.bus import sync, wire
-from fwk.bus.ports import Ports
+from fwk.bus import sync
 from fwk.bus.sockets import GROUP, LOOPBACK, multicast_receiver
-from fwk.messages import type_named
+from fwk.lcm import wire
+from fwk.lcm.messages import type_named
+from fwk.model.ports import Ports
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, status_t, tick_record_t, tick_t
 from tests.system.conftest import Launch
 from tests.system.system_logs import difference

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.typegen import generate
+from fwk.lcm.typegen import generate
 from tools.bench import fwk_launch_file, rotation
 from tools.bench.own import OwnScenario
 from tools.bench.registry import PEERS

@@ -11,4 +11,4 @@ bench-peers: types
 # The benchmark's own message; its code has to be there for mypy and the tests too.
 types: bench-types
 bench-types:
-	.venv/bin/python -P fwk/typegen.py tools/bench/messages/lcmtypes
+	.venv/bin/python -P fwk/lcm/typegen.py tools/bench/messages/lcmtypes

@@ -1,6 +1,6 @@
 """fwk's supervisor with a stop-watch: python -m tools.bench.fwk_supervise SHAPE_FILE [recorded] [grouped].
 
-It is `fwk.supervisor.run` but for two things: the driver says how many ticks to run and gets each one's time, and
+It is `fwk.launcher.run.run` but for two things: the driver says how many ticks to run and gets each one's time, and
 without `recorded` there is no gateway, so that its cost can be told.
 """
 
@@ -13,12 +13,13 @@ from pathlib import Path
 from typing import Any
 
 from fwk.host.process import raise_file_limit
+from fwk.launcher.helper_processes import HelperProcesses
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import Plan
-from fwk.supervisor import RunOptions, Supervisor
-from fwk.supervisor.children import Children
-from fwk.supervisor.hosts import StartFailure
-from fwk.supervisor.zygote import Zygote
+from fwk.supervisor.options import RunOptions
+from fwk.supervisor.processes.hosts import StartFailure
+from fwk.supervisor.processes.zygote import Zygote
+from fwk.supervisor.supervisor import Supervisor
 from tools.bench import fwk_launch_file
 from tools.bench.shape import Shape
 from tools.bench.supervise import WARM_UP_TICKS, WARM_UP_US
@@ -77,7 +78,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
         Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
     )
     zygote = Zygote(plan, number, {})
-    children = Children(plan, number, options, {}) if recorded else None
+    children = HelperProcesses(plan, number, options, {}) if recorded else None
     supervisor = MeasuredSupervisor(plan, options, number, zygote, {})
     if not recorded:
         supervisor.loop.records.taken = _NEVER  # there is no gateway to wait for

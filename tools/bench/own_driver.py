@@ -14,9 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from fwk.bus import wire
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import multicast_receiver
+from fwk.lcm import wire
+from fwk.model.ports import Ports
 from lcmtypes.core import status_t, tick_event_t, tick_record_t
 from tools.bench import accounting, fwk_launch_file, namespace
 from tools.bench.driver import RunFailed

@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from fwk.bus.ports import PortLock, Ports, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.model.ports import Ports
 from tests.system.system_runs import PortBlock
 
 

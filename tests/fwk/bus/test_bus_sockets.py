@@ -1,7 +1,7 @@
 """Senders on one port, one after the other, as those of a host that was started again."""
 
-from fwk.bus import wire
 from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.lcm import wire
 from tests.system.system_runs import PortBlock
 
 

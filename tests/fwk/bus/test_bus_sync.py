@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as some
 
 from fwk.bus import sync
-from fwk.messages import MessageError, to_dict
+from fwk.lcm.messages import MessageError, to_dict
 from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
 
 INT16, INT32, INT64 = (some.integers(-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (16, 32, 64))

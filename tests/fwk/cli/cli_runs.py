@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from fwk.plan.model import ChannelPlan, Plan
+from fwk.model.plan import ChannelPlan, Plan
 from lcmtypes.core import component_state_t, host_status_t, log_t, status_t
 from lcmtypes.soccer import game_state_t
 

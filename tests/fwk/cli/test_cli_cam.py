@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from fwk.cli.main import app
 from fwk.cli.picture_out import as_text
-from fwk.record.log import LogWriter
+from fwk.lcm.event_log import LogWriter
 from lcmtypes.robot import picture_t
 
 NOISE = np.random.default_rng(1).integers(0, 256, (60, 80, 3), np.uint8)

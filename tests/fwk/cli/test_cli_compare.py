@@ -7,7 +7,7 @@ import typer
 from typer.testing import CliRunner
 
 from fwk.cli.compare import compare
-from fwk.record.log import LogWriter
+from fwk.lcm.event_log import LogWriter
 
 
 @pytest.fixture

@@ -11,10 +11,11 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.bus.ports import PortLock, Ports
+from fwk.bus.port_lock import PortLock
 from fwk.cli import doctor_checks as checks
 from fwk.cli.doctor import doctor
 from fwk.cli.doctor_checks import Finding, Level
+from fwk.model.ports import Ports
 from tests.system.system_runs import PortBlock
 
 DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.doctor import doctor; typer.run(doctor)"]

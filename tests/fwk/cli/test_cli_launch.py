@@ -12,9 +12,10 @@ import pytest
 import yaml
 from typer.testing import CliRunner
 
-from fwk.bus.ports import PortLock, Ports
+from fwk.bus.port_lock import PortLock
 from fwk.cli.launch import app
-from fwk.record.log import LogReader
+from fwk.lcm.event_log import LogReader
+from fwk.model.ports import Ports
 from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, launch, write_files
 from tests.system.system_runs import PortBlock
 

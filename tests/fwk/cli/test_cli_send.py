@@ -5,7 +5,7 @@ import re
 import pytest
 
 from fwk.cli.send import made
-from fwk.messages import MessageError, encode
+from fwk.lcm.messages import MessageError, encode
 
 
 def test_fields_are_set_by_name_and_others_are_zero() -> None:

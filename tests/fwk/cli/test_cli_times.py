@@ -1,7 +1,7 @@
 """Histograms in figures."""
 
 from fwk.cli.times import Stopwatch
-from fwk.histogram import Histogram
+from fwk.model.histogram import Histogram
 
 
 def answer(*durations_us: int) -> dict[str, object]:

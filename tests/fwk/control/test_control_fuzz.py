@@ -10,11 +10,11 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as some
 
 from fwk.control import requests
-from fwk.control.keep import KeepError, Kept, forget, keep
+from fwk.control.host_file import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError, parsed
 from fwk.control.settings import RunSettings
 from fwk.control.yaml_edit import EditError, read
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 from tests.faults.faults_fuzz import HOSTILE_TEXT
 

@@ -9,9 +9,9 @@ import pytest
 
 from fwk import Component, Image, VisionMaster, Writes
 from fwk.control.requests import Action, RequestError
-from fwk.plan.application import Sources
-from fwk.supervisor.steering import Steering
-from fwk.supervisor.table import HostEntry, host_table
+from fwk.plan.files.source_files import Sources
+from fwk.supervisor.control.lifecycle import Steering
+from fwk.supervisor.processes.host_process import HostEntry, host_table
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 
 import pytest
 
-from fwk.bus import wire
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.gateway.gateway import Gateway
-from fwk.messages import sequence_of
+from fwk.lcm import wire
+from fwk.lcm.messages import sequence_of
+from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, log_t, tick_record_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
 from tests.system.system_runs import PortBlock

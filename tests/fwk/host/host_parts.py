@@ -1,7 +1,7 @@
 """Two hosts' worth of plan: a writer, and readers beside it and elsewhere."""
 
 from fwk import Component, Reads, Writes
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 

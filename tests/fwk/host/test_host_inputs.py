@@ -7,13 +7,13 @@ from typing import Any
 import pytest
 
 from fwk.bus import sockets
-from fwk.bus.history import MESSAGES_MAX
-from fwk.bus.inbox import Inbox
-from fwk.bus.ports import Ports
+from fwk.bus.channel_socket import ChannelSocket
 from fwk.bus.sockets import Sender
+from fwk.engine.message_history import MESSAGES_MAX
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
-from fwk.messages import MessageError, sequence_of
+from fwk.lcm.messages import MessageError, sequence_of
+from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
 from tests.system.system_runs import PortBlock, pause
@@ -145,7 +145,7 @@ def test_a_reader_in_the_same_process_needs_no_socket(make: Make, monkeypatch: p
     pair = make(together=True)
     monkeypatch.setattr(pair.writer_socket, "publish", lambda *_: None)
     pair.outputs.publish([(IMU, imu(1))])
-    assert not isinstance(pair.inputs.local[IMU], Inbox)
+    assert not isinstance(pair.inputs.local[IMU], ChannelSocket)
     assert pair.take(1) == [1]
 
 

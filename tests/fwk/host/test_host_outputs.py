@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from fwk.bus.ports import Ports
 from fwk.bus.sockets import Sender
 from fwk.host.outputs import Outputs
+from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t
 from tests.fwk.host.host_parts import imu, plan
 from tests.system.system_runs import PortBlock

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import Plan
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import pytest
 
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from fwk.plan.application import Sources, mistakes
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
+from fwk.plan.files.source_files import Sources, mistakes
 from tests.system.system_runs import write_files
 
 COMPONENT = """

@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from pydantic import BaseModel
 
-from fwk.component import DEFAULT_STAGES
-from fwk.plan.schema import ComponentEntry, LaunchFile, LogEntry, RestartEntry, RobotEntry
+from fwk.component.component import DEFAULT_STAGES
+from fwk.plan.files.schema import ComponentEntry, LaunchFile, LogEntry, RestartEntry, RobotEntry
 
 TEXT = (Path(__file__).parents[3] / "docs" / "launch-file.md").read_text()
 

@@ -6,8 +6,8 @@ from contextlib import suppress
 
 import pytest
 
-from fwk.plan.errors import PlanError
-from fwk.plan.model import Plan
+from fwk.model.errors import PlanError
+from fwk.model.plan import Plan
 
 GOOD = """
 period_s: 0.1

@@ -11,10 +11,10 @@ import pytest
 from typer.testing import CliRunner
 
 from fwk.cli.config import config
-from fwk.plan.errors import PlanError, Problems
-from fwk.plan.json_schema import schema_of_file, schema_of_files
-from fwk.plan.model import Plan
-from fwk.plan.source import read_value, read_yaml
+from fwk.model.errors import PlanError, Problems
+from fwk.model.plan import Plan
+from fwk.plan.files.json_schema import schema_of_file, schema_of_files
+from fwk.plan.files.source import read_value, read_yaml
 
 LAUNCH = Path(__file__).parents[3] / "launch"
 Schema = dict[str, Any]

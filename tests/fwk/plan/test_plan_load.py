@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.plan import NOBODY, ComponentPlan, Plan, RestartPolicy
 from fwk.plan.load import LaunchOptions, load_plan
-from fwk.plan.model import NOBODY, ComponentPlan, Plan, RestartPolicy
-from fwk.plan.starting import start_order
+from fwk.plan.wiring.start_order import start_order
 
 Load = Callable[..., Plan]
 

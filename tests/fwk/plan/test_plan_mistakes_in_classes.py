@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
 from fwk.plan.load import load_plan
 
 HEAD = """

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.plan.errors import PlanError
+from fwk.model.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
 from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from fwk.plan.model import Plan
+from fwk.model.plan import Plan
 from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 
 Load = Callable[..., Plan]

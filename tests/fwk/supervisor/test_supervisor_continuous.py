@@ -5,10 +5,10 @@ from typing import Any, cast
 
 from fwk import Component, Reads, Writes
 from fwk.bus import sync
-from fwk.plan.model import NOBODY
+from fwk.engine.visibility import Ledger
+from fwk.model.plan import NOBODY
 from fwk.supervisor.continuous import Continuous
-from fwk.supervisor.ledger import Ledger
-from fwk.supervisor.table import Change, host_table
+from fwk.supervisor.processes.host_process import Change, host_table
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t, tick_event_t, tick_t
 from lcmtypes.robot import imu_t

@@ -5,13 +5,13 @@ from types import SimpleNamespace
 from typing import Any, cast
 
 from fwk import Component, Reads, Writes
-from fwk.aspects.logging import Logger
 from fwk.bus import sync
 from fwk.clock import Clock
-from fwk.supervisor.ledger import Ledger
+from fwk.component.log import Logger
+from fwk.engine.visibility import Ledger
 from fwk.supervisor.loop import MainLoop
-from fwk.supervisor.pace import Pace
-from fwk.supervisor.table import HostEntry, host_table
+from fwk.supervisor.processes.host_process import HostEntry, host_table
+from fwk.supervisor.run_clock import Pace
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t, log_t, tick_t
 from lcmtypes.robot import imu_t

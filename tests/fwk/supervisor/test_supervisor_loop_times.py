@@ -3,10 +3,10 @@
 from typing import Any
 
 from fwk import Component, Writes
-from fwk.aspects.logging import Logger
 from fwk.clock import Clock
+from fwk.component.log import Logger
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.table import host_table
+from fwk.supervisor.processes.host_process import host_table
 from fwk.testing.plans import plan_of
 from lcmtypes.core import component_state_t, log_t
 from lcmtypes.robot import imu_t

@@ -1,1 +1,0 @@
-"""What a component can ask for: each module is one aspect."""

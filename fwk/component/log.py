@@ -1,0 +1,123 @@
+"""The logging aspect: lines of text that carry component, tick, times and place."""
+
+import sys
+import traceback
+from collections.abc import Callable
+from functools import cache
+
+from fwk.clock import Clock, sleep_s, wall_us
+from fwk.component.rate_limit import RateLimit
+from lcmtypes.core import log_t
+
+LEVELS = {"debug": log_t.DEBUG, "info": log_t.INFO, "warning": log_t.WARNING, "error": log_t.ERROR}
+LEVEL_NAMES = {number: name for name, number in LEVELS.items()}
+
+Text = str | Callable[[], str]
+"""What is logged, or what makes it when the level is on: `log.debug(lambda: f"{len(found)} points")`."""
+
+_BEGIN, _END = 12_000, 4_000  # characters kept of a text too long for one datagram, in UTF-8 at most 64 kB
+_BREATH_S = 0.001
+
+
+class Logger:
+    """Writes lines to wherever the system's log goes: console, files, buses.
+
+    Lines below `level` cost next to nothing. Lines above the `limit` are dropped and counted; when that second is over,
+    a line says how many they were. Errors are never dropped: who has too many of them is slowed down to a thousand a
+    second instead.
+    """
+
+    def __init__(
+        self,
+        component: str,
+        clock: Clock,
+        sink: Callable[[log_t], None],
+        level: int = log_t.INFO,
+        limit: RateLimit | None = None,
+    ) -> None:
+        self.component = component
+        self.level = level
+        self._clock = clock
+        self._sink = sink
+        self._limit = limit or RateLimit(0)
+        self._dropped_at = ("", 0)
+
+    def debug(self, text: Text) -> None:
+        """For whoever works on this component."""
+        if self.level <= log_t.DEBUG:
+            self._write(log_t.DEBUG, text)
+
+    def info(self, text: Text) -> None:
+        """Worth knowing in normal operation, rare."""
+        if self.level <= log_t.INFO:
+            self._write(log_t.INFO, text)
+
+    def warning(self, text: Text) -> None:
+        """Not as it should be; the component goes on."""
+        if self.level <= log_t.WARNING:
+            self._write(log_t.WARNING, text)
+
+    def error(self, text: Text) -> None:
+        """Something the component should do failed."""
+        self._write(log_t.ERROR, text)
+
+    def exception(self, text: str, error: BaseException) -> None:
+        """As `error`, with the traceback; the line's place is where the exception was raised."""
+        frames = traceback.extract_tb(error.__traceback__)
+        place = (short_path(frames[-1].filename), frames[-1].lineno or 0) if frames else ("", 0)
+        self.write(log_t.ERROR, f"{text}\n{''.join(traceback.format_exception(error)).rstrip()}", *place)
+
+    def write(self, level: int, text: str, file: str, line_number: int) -> None:
+        """A line with a place of its own, such as `stdout:7`."""
+        passes = self._limit.passes()
+        self.tell_dropped()
+        if not passes:
+            if level < log_t.ERROR:
+                self._dropped_at = (file, line_number)
+                self._limit.drop()
+                return
+            sleep_s(_BREATH_S)
+        self._emit(level, text, file, line_number)
+
+    def named(self, component: str) -> "Logger":
+        """One that writes for somebody else who has no own, without a limit."""
+        return Logger(component, self._clock, self._sink)
+
+    def tell_dropped(self, at_the_end: bool = False) -> None:
+        """Says how many lines were dropped, if that second is over, or `at_the_end`."""
+        dropped = self._limit.rest() if at_the_end else self._limit.dropped()
+        if dropped:
+            text = f"{dropped} lines dropped in the last second, the newest from here: more than {self._limit.per_s}"
+            self._emit(log_t.WARNING, text, *self._dropped_at)
+
+    def _write(self, level: int, text: Text) -> None:
+        caller = sys._getframe(2)
+        self.write(level, text() if callable(text) else text, short_path(caller.f_code.co_filename), caller.f_lineno)
+
+    def _emit(self, level: int, text: str, file: str, line_number: int) -> None:
+        line = log_t()
+        line.level = level
+        line.component = self.component
+        line.tick = self._clock.tick
+        line.time_us = self._clock.now_us
+        line.wall_us = wall_us()
+        line.file = file
+        line.line = line_number
+        line.text = _sendable(text)
+        self._sink(line)
+
+
+def _sendable(text: object) -> str:
+    """The text as it travels: in one datagram, and nothing in it that is no text."""
+    made = str(text)
+    if len(made) > _BEGIN + _END:
+        left_out = len(made) - _BEGIN - _END
+        made = f"{made[:_BEGIN]} ... {left_out} characters left out ... {made[-_END:]}"
+    return made.encode(errors="backslashreplace").decode().replace("\0", "\\0")
+
+
+@cache
+def short_path(path: str) -> str:
+    """A source file as it is imported: `procs/camera.py`."""
+    folders = [folder for folder in sys.path if folder and path.startswith(f"{folder.rstrip('/')}/")]
+    return path[len(max(folders, key=len).rstrip("/")) + 1 :] if folders else path.rpartition("/")[2]

@@ -1,0 +1,133 @@
+"""Keeps settings in the host-specific file beside a launch file, whole or not at all."""
+
+import contextlib
+import fcntl
+import os
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from fwk.control.yaml_edit import EditError, read, with_value, without
+from fwk.model.errors import Problems
+from fwk.model.selection import matches
+from fwk.plan.files.launch_file import shown
+from fwk.plan.files.source import read_value
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A setting as the file says it."""
+
+    component: str
+    """Name or pattern."""
+    setting: str
+    """Dotted."""
+    value: Any
+
+    @classmethod
+    def of(cls, typed: str) -> "Kept":
+        """From `NAME.SETTING=VALUE`, which was checked already."""
+        path, _, text = typed.partition("=")
+        component, _, setting = path.partition(".")
+        node = read_value(text, "", Problems())
+        return cls(component, setting, node.plain() if node else None)
+
+
+class KeepError(Exception):
+    """The file could not be changed and is as it was; says why."""
+
+
+def keep(file: Path, settings: Sequence[Kept]) -> None:
+    """Writes settings into the file, which need not be there yet.
+
+    When this returns, they are on the disk; if the process is killed meanwhile, the file is the old or the new one.
+
+    Raises:
+        KeepError: not written; the file is as it was.
+    """
+
+    def edit(text: str) -> str:
+        for each in settings:
+            text = with_value(text, ("config", each.component, *each.setting.split(".")), each.value)
+            _check_wins(read(text)["config"], each)
+        return text
+
+    _rewrite(file, edit)
+
+
+def forget(file: Path, paths: Sequence[str]) -> None:
+    """Takes settings, `NAME.SETTING` each, out of the file.
+
+    Raises:
+        KeepError: one of them is not in it, or it cannot be written; the file is as it was.
+    """
+
+    def edit(text: str) -> str:
+        for path in paths:
+            component, _, setting = path.partition(".")
+            try:
+                text = without(text, ("config", component, *setting.split(".")))
+            except EditError as error:
+                raise EditError(str(error).replace("'config.", "'")) from error
+        return text
+
+    _rewrite(file, edit)
+
+
+def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
+    file = file.resolve()
+    try:
+        with _locked(file.parent) as folder:
+            text = file.read_text(encoding="utf-8") if file.exists() else ""
+            _write(file, edit(text), folder)
+    except (EditError, UnicodeDecodeError) as error:
+        raise KeepError(f"{shown(file)}: {error}") from error
+    except OSError as error:
+        raise KeepError(f"{shown(file)}: cannot be written: {error.strerror}; it is as it was") from error
+
+
+def _check_wins(config: dict[str, Any], kept: Kept) -> None:
+    """What stands further down wins; then keeping it here would have no effect."""
+    names = list(config)
+    for later in names[names.index(kept.component) + 1 :]:
+        below = config[later]
+        for key in kept.setting.split("."):
+            below = below.get(key) if isinstance(below, dict) else None
+        if matches(kept.component, later) and below is not None and below != kept.value:
+            raise EditError(f"'{later}' further down says {below} of '{kept.setting}' and wins; change it there")
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[int]:
+    """One writer at a time; gives the folder's descriptor."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield descriptor
+    finally:
+        os.close(descriptor)
+
+
+def _write(file: Path, text: str, folder: int) -> None:
+    new = file.with_name(f".{file.name}.new")
+    try:
+        with open(new, "w", encoding="utf-8") as opened:
+            if file.exists():
+                _like(opened.fileno(), file)
+            opened.write(text)
+            opened.flush()
+            os.fsync(opened.fileno())
+        os.replace(new, file)
+    except OSError:
+        new.unlink(missing_ok=True)
+        raise
+    os.fsync(folder)
+
+
+def _like(descriptor: int, file: Path) -> None:
+    """Mode and owner of the file that is replaced."""
+    old = file.stat()
+    os.fchmod(descriptor, old.st_mode & 0o7777)
+    with contextlib.suppress(PermissionError):
+        os.fchown(descriptor, old.st_uid, old.st_gid)

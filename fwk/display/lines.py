@@ -1,0 +1,56 @@
+"""Lines of text for people: a log line, and the state of a run in one line."""
+
+from datetime import UTC, datetime
+
+from fwk.clock import US_PER_S
+from fwk.component.log import LEVEL_NAMES
+from fwk.display import figures
+from lcmtypes.core import log_t, status_t
+
+
+def log_line(line: log_t) -> str:
+    """Wall time, tick, logical time, level, component, text and place in the source."""
+    wall = datetime.fromtimestamp(line.wall_us / US_PER_S, UTC).astimezone().strftime("%H:%M:%S.%f")[:-3]
+    level = LEVEL_NAMES.get(line.level, str(line.level))
+    return (
+        f"{wall} {line.tick:>6} {line.time_us / US_PER_S:9.3f} s {level:7} {line.component}: {line.text} "
+        f"({line.file}:{line.line})"
+    )
+
+
+def status_line(status: status_t) -> str:
+    """Tick, logical time, pace and what went wrong so far."""
+    return (
+        f"tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   "
+        f"{status.ticks_per_s:.1f} ticks/s   {_states(status)}   {losses(status)}"
+    )
+
+
+def progress_of(status: status_t) -> str:
+    """What differs between two statuses of a run in which something happened meanwhile."""
+    return f"{status.tick} {_states(status)}"
+
+
+def _states(status: status_t) -> str:
+    return ", ".join(f"{count} {state}" for state, count in figures.totals(figures.components(status)).states.items())
+
+
+def pace(status: status_t) -> str:
+    """How fast logical time goes on."""
+    return "paused" if status.paused else f"speed {status.speed:.2f}"
+
+
+def losses(status: status_t) -> str:
+    """Messages lost for good and late iterations; if there were any, also messages fetched again, datagrams refused,
+    repeated ticks and restarts.
+    """
+    sums = figures.totals(figures.components(status))
+    always = {"lost": sums.lost, "late": status.late}
+    others = {
+        "fetched": sums.fetched,
+        "refused": sums.strangers,
+        "repeated": status.repeated,
+        "restarts": figures.restarts(status),
+    }
+    shown = {**always, **{word: count for word, count in others.items() if count}}
+    return "   ".join(f"{word} {count}" for word, count in shown.items())

@@ -1,0 +1,45 @@
+"""What is printed before a run, and when it has ended: result, pace, what went wrong, where the recording lies."""
+
+from fwk.cli.check import summary as overview
+from fwk.display import figures
+from fwk.display.lines import losses
+from fwk.display.scoreboard import Scoreboard
+from fwk.model.plan import Plan
+from fwk.supervisor.options import Outcome, RunOptions
+
+_SLOWEST = 3
+
+
+def introduction(plan: Plan) -> list[str]:
+    """The first lines of a run: what is started, and how to look at its messages."""
+    lines = overview(plan)
+    if plan.public_url:
+        url = "" if plan.public_url == Plan.public_url else f" --url '{plan.public_url}'"
+        lines.append(f'to see its messages: fwk spy{url}; for LCM programs in Java: CLASSPATH="$(fwk spy --jar)"')
+    return lines
+
+
+def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
+    """The closing lines of a run, the application's own first."""
+    status = outcome.status
+    rate = outcome.ticks / outcome.wall_s if outcome.wall_s else 0.0
+    pace = outcome.logical_s / outcome.wall_s if outcome.wall_s else 0.0
+    lines = [
+        *Scoreboard(plan.scoreboard).summary(outcome.newest.get),
+        f"{plan.name}: {outcome.reason}",
+        f"{outcome.ticks} ticks, {outcome.logical_s:.2f} s of logical time in {outcome.wall_s:.2f} s: "
+        f"{rate:.1f} ticks/s, {pace:.2f} times real time",
+    ]
+    slowest = figures.slowest(figures.loop_times(status), _SLOWEST)
+    if slowest:
+        named = ", ".join(f"{time.name} {time.mean_ms:.2f} ms (worst {time.worst_ms:.1f})" for time in slowest)
+        lines += [f"slowest: {named}", f"messages and ticks: {losses(status)}"]
+    lines += [
+        f"{component.name} {component.state}: {component.reason or 'no reason given'}"
+        for component in figures.components(status)
+        if component.state not in figures.WELL
+    ]
+    if options.record:
+        lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
+        lines.append(f"recording: {options.record}{lacks}")
+    return [*lines, f"run directory: {options.run_dir}"]

@@ -1,0 +1,335 @@
+"""One component with its aspects, taken through its iterations: the same for host process, test bench and replay."""
+
+import hashlib
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from fwk.clock import Clock, TimeSource
+from fwk.component.blackboard import Blackboard
+from fwk.component.channels import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach, WritesPlain
+from fwk.component.commands import ANSWERS, Commands, Queue, Source
+from fwk.component.component import DEFAULT_STAGES, Component
+from fwk.component.config import LOG_LEVEL, Config
+from fwk.component.declaration import Declaration
+from fwk.component.images import Frames, Image, ImagesEach, Ring, VisionMaster
+from fwk.component.log import LEVELS, Logger
+from fwk.component.log_lines import LogLines
+from fwk.component.main_loop import MainLoop
+from fwk.component.plugins import PluginControl
+from fwk.component.port import Port
+from fwk.component.rate_limit import RateLimit
+from fwk.component.requests import Calls, CallsEach, Serves
+from fwk.component.sending import Outbox, Sends, SendsEach
+from fwk.component.services_each import CommandsEach, ServesEach
+from fwk.lcm import envelope
+from fwk.lcm.messages import Message, has_header
+from lcmtypes.core import done_t, log_t
+
+AWAY_TICKS = 16
+"""Who took no part for longer is like a newcomer, because writers may no longer have everything."""
+MISSED_FRAMES = "missed_frames"
+"""Under this name a done says which frames its components did not get."""
+NOTHING: list[bytes] = []
+"""No message came. Readers do not change what they are given."""
+
+
+def is_new(tick: int, answered: int) -> bool:
+    """Whether a process that is told a tick is new in the run, or was away for long: it wants the newest alone.
+
+    `answered` is the newest tick that it has answered; 0: none.
+    """
+    return tick > (answered + AWAY_TICKS if answered else 1)
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What a component gets from the run it is part of."""
+
+    seed: int
+    period_us: int
+    sink: Callable[[log_t], None]
+    rings: Mapping[str, Ring]
+    """Shared-memory rings by channel."""
+    lines_per_s: int = 0
+    """That each component may log; 0: as many as it likes."""
+    stages: Sequence[str] = DEFAULT_STAGES
+    components: Sequence[str] = ()
+    """Names of all components of the run; none: there are no others."""
+    frames: Mapping[str, Frames] = field(default_factory=dict)
+    """In a replay: channels whose frames are looked at elsewhere than in their ring."""
+
+
+class Runner:
+    """Builds a component and runs it, iteration by iteration.
+
+    `channels` says which channels each port stands for: attribute to channel names.
+    """
+
+    def __init__(
+        self,
+        declaration: Declaration,
+        name: str,
+        config: Config | None,
+        channels: Mapping[str, Sequence[str]],
+        surroundings: Surroundings,
+        incarnation: int = 1,
+    ) -> None:
+        self.name = name
+        self.readers: dict[str, Reads[Any]] = {}
+        self.writers: dict[str, Writes[Any]] = {}
+        self.images: dict[str, Image] = {}
+        self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
+        self.clock = Clock(surroundings.period_us)
+        self.time_source = TimeSource()
+        self.main_loop = MainLoop(name, surroundings.stages)
+        self.has_main_loop = "main_loop" in declaration.aspects.values()
+        """Whether the component may take over the main loop."""
+        self.plugins = PluginControl(name, surroundings.components)
+        self.has_plugins = "plugins" in declaration.aspects.values()
+        """Whether the component may start and stop others."""
+        self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
+        self._config = config or declaration.config()
+        limit = RateLimit(surroundings.lines_per_s)
+        self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
+        self.component: Component = declaration.component()
+        self._rings, self._frames = surroundings.rings, surroundings.frames
+        self._away_after = 1 if incarnation == 1 else 0  # tick
+        self._histories: dict[str, int] = {}
+        for port in declaration.ports:
+            if port.history:
+                longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
+                self._histories |= longest
+        collects = declaration.rate_hz is not None  # a continuous one's process takes in what comes meanwhile
+        self._away_ticks = sys.maxsize if collects else AWAY_TICKS
+        self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
+        self.component.name = name
+        self._provided = [kind() for kind in declaration.asks.values()]
+        for attribute, made in zip(declaration.asks, self._provided, strict=True):
+            setattr(self.component, attribute, made)
+        setattr(self.component, "config", self._config)  # noqa: B010 - not every component declares one
+        for port in declaration.ports:
+            self._put(port.attribute, self._port(port, channels[port.attribute]))
+        self.blackboard = Blackboard(name, self.stamp, self.readers, self.writers)
+        self.has_blackboard = "blackboard" in declaration.aspects.values()
+        """Whether the component may open channels while it runs."""
+        self._begin = [port.begin for port in self._command_ports]  # what has to be done before an iteration
+        self._begin += [aspect.begin for aspect in self._provided]
+        if self.has_blackboard:
+            self._begin.append(self.blackboard.begin)
+        for attribute, aspect in declaration.aspects.items():
+            self._put(attribute, self._aspect(aspect, surroundings.seed))
+
+    def init(self) -> None:
+        """Prepares the component, and before it the aspects that other components provide it with."""
+        for aspect in self._provided:
+            aspect.init()
+        self.component.init()
+        early = [
+            (writer, envelope.decode(writer.message_type, data, writer.channel))
+            for writer in self.writers.values()
+            for data in writer.written
+        ]
+        if early:
+            for writer in self.writers.values():
+                writer.drop()
+            written = _Early(early)
+            self._begin.insert(len(self._command_ports), written.begin)
+            self._command_ports.append(written)
+
+    def configure(self, settings: Mapping[str, Any]) -> None:
+        """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
+        changed = self._config.take_over(type(self._config).model_validate(settings))
+        self.log.level = self._log_level
+        if changed - {LOG_LEVEL}:
+            self.component.changed_settings = changed - {LOG_LEVEL}
+            self.component.config_changed()
+
+    def is_new(self, tick: int) -> bool:
+        """Whether the iteration of that tick is that of a newcomer, or of one that was away for long."""
+        return tick > self._away_after
+
+    def iterate(
+        self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
+    ) -> list[tuple[str, bytes]]:
+        """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
+
+        Who comes new into a run that goes on, or was away for long, sees of each channel the newest alone.
+
+        `fresh` holds for the channels of its readers what became visible since the last iteration. Whatever the
+        component raises comes out, and then nothing was written.
+        """
+        clock, stamp = self.clock, self.stamp
+        clock.tick = stamp.tick = tick
+        clock.now_us = stamp.time_us = time_us
+        clock.stage, stamp.stage = stage_name, stage
+        if tick > self._away_after:
+            fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
+        self._away_after = tick + self._away_ticks
+        for reader in self._refreshed:
+            reader.freeze(NOTHING)
+        self._refreshed = [self.readers[channel] for channel in fresh]
+        for reader, arrived in zip(self._refreshed, fresh.values(), strict=True):
+            reader.freeze(arrived)
+        self.time_source.said_us = -1
+        try:
+            for begin in self._begin:
+                begin()
+            self.component.loop()
+        except BaseException:
+            for writer in self.writers.values():
+                writer.drop()
+            raise
+        return self._written()
+
+    def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
+        """After the last iteration: lets the component finalize; returns what it wrote, stamped with that tick."""
+        self.clock.tick = self.stamp.tick = tick
+        self.clock.now_us = self.stamp.time_us = time_us
+        self.stamp.stage = done_t.FINAL
+        self.component.finalize()
+        for port in self._command_ports:
+            port.end()
+        return self._written()
+
+    def _written(self) -> list[tuple[str, bytes]]:
+        written = []
+        for channel, writer in self.writers.items():
+            if writer.pending:
+                written += [(channel, data) for data in writer.take()]
+        return written
+
+    @property
+    def _log_level(self) -> int:
+        return LEVELS[getattr(self._config, LOG_LEVEL)]
+
+    def wishes(self) -> dict[str, Any]:
+        """What the iteration asked of the main loop and the blackboard, by aspect, and which frames it missed."""
+        order = self.main_loop.take()
+        asked = {
+            "plugins": self.plugins.take(),
+            "blackboard": self.blackboard.take(),
+            MISSED_FRAMES: self.missed_frames(),
+        }
+        made: dict[str, Any] = {aspect: wishes for aspect, wishes in asked.items() if wishes}
+        return made if order is None else {**made, "main_loop": order}
+
+    def missed_frames(self) -> dict[str, list[int]]:
+        """Frames that were overwritten before the component read them, by channel; mostly nothing."""
+        return {channel: numbers for channel, image in self.images.items() if (numbers := image.missed())}
+
+    def _put(self, attribute: str, value: Any) -> None:
+        """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
+        outer, _, own = attribute.rpartition(".")
+        setattr(getattr(self.component, outer) if outer else self.component, own, value)
+
+    def _aspect(self, aspect: str, seed: int) -> Any:
+        if aspect == "rng":
+            return np.random.default_rng(seed_of(seed, self.name))
+        return {
+            "clock": self.clock,
+            "log": self.log,
+            "time_source": self.time_source,
+            "main_loop": self.main_loop,
+            "plugins": self.plugins,
+            "blackboard": self.blackboard,
+        }[aspect]
+
+    def _port(self, port: Port, channels: Sequence[str]) -> Any:
+        if port.owns:
+            queues = [self._queue(port, *row) for row in _rows(channels)]
+            if not port.each:
+                return queues[0]
+            return (ServesEach if port.kind == "serves_each" else CommandsEach)(
+                _by_namespace({queue.name: queue for queue in queues})
+            )
+        if port.sends:
+            pairs = list(zip(channels[::2], channels[1::2], strict=True))
+            made_each = {sent: self._outbox(port, sent, answers) for sent, answers in pairs}
+            if port.each:
+                each = {channel.partition("@")[0]: outbox for channel, outbox in made_each.items()}
+                return (CallsEach if port.kind == "calls_each" else SendsEach)(_by_namespace(each))
+            return made_each[channels[0]]
+        if port.writes:
+            kind: type[Writes[Any]] = Writes if has_header(port.message_type) else WritesPlain
+            made = {name: kind(name, port.message_type, self.stamp) for name in channels}
+            self.writers.update(made)
+            if port.kind == "vision_master":
+                return VisionMaster(made[channels[0]], self._rings[channels[0]])
+            return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
+        read = {channel: self._reader(channel, port.message_type) for channel in channels}
+        if port.kind == "lines":
+            return LogLines(read[channels[0]], self.name)
+        if port.images:
+            looked_at = {channel: self._image(channel, read[channel]) for channel in channels}
+            return ImagesEach(_by_namespace(looked_at)) if port.each else looked_at[channels[0]]
+        return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+
+    def _image(self, channel: str, announcement: Reads[Any]) -> Image:
+        """The one view of a camera, whichever ports stand for it."""
+        if channel not in self.images:
+            self.images[channel] = Image(announcement, self._frames.get(channel) or self._rings[channel], self.log)
+        return self.images[channel]
+
+    def _reader(self, channel: str, message_type: type[Message]) -> Reads[Any]:
+        """The one reader of a channel, whichever ports stand for it."""
+        if channel not in self.readers:
+            length = self._histories.get(channel, 0)
+            made = ReadsHistory(channel, message_type, length) if length else Reads(channel, message_type)
+            self.readers[channel] = made
+        return self.readers[channel]
+
+    def _queue(self, port: Port, answers: str, *sources: str) -> Queue[Any]:
+        assert port.reply_type
+        made: dict[str, Source[Any]] = {name: Source(name, port.message_type) for name in sources}
+        self.readers.update(made)
+        self.writers[answers] = Writes(answers, port.reply_type, self.stamp)
+        kind: type[Queue[Any]] = Serves if port.kind.startswith("serves") else Commands
+        queue = kind(answers.partition("@")[0], self.name, self.clock, made, self.writers[answers])
+        self._command_ports.append(queue)
+        return queue
+
+    def _outbox(self, port: Port, sent: str, answers: str) -> Outbox[Any, Any]:
+        assert port.reply_type
+        self.writers[sent] = Writes(sent, port.message_type, self.stamp)
+        self.readers[answers] = Reads(answers, port.reply_type)
+        kind: type[Outbox[Any, Any]] = Calls if port.kind in ("calls", "calls_each") else Sends
+        outbox = kind(sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers])
+        self._command_ports.append(outbox)
+        return outbox
+
+
+class _Early:
+    """What `init` wrote: it goes out with the first iteration, stamped as what that writes, and before it."""
+
+    def __init__(self, written: Sequence[tuple[Writes[Any], Any]]) -> None:
+        self._written = written
+
+    def begin(self) -> None:
+        """The first iteration begins; later ones have nothing more to do here."""
+        for writer, value in self._written:
+            own, writer.value = writer.value, value
+            writer.write()
+            writer.value = own
+        self._written = ()
+
+    def end(self) -> None:
+        """The component was stopped; if there was no iteration, nobody has seen any of it."""
+
+
+def _rows(channels: Sequence[str]) -> list[Sequence[str]]:
+    """Channels of an owner, a row for each name: that of the answers, and those of its senders."""
+    begins = [place for place, name in enumerate(channels) if name.endswith(f"@{ANSWERS}")]
+    return [channels[begin:end] for begin, end in zip(begins, [*begins[1:], len(channels)], strict=True)]
+
+
+def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:
+    return {channel.rpartition("/")[0]: port for channel, port in channels.items()}
+
+
+def seed_of(seed: int, name: str) -> int:
+    """The seed of a component's random numbers: the same wherever and beside whatever it runs."""
+    return int.from_bytes(hashlib.sha256(f"{seed}/{name}".encode()).digest()[:8], "big")

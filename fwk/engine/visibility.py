@@ -1,0 +1,127 @@
+"""The ledger of marks: which sequence number of each channel is visible, and what a stage has to be told of it."""
+
+from bisect import bisect_left, insort
+from dataclasses import dataclass
+
+from fwk.model.channel_table import Instances
+from fwk.model.plan import Plan
+
+
+@dataclass(frozen=True)
+class Void:
+    """What a writer that died had sent above the mark is void."""
+
+    channel: int
+    above_sequence: int
+    up_to_tick: int
+    before_incarnation: int
+    since: int
+
+
+class Ledger:
+    """Marks of all channels.
+
+    `step` counts stages begun. What dones publish while a stage runs becomes visible when the next one begins, and not
+    before: a tick that is repeated says the same as the first time. Who takes part is told what changed since the step
+    of the last tick that it answered.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.step = 0
+        channels = len(plan.channels) + plan.spare_channels
+        self.marks = [0] * channels
+        """Highest visible sequence number of each channel."""
+        self.voids: list[Void] = []
+        """In the order in which they came, of a long run with many deaths a long list."""
+        self._latest = [0] * channels  # published, visible from the next step on
+        self._dirty: list[int] = []
+        self._changed = [-1] * channels  # step at which the mark moved last; -1: never
+        self._interest: list[list[int]] = []
+        self._hosts: list[set[int]] = []  # that take part in each stage
+        for stage in range(len(plan.stages)):
+            hosts = {component.host for component in plan.components if stage in component.stages}
+            self._hosts.append(hosts)
+            # All components of these hosts, not only those of the stage: what a host was told last is one step for all.
+            members = {component.index for component in plan.components if component.host in hosts}
+            self._interest.append([channel.index for channel in plan.channels if members & set(channel.readers)])
+        self._read: list[list[int]] = [
+            [channel.index for channel in plan.channels if set(host.components) & set(channel.readers)]
+            for host in plan.hosts
+        ]
+        self._written: list[list[int]] = [
+            [channel.index for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
+        ]
+        self._declared_interest = [list(channels) for channels in self._interest]
+        self._declared_read = [list(channels) for channels in self._read]
+
+    def begin(self) -> int:
+        """Begins a stage; everything published so far is visible to it. Returns its step."""
+        self.step += 1
+        for channel in self._dirty:
+            self.marks[channel] = self._latest[channel]
+            self._changed[channel] = self.step
+        self._dirty = []
+        return self.step
+
+    def publish(self, channel: int, sequence: int) -> bool:
+        """A writer's done makes its messages visible to the stages that begin from now on; false: they are already."""
+        if sequence <= self._latest[channel]:
+            return False
+        self._latest[channel] = sequence
+        self._dirty.append(channel)
+        return True
+
+    def latest(self, channel: int) -> int:
+        """Number of the newest message of a channel that a done has told."""
+        return self._latest[channel]
+
+    def news(self, stage: int, since: int) -> tuple[list[int], list[int]]:
+        """Channels read in a stage whose marks moved after step `since`, and the marks."""
+        changed, marks = self._changed, self.marks
+        channels = [channel for channel in self._interest[stage] if changed[channel] > since]
+        return channels, [marks[channel] for channel in channels]
+
+    def news_of(self, host: int, since: int) -> tuple[list[int], list[int]]:
+        """Channels that the components of a host read whose marks moved after step `since`, and the marks."""
+        channels = [channel for channel in self._read[host] if self._changed[channel] > since]
+        return channels, [self.marks[channel] for channel in channels]
+
+    def opened(self, instances: Instances) -> None:
+        """Who reads and writes what was opened at run time; each stage is told of it from the next step on."""
+        for lists, before in ((self._interest, self._declared_interest), (self._read, self._declared_read)):
+            for place, channels in enumerate(before):
+                lists[place] = list(channels)
+        for instance in instances.matching("*"):
+            for component in dict.fromkeys(component for component, _ in instance.readers):
+                self._opened_by(instance.index, component)
+            if instance.writer:
+                host = self.plan.components[instance.writer[0]].host
+                for channels in self._written:
+                    if instance.index in channels:
+                        channels.remove(instance.index)
+                self._written[host].append(instance.index)
+
+    def _opened_by(self, channel: int, component: int) -> None:
+        host = self.plan.components[component].host
+        concerned = [self._read[host]]
+        concerned += [self._interest[stage] for stage, hosts in enumerate(self._hosts) if host in hosts]
+        for channels in concerned:
+            if channel not in channels:
+                insort(channels, channel)
+        if self.marks[channel]:
+            self._changed[channel] = self.step + 1  # whoever reads it already has it; who is new has not
+
+    def void(self, host: int, incarnation: int, tick: int) -> None:
+        """A host died in that tick, the newest; its next start is `incarnation`."""
+        for channel in self._written[host]:
+            self.voids.append(Void(channel, self._latest[channel], tick, incarnation, self.step))
+
+    def voids_since(self, since: int) -> list[Void]:
+        """Voids that somebody who was told at step `since` last may not know."""
+        return self.voids[bisect_left(self.voids, since, key=lambda void: void.since) :]
+
+    def sequences(self, host: int) -> dict[str, int]:
+        """Where a restarted host's channels go on."""
+        declared = [channel for channel in self._written[host] if channel < len(self.plan.channels)]
+        return {self.plan.channels[channel].name: self._latest[channel] for channel in declared}

@@ -1,0 +1,48 @@
+"""Takes envelopes apart for those outside a run: a stamp of our own, then the bytes of the device's type alone."""
+
+import struct
+from collections.abc import Set
+from functools import cache
+
+from fwk.gateway.gateway import Sink
+from fwk.lcm import envelope, messages
+from fwk.lcm.envelope import STAMP
+from fwk.lcm.messages import Header
+from fwk.model.plan import Plan
+from lcmtypes.core import stamp_t
+
+_FINGERPRINT = messages.fingerprint(stamp_t)
+
+
+class Apart:
+    """A sink that gets, in place of each envelope on one of these channels, a stamp and the plain message.
+
+    Those of `opened` come and go.
+    """
+
+    def __init__(self, sink: Sink, channels: Set[str], opened: Set[str] = frozenset()) -> None:
+        self._sink = sink
+        self._channels = channels
+        self._opened = opened
+        self.tick = sink.tick
+        self.close = sink.close
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Passes a message on."""
+        if channel in self._channels or channel in self._opened:
+            end = Header.of(data).end
+            self._sink.message(STAMP, _beginning(channel) + data[8:end], time_us)
+            data = data[end:]
+        self._sink.message(channel, data, time_us)
+
+
+def plain_channels(plan: Plan) -> frozenset[str]:
+    """The channels of a plan whose types have no header of ours."""
+    return frozenset(channel.name for channel in plan.channels if envelope.is_plain(channel.type_name))
+
+
+@cache
+def _beginning(channel: str) -> bytes:
+    """Of an encoded `stamp_t`: everything before the members of its header."""
+    name = channel.encode() + b"\0"
+    return _FINGERPRINT + struct.pack(">I", len(name)) + name

@@ -1,0 +1,57 @@
+"""What a host tells of its components: their states and figures, and what was refused on their channels."""
+
+from dataclasses import dataclass, field
+
+from fwk.clock import monotonic_us
+from fwk.model.histogram import Histogram
+from lcmtypes.core import component_state_t, histogram_t
+
+TEXT_CHARACTERS = 1000  # of an exception in a reason; all of it is in the log
+
+
+@dataclass
+class Figures:
+    """State and figures of one component."""
+
+    name: str
+    state: str = "loaded"
+    reason: str = ""
+    times: Histogram = field(default_factory=Histogram)
+    """Of its iterations."""
+
+    def __post_init__(self) -> None:
+        self._since_us = monotonic_us()
+
+    def ran(self, duration_us: int) -> None:
+        """Counts an iteration."""
+        self.times.add(duration_us)
+
+    def message(self) -> component_state_t:
+        """As it is reported."""
+        made = component_state_t()
+        made.name, made.state, made.reason = self.name, self.state, self.reason
+        made.iterations, made.busy_us, made.worst_us = self.times.count, self.times.total_us, self.times.worst_us
+        made.awake_us = monotonic_us() - self._since_us
+        return made
+
+    def histogram(self) -> histogram_t:
+        """How long its iterations took, as it is reported."""
+        made = histogram_t()
+        made.n, made.bucket, made.count = (
+            len(self.times.counts),
+            list(self.times.counts),
+            list(self.times.counts.values()),
+        )
+        return made
+
+
+def told(error: BaseException) -> str:
+    """An exception in a line, whatever its text is and whether it can be made at all."""
+    try:
+        text = str(error)
+    except Exception as worse:
+        text = f"its text cannot be made ({type(worse).__name__})"
+    if len(text) > TEXT_CHARACTERS:
+        text = f"{text[:TEXT_CHARACTERS]} ... ({len(text) - TEXT_CHARACTERS} characters more)"
+    plain = text.encode(errors="backslashreplace").decode().replace("\0", "\\0")  # what can travel
+    return f"{type(error).__name__}: {plain}"

@@ -1,0 +1,1 @@
+"""The composition root: puts the processes of a run together."""

@@ -1,0 +1,67 @@
+"""The gateway process: gateway, recorder, log targets and tool servers put together."""
+
+import signal
+import socket
+from collections.abc import Mapping
+
+from fwk.bus.public import PublicBus
+from fwk.component.images import Ring
+from fwk.gateway.channel_server import Board
+from fwk.gateway.command_bridge import Calls
+from fwk.gateway.gateway import Gateway
+from fwk.gateway.unwrap import Apart, plain_channels
+from fwk.lcm.event_log import LogError
+from fwk.logs import targets
+from fwk.model.plan import Plan
+from fwk.recording import sinks
+from fwk.recording.frame_recorder import FrameRecorder
+from fwk.supervisor.options import RunOptions
+
+
+def run_gateway(
+    plan: Plan,
+    run: int,
+    options: RunOptions,
+    control: socket.socket,
+    display: socket.socket,
+    rings: Mapping[str, Ring],
+) -> int:
+    """Serves until the supervisor closes `control`; returns the exit code."""
+    signal.signal(
+        signal.SIGTERM, signal.SIG_IGN
+    )  # ends when the supervisor's end of `control` is closed, also by its death
+    control.setblocking(False)
+    public = PublicBus(plan.public_url) if plan.public_url else None
+    gateway = Gateway(plan, run, control, public)
+    calls = Calls(plan, gateway.take_in, gateway.clock)
+    board = Board(plan, gateway.instances, calls.call)
+    gateway.watch(board.fileno(), board.handle)
+    plain = plain_channels(plan)
+    ours = plain - set(plan.outside)  # what came from the public bus stands there already
+    gateway.sinks += [
+        *(
+            [targets.above(Apart(sinks.Mirror(plan, public), ours, gateway.opened_plain), plan.log.bus)]
+            if public
+            else []
+        ),
+        *targets.files(plan.log, options.run_dir, gateway.log.error),
+        *targets.syslog(plan.log, plan.name, gateway.log.error),
+        board,
+        calls,
+        *targets.components(plan, gateway.take_in, gateway.log),
+        targets.above(sinks.Display(plan, display), plan.log.console),
+        sinks.Newest(plan, control, lambda: gateway.lost),
+    ]
+    if options.record:
+        try:
+            recorded = {channel: rings[channel] for channel in plan.record.frames}
+            recorder = (
+                FrameRecorder(plan, options.record, recorded, gateway.log.error)
+                if recorded
+                else sinks.Recorder(plan, options.record, gateway.log.error)
+            )
+            gateway.sinks.insert(0, targets.above(Apart(recorder, plain, gateway.opened_plain), plan.log.recording))
+        except LogError as error:
+            gateway.log.error(f"{error}; the run goes on without a recording")
+    gateway.serve()
+    return 0

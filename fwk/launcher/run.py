@@ -1,0 +1,97 @@
+"""Runs a plan in the foreground: composes supervisor, zygote, gateway and display."""
+
+import secrets
+
+from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.clock import US_PER_S
+from fwk.component.images import SLOTS, Ring
+from fwk.host.debugger import DebuggerMissing, DebugRequest, check
+from fwk.host.process import raise_file_limit
+from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
+from fwk.launcher.helper_processes import HelperProcesses
+from fwk.lcm import envelope, messages
+from fwk.lcm.messages import MessageError
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+from fwk.supervisor.loop import WINDOW
+from fwk.supervisor.options import Outcome, RunOptions
+from fwk.supervisor.processes.zygote import Zygote
+from fwk.supervisor.supervisor import Supervisor
+
+__all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "ProfilerMissing", "RunOptions", "run"]
+
+
+def run(plan: Plan, options: RunOptions) -> Outcome:
+    """Runs a plan in the foreground until it is done, interrupted or broken.
+
+    Raises:
+        PortsInUse: another run on this machine has the ports.
+        DebuggerMissing: debugpy is asked for and not installed.
+        ProfilerMissing: a profile is asked for and pyinstrument is not installed.
+    """
+    ports = Ports.of(plan)
+    debug = _debug_request(plan, options)
+    profile = _profile_request(plan, options)
+    lock = PortLock(ports, plan.file or plan.name, plan.public_url)
+    raise_file_limit()
+    number = secrets.randbits(62)
+    rings = _rings(plan, options)
+    zygote = Zygote(plan, number, rings, debug, profile)
+    children = HelperProcesses(plan, number, options, rings)
+    supervisor = Supervisor(plan, options, number, zygote, rings, debug)
+    reason, failed = supervisor.work(children)
+    status, failures = supervisor.stop()
+    if failures and not failed:
+        reason, failed = f"failed: {'; '.join(failures)}", True
+    newest = _decoded(plan, children.stop())
+    if children.gave_up and not failed:
+        reason, failed = f"broken: {children.gave_up}", True
+    zygote.close()
+    lock.release()
+    return Outcome(
+        1 if failed else 0,
+        supervisor.loop.tick,
+        supervisor.pace.time_us / US_PER_S,
+        supervisor.wall_s,
+        reason,
+        status,
+        newest,
+        children.lost,
+    )
+
+
+def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:
+    """A ring for each camera; where frames are recorded, as large as the window that the recorder may be behind."""
+    recorded = plan.record.frames if options.record else ()
+    cameras = [channel.name for channel in plan.channels if channel.images]
+    large = SLOTS + (SLOTS - 1) * WINDOW
+    return {name: Ring.create(name, large if name in recorded else SLOTS) for name in cameras}
+
+
+def _profile_request(plan: Plan, options: RunOptions) -> ProfileRequest | None:
+    for component in plan.components:
+        if component.name == options.profile:
+            check_profiler()
+            return ProfileRequest(component, options.run_dir)
+    return None
+
+
+def _debug_request(plan: Plan, options: RunOptions) -> DebugRequest | None:
+    for component in plan.components:
+        if component.name == options.debug:
+            request = DebugRequest(component.host, component, options.debugpy_port)
+            check(request)
+            return request
+    return None
+
+
+def _decoded(plan: Plan, newest: dict[str, bytes]) -> dict[str, object]:
+    """Decodes the newest messages of the plan's channels."""
+    types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
+    made: dict[str, object] = {}
+    for channel, data in newest.items():
+        try:
+            made[channel] = envelope.decode(types[channel], data, channel)
+        except MessageError:
+            continue
+    return made

@@ -1,0 +1,224 @@
+"""LCM event logs: the format of lcm-logger and lcm-logplayer, written and read with damaged files in mind."""
+
+import os
+import stat
+import struct
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple, Self
+
+from fwk.lcm.disk import has_room
+
+_HEAD = struct.Struct(">IqqII")  # sync word, event number, time in µs, length of the channel, length of the data
+SYNC = (0xEDA1DA01).to_bytes(4, "big")
+_CHANNEL_MAX = 999  # what LCM's own reader accepts; on the wire it is 63
+_DATA_MAX = 256 << 20  # LCM's largest message
+_WINDOW_BYTES = 1 << 20
+
+
+class LogError(Exception):
+    """A log that cannot be opened or holds nothing usable; says which file and why."""
+
+
+class Event(NamedTuple):
+    """One message of a log."""
+
+    number: int
+    """Counted by the writer from 0; a gap says that the writer dropped events."""
+    time_us: int
+    """Logical time in logs of this framework, time of receipt in those of lcm-logger."""
+    channel: str
+    data: bytes
+    in_envelope: bool = False
+    """Whether `data` is the message of a type without our header, joined with its stamp."""
+
+
+class LogWriter:
+    """Writes a log that lcm-logplayer plays; an existing file is replaced.
+
+    When the disk is full the events at hand are dropped and counted in `dropped`, `report` is told so once, and again
+    when there is room and writing goes on: a recording never stops what it records. Whatever kills the writer, the file
+    is readable up to its last `flush`.
+
+    Raises:
+        LogError: the file cannot be created.
+    """
+
+    def __init__(self, path: Path, report: Callable[[str], None], buffer_bytes: int = 256 << 10) -> None:
+        self.path = path
+        self.dropped = 0
+        self.events = 0
+        """Events appended, with those dropped."""
+        self._report = report
+        self._full = False
+        self._buffer = bytearray()
+        self._buffered = 0
+        self._buffer_bytes = buffer_bytes
+        self._good_bytes = 0  # length of the file up to its last whole event
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if path.is_fifo():  # opening it would stand still until somebody reads
+                raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; take a file")
+            self._file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
+        except OSError as error:
+            raise LogError(f"{path}: cannot write a log there: {error.strerror}") from error
+
+    def append(self, channel: str, data: bytes, time_us: int) -> None:
+        """Adds an event; it reaches the file when the buffer is full or at the next `flush`.
+
+        Raises:
+            ValueError: the channel's name is empty or too long, or the message larger than any LCM message.
+        """
+        name = channel.encode()
+        if not 1 <= len(name) <= _CHANNEL_MAX or len(data) > _DATA_MAX:
+            raise ValueError(f"{self.path}: no LCM event: channel {channel[:80]!r}, {len(data)} bytes")
+        self._buffer += _HEAD.pack(0xEDA1DA01, self.events, time_us, len(name), len(data))
+        self._buffer += name
+        self._buffer += data
+        self._buffered += 1
+        self.events += 1
+        if len(self._buffer) >= self._buffer_bytes:
+            self.flush()
+
+    def flush(self) -> None:
+        """Hands everything appended so far to the operating system."""
+        if not self._buffered:
+            return
+        data, events = self._buffer, self._buffered
+        self._buffer, self._buffered = bytearray(), 0  # first: what is reported may be recorded itself
+        if self._full and not has_room(self.path):
+            self.dropped += events
+        else:
+            self._write(data, events)
+
+    def close(self) -> None:
+        """Writes the rest and closes the file; more than once does no harm."""
+        if not self._file.closed:
+            self.flush()
+            self._file.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _write(self, data: bytearray, events: int) -> None:
+        rest = memoryview(data)
+        try:
+            while rest:
+                rest = rest[self._file.write(rest) :]
+        except OSError as error:
+            self._drop(error, events)
+            return
+        self._good_bytes += len(data)
+        if self._full:
+            self._full = False
+            self._report(f"{self.path}: there is room again; {self.dropped} messages are missing in the recording")
+
+    def _drop(self, error: OSError, events: int) -> None:
+        self.dropped += events
+        try:  # take back what was written of a torn event, so that later events follow whole ones
+            self._file.truncate(self._good_bytes)
+            self._file.seek(self._good_bytes)
+        except OSError:
+            self._good_bytes = self._file.tell()  # readers find the next whole event
+        if not self._full:
+            self._full = True
+            self._report(
+                f"{self.path}: cannot record: {error.strerror}; the run goes on, and so does the recording when there "
+                "is room again; until then messages are missing in it"
+            )
+
+
+class LogReader:
+    """Iterates over the events of any LCM log, as often as wanted.
+
+    A damaged place costs the events that it touches: what follows an event must be another one or the end of the file,
+    otherwise its length cannot be trusted. Reading goes on at the next whole event, and `skipped_bytes` counts what was
+    passed over by the newest iteration.
+
+    Raises:
+        LogError: the file is missing or no ordinary file.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.skipped_bytes = 0
+        try:
+            if not stat.S_ISREG(os.stat(path).st_mode):
+                raise LogError(f"{path}: not an ordinary file")
+            with open(path, "rb"):
+                pass
+        except OSError as error:
+            raise LogError(f"{path}: cannot read: {error.strerror}") from error
+
+    def __iter__(self) -> Iterator[Event]:
+        self.skipped_bytes = 0
+        with open(self.path, "rb") as file:
+            window = _Window(file.fileno())
+            position = 0
+            while position < window.file_bytes:
+                found = self._event(window, position)
+                if found:
+                    event, position = found
+                    yield event
+                else:
+                    following = window.find_sync(position + 1)
+                    self.skipped_bytes += following - position
+                    position = following
+
+    def _event(self, window: "_Window", position: int) -> tuple[Event, int] | None:
+        head = window.read(position, _HEAD.size)
+        if len(head) < _HEAD.size or not head.startswith(SYNC):
+            return None
+        _, number, time_us, channel_bytes, data_bytes = _HEAD.unpack(head)
+        body = position + _HEAD.size
+        end = body + channel_bytes + data_bytes
+        if not 1 <= channel_bytes <= _CHANNEL_MAX or data_bytes > _DATA_MAX or end > window.file_bytes:
+            return None
+        if not SYNC.startswith(window.peek(end)):
+            return None
+        content = window.read(body, channel_bytes + data_bytes)
+        if len(content) < channel_bytes + data_bytes:  # the file shrank while it was read
+            return None
+        channel = content[:channel_bytes].decode("utf-8", "backslashreplace")
+        return Event(number, time_us, channel, content[channel_bytes:]), end
+
+
+class _Window:
+    """Reads a file through a buffer that moves forward; looking far ahead does not move it."""
+
+    def __init__(self, descriptor: int) -> None:
+        self.file_bytes = os.fstat(descriptor).st_size
+        self._descriptor = descriptor
+        self._start = 0
+        self._bytes = b""
+
+    def read(self, offset: int, size: int) -> bytes:
+        begin = offset - self._start
+        if begin < 0 or begin + size > len(self._bytes):
+            self._start, begin = offset, 0
+            self._bytes = os.pread(self._descriptor, max(size, _WINDOW_BYTES), offset)
+        return self._bytes[begin : begin + size]
+
+    def peek(self, offset: int) -> bytes:
+        """The next four bytes, fewer at the end of the file."""
+        begin = offset - self._start
+        if begin + 4 <= len(self._bytes):
+            return self._bytes[begin : begin + 4]
+        return os.pread(self._descriptor, 4, offset)
+
+    def find_sync(self, offset: int) -> int:
+        """Where the next sync word begins, or the end of the file."""
+        while offset < self.file_bytes:
+            if len(self.read(offset, 4)) < 4:
+                break
+            found = self._bytes.find(SYNC, offset - self._start)
+            if found >= 0:
+                return self._start + found
+            offset = self._start + len(self._bytes) - 3
+        return self.file_bytes

@@ -1,0 +1,232 @@
+"""What the framework knows of LCM types: fingerprints, headers in raw bytes, counts, and readable errors."""
+
+import struct
+from collections.abc import Callable, Sized
+from importlib import import_module
+from typing import Any, ClassVar, Protocol, Self, runtime_checkable
+
+from fwk.lcm import codec
+from lcmtypes.core import header_t
+
+
+class Message(Protocol):
+    """Any class that lcm-gen wrote."""
+
+    __slots__: ClassVar[list[str]]
+    __typenames__: ClassVar[list[str]]
+    __dimensions__: ClassVar[list[list[int | str] | None]]
+
+    def encode(self) -> bytes: ...
+    @staticmethod
+    def decode(data: bytes) -> Any: ...
+    @staticmethod
+    def _get_packed_fingerprint() -> bytes: ...
+
+
+@runtime_checkable
+class Stamped(Protocol):
+    """A message of an interface: its first member is the header."""
+
+    header: header_t
+
+
+class MessageError(Exception):
+    """A message that cannot be encoded or decoded; says which channel, type and field."""
+
+
+_NUMBERS = struct.Struct(">qqqhI")  # tick, sequence, time_us, stage, length of the writer's name with its zero byte
+_TICK_AND_SEQUENCE: Callable[[bytes, int], tuple[int, int]] = struct.Struct(">qq").unpack_from
+_FINGERPRINT_SIZE = 8
+HEADER_SIZE = _FINGERPRINT_SIZE + _NUMBERS.size
+
+
+class Header:
+    """A message's header, read from the raw bytes without decoding the rest."""
+
+    __slots__ = ("end", "sequence", "stage", "tick", "time_us", "writer")
+
+    def __init__(self, tick: int, sequence: int, time_us: int, stage: int, writer: str, end: int) -> None:
+        self.tick = tick
+        self.sequence = sequence
+        self.time_us = time_us
+        self.stage = stage
+        self.writer = writer
+        self.end = end  # where the message's own fields begin
+
+    @classmethod
+    def of(cls, data: bytes) -> Self:
+        """Reads the header.
+
+        Raises:
+            MessageError: the bytes end before the header does.
+        """
+        if len(data) < HEADER_SIZE:
+            raise MessageError(f"message of {len(data)} bytes is shorter than its header")
+        tick, sequence, time_us, stage, length = _NUMBERS.unpack_from(data, _FINGERPRINT_SIZE)
+        end = HEADER_SIZE + length
+        if length < 1 or len(data) < end:
+            raise MessageError(f"message of {len(data)} bytes is shorter than its header")
+        return cls(tick, sequence, time_us, stage, data[HEADER_SIZE : end - 1].decode("utf-8", "replace"), end)
+
+
+def sequence_of(data: bytes) -> int:
+    """Sequence number in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    return int.from_bytes(data[16:24], "big", signed=True)
+
+
+def tick_and_sequence_of(data: bytes) -> tuple[int, int]:
+    """Tick and sequence number in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    return _TICK_AND_SEQUENCE(data, _FINGERPRINT_SIZE)
+
+
+def type_name(message_type: type[Message]) -> str:
+    """Name as in the .lcm files: `soccer.pose_t`."""
+    return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"
+
+
+def type_named(name: str) -> type[Message]:
+    """Finds the generated class of `soccer.pose_t`.
+
+    Raises:
+        MessageError: there is no such type.
+    """
+    package, _, short = name.rpartition(".")
+    try:
+        found: type[Message] = getattr(import_module(f"lcmtypes.{package}"), short)
+    except (ImportError, AttributeError) as error:
+        raise MessageError(f"no LCM type '{name}' in lcmtypes/") from error
+    return found
+
+
+def fingerprint(message_type: type[Message]) -> bytes:
+    """The eight bytes that every message of this type begins with."""
+    return message_type._get_packed_fingerprint()
+
+
+def has_header(message_type: type[Message]) -> bool:
+    """Whether the type is an interface: its first member is the header."""
+    return list(message_type.__slots__[:1]) == ["header"] and message_type.__typenames__[0].endswith("core.header_t")
+
+
+def has_second(message_type: type[Message], name: str, kind: str) -> bool:
+    """Whether the type's second member is `kind name;`: what makes commands and replies of interfaces."""
+    return message_type.__slots__[1:2] == [name] and message_type.__typenames__[1].endswith(kind)
+
+
+def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
+    """Decodes a message.
+
+    Raises:
+        MessageError: wrong type or broken bytes; names channel, expected and found fingerprint.
+    """
+    return decoder(message_type, channel)(data)
+
+
+def decoder(message_type: type[Message], channel: str) -> Callable[[bytes], Any]:
+    """`decode` for the messages of a channel."""
+    decode = codec.decoder(message_type) or message_type.decode
+
+    def decoded(data: bytes) -> Any:
+        try:
+            return decode(data)
+        except Exception as error:
+            expected, found = fingerprint(message_type).hex(), data[:8].hex()
+            reason = (
+                f"fingerprint {found}, expected {expected}"
+                if found != expected
+                else f"{len(data)} bytes do not decode: {error}"
+            )
+            raise MessageError(f"{channel}: not a {type_name(message_type)}: {reason}") from error
+
+    return decoded
+
+
+def encode(message: Message, channel: str) -> bytes:
+    """Encodes a message after setting its counts to the lengths of its lists.
+
+    Raises:
+        MessageError: a field holds something that its type cannot; names channel, field, type and value.
+    """
+    return encoder(type(message), channel)(message)
+
+
+def encoder(message_type: type[Message], channel: str) -> Callable[[Any], bytes]:
+    """`encode` for the messages of a channel."""
+    encode = codec.encoder(message_type) or _counted_and_encoded
+
+    def encoded(message: Any) -> bytes:
+        try:
+            return encode(message)
+        except Exception as error:
+            raise MessageError(
+                f"{channel}: cannot encode {type_name(message_type)}: {_culprit(message, message_type) or error}"
+            ) from error
+
+    return encoded
+
+
+def _counted_and_encoded(message: Message) -> bytes:
+    set_counts(message)
+    return message.encode()
+
+
+def set_counts(message: Message) -> None:
+    """Sets each count field to the length of the lists that it counts; lcm-gen leaves that to the caller."""
+    cls = type(message)
+    plan = _PLANS.get(cls)
+    if plan is None:
+        plan = _PLANS[cls] = _plan(cls)
+    counted, nested = plan
+    lengths: dict[str, int] = {}
+    for name, count in counted:
+        length = len(getattr(message, name))
+        if lengths.setdefault(count, length) != length:
+            raise ValueError(f"the lists counted by '{count}' differ in length")
+        setattr(message, count, length)
+    for name, is_list in nested:
+        value = getattr(message, name)
+        for item in value if is_list else (value,):
+            set_counts(item)
+
+
+_PLANS: dict[type, tuple[list[tuple[str, str]], list[tuple[str, bool]]]] = {}
+
+
+def _plan(cls: type[Message]) -> tuple[list[tuple[str, str]], list[tuple[str, bool]]]:
+    counted, nested = [], []
+    for name, kind, dimensions in zip(cls.__slots__, cls.__typenames__, cls.__dimensions__, strict=True):
+        if dimensions and isinstance(dimensions[0], str):
+            counted.append((name, dimensions[0]))
+        if "." in kind and name != "header" and len(dimensions or []) <= 1:
+            nested.append((name, bool(dimensions)))
+    return counted, nested
+
+
+_CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "boolean": "?"}
+
+
+def _culprit(message: Any, message_type: type[Message]) -> str:
+    if not isinstance(message, message_type):
+        return f"it is a {type(message).__name__}"
+    for name, kind, dimensions in zip(message.__slots__, message.__typenames__, message.__dimensions__, strict=True):
+        value = getattr(message, name, None)
+        if dimensions is None and kind in _CODES:
+            try:
+                struct.pack(">" + _CODES[kind], value)
+            except (struct.error, OverflowError, TypeError):
+                return f"{name} is {value!r}, which is no {kind}"
+        if dimensions is None and kind == "string" and not isinstance(value, str):
+            return f"{name} is {value!r}, which is no string"
+        size = dimensions[0] if dimensions else None
+        if isinstance(size, int) and (not isinstance(value, Sized) or len(value) != size):
+            return f"{name} is {value!r}, which is no array of {size}"
+    return ""
+
+
+def to_dict(message: Any) -> Any:
+    """A message as plain dicts, lists and values, for showing and comparing."""
+    if hasattr(message, "__typenames__"):
+        return {name: to_dict(getattr(message, name)) for name in message.__slots__}
+    if isinstance(message, (list, tuple)):
+        return [to_dict(item) for item in message]
+    return message

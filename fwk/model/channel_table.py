@@ -1,0 +1,269 @@
+"""The table of interface instances: which channels there are, who has them open, and how that changes between ticks."""
+
+import json
+from bisect import insort
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, replace
+from fnmatch import fnmatchcase
+from typing import Any, Literal
+
+from fwk.lcm import envelope, messages
+from fwk.model.plan import NOBODY, Plan
+
+EventKind = Literal[
+    "instance_created", "instance_destroyed", "writer_added", "writer_removed", "reader_added", "reader_removed"
+]
+
+
+@dataclass(frozen=True)
+class BlackboardEvent:
+    """Something that happened on the blackboard between two ticks."""
+
+    kind: EventKind
+    channel: str
+    type_name: str
+    component: str
+    """Who came or went; who opened a created instance first, and had a destroyed one last."""
+
+
+@dataclass(frozen=True)
+class Opening:
+    """A channel opened at run time: `handle` is the number that the component gave it."""
+
+    component: int
+    handle: int
+    channel: int
+    name: str
+    type_name: str
+    fingerprint: str
+    sequence: int = 0
+    """Of a writer: number of the newest message so far."""
+
+    @property
+    def begins(self) -> bytes:
+        """What its messages begin with."""
+        return envelope.fingerprint(messages.type_named(self.type_name))
+
+
+@dataclass(frozen=True)
+class Fact:
+    """One decision or observation of the supervisor, in the order in which it is to be taken over.
+
+    read, write: a component has a channel open. close: it has not any more. refuse: it does not get it. come, go: a
+    component takes part in the run, or does not any more, and with it goes everything that it had opened.
+    """
+
+    kind: Literal["read", "write", "close", "refuse", "come", "go"]
+    component: int
+    handle: int = 0
+    opening: Opening | None = None
+    reason: str = ""
+
+    def numbered(self, sequence: int) -> "Fact":
+        """With the number of the channel's newest message so far."""
+        return replace(self, opening=replace(self.opening, sequence=sequence)) if self.opening else self
+
+    def plain(self) -> list[Any]:
+        """As plain data for JSON."""
+        made: list[Any] = [self.kind, self.component, self.handle]
+        if self.opening:
+            each = self.opening
+            return [*made, each.channel, each.name, each.type_name, each.fingerprint, each.sequence]
+        return [*made, self.reason] if self.reason else made
+
+    @classmethod
+    def of(cls, data: Sequence[Any]) -> "Fact":
+        """Reads back what `plain` gave."""
+        kind, component, handle, *rest = data
+        if kind in ("read", "write", "close"):
+            return cls(kind, component, handle, Opening(component, handle, *rest))
+        return cls(kind, component, handle, reason=rest[0] if rest else "")
+
+
+@dataclass(frozen=True)
+class InstanceView:
+    """A channel of the blackboard as it is in a tick."""
+
+    name: str
+    type_name: str
+    writer: str
+    """Full name of the component that writes it; empty: nobody does."""
+    readers: tuple[str, ...]
+    """Full names of the components that read it, ordered."""
+    declared: bool
+    """Whether the plan has it; otherwise it was opened at run time, and lives as long as somebody has it open."""
+
+
+@dataclass
+class Instance:
+    """A row of the table."""
+
+    index: int
+    name: str
+    type_name: str
+    declared_writer: int = NOBODY
+    declared_readers: tuple[int, ...] = ()
+    declared: bool = True
+    """Whether the plan has it; otherwise it lives as long as somebody has it open."""
+    fingerprint: str = ""
+    """Of one that was opened at run time."""
+    writer: tuple[int, int] | None = None
+    """Component and handle of who opened it for writing at run time."""
+    readers: list[tuple[int, int]] = field(default_factory=list)
+    """Component and handle of everybody who opened it for reading at run time, in order."""
+
+
+class Instances:
+    """All instances of a run. Equal facts in equal order make equal tables, in whichever process."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.names = [component.name for component in plan.components]
+        self.present: set[int] = set()
+        """Components that take part in the run."""
+        self._by_name = {
+            channel.name: Instance(channel.index, channel.name, channel.type_name, channel.writer, channel.readers)
+            for channel in plan.channels
+        }
+        self._indices: dict[tuple[str, str], int] = {}  # name and fingerprint of all that were ever opened at run time
+        self._declared = len(self._by_name)
+
+    def find(self, name: str) -> Instance | None:
+        """The instance of that name, if there is one."""
+        return self._by_name.get(name)
+
+    def matching(self, pattern: str) -> list[Instance]:
+        """Instances whose names fit, ordered by name."""
+        return [self._by_name[name] for name in sorted(self._by_name) if fnmatchcase(name, pattern)]
+
+    def writer(self, instance: Instance) -> str:
+        """Full name of the component that writes it now; empty: nobody does."""
+        index = instance.writer[0] if instance.writer else instance.declared_writer
+        return self.names[index] if index in self.present else ""
+
+    def readers(self, instance: Instance) -> tuple[str, ...]:
+        """Full names of the components that read it now, ordered."""
+        indices = {*instance.declared_readers, *(component for component, _ in instance.readers)} & self.present
+        return tuple(sorted(self.names[index] for index in indices))
+
+    def view(self, instance: Instance) -> InstanceView:
+        """For those who want to know."""
+        writer, readers = self.writer(instance), self.readers(instance)
+        return InstanceView(instance.name, instance.type_name, writer, readers, instance.declared)
+
+    def index_of(self, name: str, fingerprint: str) -> int | None:
+        """Index of a channel that there is or was: one that is opened again with name and type keeps its index."""
+        instance = self._by_name.get(name)
+        return instance.index if instance else self._indices.get((name, fingerprint))
+
+    @property
+    def known(self) -> int:
+        """How many indices are taken."""
+        return self._declared + len(self._indices)
+
+    def opened_by(self, component: int) -> list[Fact]:
+        """What a component has open that it opened at run time, as facts that close it."""
+        found = []
+        for instance in self._by_name.values():
+            opened = [*([instance.writer] if instance.writer else []), *instance.readers]
+            found += [(handle, instance) for owner, handle in opened if owner == component]
+        found.sort(key=lambda pair: (pair[0], pair[1].name))
+        return [Fact("close", component, handle, _opening(component, handle, instance)) for handle, instance in found]
+
+    def snapshot(self) -> list[Fact]:
+        """Facts that make this table from an empty one."""
+        made = [Fact("come", component) for component in sorted(self.present)]
+        for name in sorted(self._by_name):
+            instance = self._by_name[name]
+            if instance.writer:
+                made.append(Fact("write", *instance.writer, _opening(*instance.writer, instance)))
+            made += [Fact("read", *reader, _opening(*reader, instance)) for reader in instance.readers]
+        return made
+
+    def apply(self, facts: Iterable[Fact]) -> list[BlackboardEvent]:
+        """Takes facts over; returns what happened by that."""
+        events: list[BlackboardEvent] = []
+        for fact in facts:
+            if fact.kind == "come":
+                self.present.add(fact.component)
+                events += self._presence(fact.component, "added")
+            elif fact.kind == "go":
+                for closed in self.opened_by(fact.component):
+                    events += self._close(closed)
+                events += self._presence(fact.component, "removed")
+                self.present.discard(fact.component)
+            elif fact.kind == "close":
+                events += self._close(fact)
+            elif fact.kind != "refuse":
+                events += self._open(fact)
+        return events
+
+    def _open(self, fact: Fact) -> list[BlackboardEvent]:
+        opening = fact.opening
+        assert opening
+        events, instance = [], self._by_name.get(opening.name)
+        if instance is None:
+            instance = Instance(
+                opening.channel, opening.name, opening.type_name, declared=False, fingerprint=opening.fingerprint
+            )
+            self._by_name[opening.name] = instance
+            self._indices[opening.name, opening.fingerprint] = opening.channel
+            events.append(self._event("instance_created", instance, fact.component))
+        if fact.kind == "write":
+            instance.writer = (fact.component, fact.handle)
+            events.append(self._event("writer_added", instance, fact.component))
+            return events
+        before = self.readers(instance)
+        insort(instance.readers, (fact.component, fact.handle))
+        if self.readers(instance) != before:
+            events.append(self._event("reader_added", instance, fact.component))
+        return events
+
+    def _close(self, fact: Fact) -> list[BlackboardEvent]:
+        assert fact.opening
+        instance, key = self._by_name.get(fact.opening.name), (fact.component, fact.handle)
+        if instance is None:
+            return []
+        events = []
+        if instance.writer == key:
+            instance.writer = None
+            events.append(self._event("writer_removed", instance, fact.component))
+        elif key in instance.readers:
+            before = self.readers(instance)
+            instance.readers.remove(key)
+            if self.readers(instance) != before:
+                events.append(self._event("reader_removed", instance, fact.component))
+        if not (instance.declared or instance.writer or instance.readers):
+            del self._by_name[instance.name]
+            events.append(self._event("instance_destroyed", instance, fact.component))
+        return events
+
+    def _presence(self, component: int, how: Literal["added", "removed"]) -> list[BlackboardEvent]:
+        """A component comes or goes: what that means for the channels that it declares."""
+        events = []
+        for instance in self._by_name.values():
+            if instance.declared_writer == component:
+                events.append(self._event("writer_added" if how == "added" else "writer_removed", instance, component))
+            if component in instance.declared_readers:
+                events.append(self._event("reader_added" if how == "added" else "reader_removed", instance, component))
+        return events
+
+    def _event(self, kind: EventKind, instance: Instance, component: int) -> BlackboardEvent:
+        return BlackboardEvent(kind, instance.name, instance.type_name, self.names[component])
+
+
+def _opening(component: int, handle: int, instance: Instance) -> Opening:
+    return Opening(component, handle, instance.index, instance.name, instance.type_name, instance.fingerprint)
+
+
+def facts_of(text: str) -> list[Fact]:
+    """Facts as they travel.
+
+    Raises:
+        ValueError, TypeError, LookupError: the text is something else.
+    """
+    return [Fact.of(each) for each in json.loads(text)]
+
+
+def text_of(facts: Iterable[Fact]) -> str:
+    """Facts, to travel."""
+    return json.dumps([fact.plain() for fact in facts], separators=(",", ":"))

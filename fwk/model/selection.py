@@ -1,0 +1,57 @@
+"""Which components a pattern means: in settings, groups of a process, `--only` and `--without`."""
+
+from collections.abc import Mapping, Sequence
+from fnmatch import fnmatchcase
+
+from fwk.model.errors import Problems, hint
+
+
+def matches(name: str, pattern: str) -> bool:
+    """Whether a pattern means a component: its name, with `*` for any part, or a namespace for all that is in it."""
+    return fnmatchcase(name, pattern) or name.startswith(f"{pattern}/")
+
+
+def nearest(pattern: str, names: Sequence[str]) -> str:
+    """What would be right instead of a pattern that means no component."""
+    namespaces = [name.rpartition("/")[0] for name in names if "/" in name]
+    return hint(pattern, dict.fromkeys(names if "/" in pattern else [*namespaces, *names]))
+
+
+def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], problems: Problems) -> list[str]:
+    """The names that `--only` and `--without` leave."""
+    idle = False
+    for option, patterns in (("--only", only), ("--without", without)):
+        for pattern in patterns:
+            if not any(matches(name, pattern) for name in names):
+                idle = True
+                problems.add(option, "", f"'{pattern}' means no component; {nearest(pattern, names)}")
+    kept = [
+        name
+        for name in names
+        if (not only or any(matches(name, pattern) for pattern in only))
+        and not any(matches(name, pattern) for pattern in without)
+    ]
+    if names and not kept and not idle:
+        problems.add("--without" if without else "--only", "", "no component is left; leave a pattern out")
+    return kept
+
+
+def groups_of(
+    names: Sequence[str], groups: Mapping[str, Sequence[str]], places: Mapping[str, str], problems: Problems
+) -> dict[str, str]:
+    """Component to the name of its group. `places` says where each group stands."""
+    found: dict[str, str] = {}
+    for group, patterns in groups.items():
+        if group in names:
+            text = f"'{group}' is a component; give the process of several another name"
+            problems.add(places[group], "", text)
+        for pattern in patterns:
+            members = [name for name in names if matches(name, pattern)]
+            if not members:
+                problems.add(places[group], "", f"'{pattern}' means no component; {nearest(pattern, names)}")
+            for name in members:
+                if found.setdefault(name, group) != group:
+                    problems.add(
+                        places[group], name, f"it is in two processes, '{found[name]}' and '{group}'; keep one"
+                    )
+    return found

@@ -1,0 +1,1 @@
+"""Reading launch files: YAML with places, includes, templates, overrides, validation."""

@@ -1,0 +1,70 @@
+"""Makes a user's own folder usable: its modules can be imported, and its .lcm files become Python classes."""
+
+import importlib
+import re
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from fwk.lcm.typegen import TypeGenerationError, generate
+from fwk.model.errors import Problems
+from fwk.plan.files.launch_file import FOLDER, INSTALLED, shown
+
+PARTS = ("lcmtypes", "procs")
+_PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
+_LINE = re.compile(r" : (\d+)$", re.M)
+
+
+def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
+    """Where the modules and .lcm files of launch files are looked for, besides the installed ones.
+
+    That is the folder of each launch file, and the folder above, if the one below is called `launch` or if `lcmtypes/`
+    or `procs/` lie there.
+    """
+    found = [
+        folder
+        for beside in launch_folders
+        for folder in (beside, beside.parent)
+        if folder == beside or beside.name == FOLDER or any((folder / part).is_dir() for part in PARTS)
+    ]
+    return tuple(str(folder) for folder in dict.fromkeys(found) if folder not in (INSTALLED, INSTALLED / FOLDER))
+
+
+def join(folders: Sequence[str], problems: Problems) -> None:
+    """Puts folders on the path of modules, before the installed ones, and generates their types."""
+    for folder in reversed(folders):
+        if folder not in sys.path:
+            sys.path.insert(0, folder)
+    for folder in folders:
+        types = Path(folder) / "lcmtypes"
+        for source in sorted(types.glob("*.lcm")):
+            _check_package(source, problems)
+        try:
+            generate(types)
+        except TypeGenerationError as error:
+            _tell(str(error), problems)
+        except OSError as error:
+            problems.add(shown(types), "", f"cannot write Python classes there: {error.strerror}")
+    importlib.invalidate_caches()
+
+
+def _tell(refusal: str, problems: Problems) -> None:
+    """What lcm-gen said: `FILE: REASON`, then `FILE : LINE`, then the line itself."""
+    file, _, reason = refusal.splitlines()[0].partition(": ")
+    line = _LINE.search(refusal)
+    problems.add(f"{shown(Path(file))}:{line[1]}" if line else shown(Path(file)), "", reason)
+
+
+def _check_package(source: Path, problems: Problems) -> None:
+    """A package of types lives in one folder; of two, Python would see only one and miss the types of the other."""
+    text = source.read_text(encoding="utf-8", errors="replace")
+    package = _PACKAGE.search(text)
+    for entry in sys.path:
+        other = (Path(entry) / "lcmtypes").absolute()
+        if not package or other == source.parent or not (other / package[1]).is_dir():
+            continue
+        same = other / source.name
+        if not same.is_file() or same.read_text(encoding="utf-8", errors="replace") != text:
+            line = text[: package.start(1)].count("\n") + 1
+            taken = f"the package '{package[1]}' is taken by {shown(other)}; give these types a package of their own"
+            problems.add(f"{shown(source)}:{line}", "", taken)

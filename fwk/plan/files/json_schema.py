@@ -1,0 +1,192 @@
+"""JSON Schema of launch files with the settings and ports of the components, for editors that complete and check."""
+
+import pkgutil
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from fwk.component.declaration import Declaration
+from fwk.model.errors import Problems
+from fwk.plan.classes import UnusableError, components_in, find_class, imported
+from fwk.plan.files.folders import folders_of, join
+from fwk.plan.files.launch_file import Files, find_launch_file, read_files
+from fwk.plan.files.schema import HostFile, LaunchFile
+from fwk.plan.files.templates import Asked, expand
+
+Schema = dict[str, Any]
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+_REF = "#/$defs/"
+_MARK = {"type": "string", "pattern": r"\{[A-Za-z_]\w*\}"}  # `{team}` in a template becomes a value later
+
+
+def schema_of_files(host_specific: bool = False) -> Schema:
+    """Of any launch file that uses components which are found from here.
+
+    Raises:
+        PlanError: types that lie here cannot be generated.
+    """
+    problems = Problems()
+    folders = folders_of([Path.cwd()])
+    join(folders, problems)
+    problems.stop_if_any()
+    return _Made(_found(folders), [], host_specific).schema
+
+
+def schema_of_file(file: str, host_specific: bool = False) -> Schema:
+    """Of one launch file, or of the host-specific file beside it: it knows the components' names, too.
+
+    Raises:
+        PlanError: the file cannot be read.
+    """
+    problems = Problems()
+    path = find_launch_file(file, problems)
+    problems.stop_if_any()
+    assert path
+    files = read_files(path, problems)
+    folders = folders_of(files.folders)
+    join(folders, problems)
+    asked = expand(files, problems)
+    problems.stop_if_any()
+    used = {use: found for use in _uses(files) if (found := _class(use, folders))}
+    return _Made(_found(folders) | used, asked, host_specific).schema
+
+
+def schema_of_component(use: str) -> Schema:
+    """Of the settings of one component's class.
+
+    Raises:
+        PlanError: types that lie here cannot be generated.
+        UnusableError: there is no such class.
+    """
+    problems = Problems()
+    folders = folders_of([Path.cwd()])
+    join(folders, problems)
+    problems.stop_if_any()
+    found = find_class(use, folders)
+    return {"$schema": _DIALECT, "title": use, **found.config.model_json_schema()}
+
+
+def _uses(files: Files) -> Iterable[str]:
+    for layer in files.layers:
+        yield from (entry.use for entry in layer.content.components.values())
+        for template in layer.content.templates.values():
+            yield from (entry.use for entry in template.values())
+
+
+def _found(folders: Sequence[str]) -> dict[str, Declaration]:
+    """The components in `procs`, as `use` names them."""
+    found = {}
+    for module in pkgutil.iter_modules(imported("procs", folders).__path__, "procs."):
+        if module.ispkg:
+            continue
+        if alone := _class(module.name, folders):
+            found[module.name] = alone
+        else:
+            uses = (f"{module.name}:{name}" for name in _names(module.name, folders))
+            found |= {use: each for use in uses if (each := _class(use, folders))}
+    return found
+
+
+def _names(module: str, folders: Sequence[str]) -> list[str]:
+    try:
+        return list(components_in(imported(module, folders)))
+    except UnusableError:
+        return []
+
+
+def _class(use: str, folders: Sequence[str]) -> Declaration | None:
+    try:
+        return find_class(use, folders)
+    except UnusableError:  # an editor goes on without; `fwk check` says what is wrong
+        return None
+
+
+class _Made:
+    def __init__(self, classes: Mapping[str, Declaration], asked: Sequence[Asked], host_specific: bool) -> None:
+        model = HostFile if host_specific else LaunchFile
+        self.schema: Schema = {"$schema": _DIALECT, **model.model_json_schema()}
+        self._defs: Schema = self.schema.setdefault("$defs", {})
+        self._settings = {use: self._settings_of(use, found) for use, found in sorted(classes.items())}
+        self._asked = asked
+        if asked:
+            self.schema["properties"]["config"] = self._by_pattern()
+        if not host_specific:
+            self._complete_entries(classes)
+            self._complete_robots()
+
+    def _settings_of(self, use: str, found: Declaration) -> Schema:
+        """Puts the settings of a class among the definitions, and refers to them."""
+        made = found.config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}")
+        self._defs |= {f"{use}.{name}": _partial(below) for name, below in made.pop("$defs", {}).items()}
+        self._defs[use] = _partial(made)
+        return {"$ref": f"{_REF}{use}"}
+
+    def _complete_entries(self, classes: Mapping[str, Declaration]) -> None:
+        """What may stand behind `config` and `channels` of a component depends on what it uses."""
+        entry = self._defs["ComponentEntry"]
+        entry["properties"]["use"]["examples"] = sorted(classes)
+        entry["allOf"] = [
+            {
+                "if": {"properties": {"use": {"const": use}}, "required": ["use"]},
+                "then": {"properties": {"config": self._settings[use], "channels": _ports(found)}},
+            }
+            for use, found in sorted(classes.items())
+        ]
+
+    def _complete_robots(self) -> None:
+        by_short: dict[str, list[str]] = {}
+        for each in self._asked:
+            by_short.setdefault(each.name.rpartition("/")[2], []).append(each.entry.use)
+        if by_short:
+            known = {short: self._any_of(uses) for short, uses in sorted(by_short.items())}
+            self._defs["RobotEntry"]["properties"]["config"] = {"type": "object", "properties": known}
+
+    def _by_pattern(self) -> Schema:
+        """Settings by the name of a component, a namespace, or a pattern; a pattern's fit all components it means."""
+        meant: dict[str, list[str]] = {}
+        for each in self._asked:
+            namespace, _, short = each.name.rpartition("/")
+            for pattern in (each.name, namespace, f"*/{short}"):
+                meant.setdefault(pattern, []).append(each.entry.use)
+        return {
+            "type": "object",
+            "properties": {pattern: self._all_of(uses) for pattern, uses in sorted(meant.items()) if pattern},
+            "patternProperties": {r"[*?\[]": {"type": "object"}},
+            "additionalProperties": False,
+        }
+
+    def _all_of(self, uses: Iterable[str]) -> Schema:
+        return _joined("allOf", [self._settings[use] for use in dict.fromkeys(uses) if use in self._settings])
+
+    def _any_of(self, uses: Iterable[str]) -> Schema:
+        return _joined("anyOf", [self._settings[use] for use in dict.fromkeys(uses) if use in self._settings])
+
+
+def _joined(word: str, schemas: list[Schema]) -> Schema:
+    if not schemas:
+        return {"type": "object"}
+    return schemas[0] if len(schemas) == 1 else {word: schemas}
+
+
+def _ports(found: Declaration) -> Schema:
+    return {
+        "type": "object",
+        "properties": {port.attribute: {"type": "string"} for port in found.ports},
+        "additionalProperties": False,
+    }
+
+
+def _partial(schema: Schema) -> Schema:
+    """Settings of one layer: none has to be there, and a template may say `{key}` instead of a value."""
+    made = {key: value for key, value in schema.items() if key != "required"}
+    if "properties" in made:
+        made["properties"] = {name: _or_mark(below) for name, below in made["properties"].items()}
+    return made
+
+
+def _or_mark(schema: Schema) -> Schema:
+    if schema.get("type") in ("string", "object", "array") or "$ref" in schema:
+        return schema
+    about: Schema = {key: schema[key] for key in ("title", "description", "default") if key in schema}
+    return {**about, "anyOf": [{key: value for key, value in schema.items() if key not in about}, _MARK]}

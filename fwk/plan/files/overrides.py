@@ -1,0 +1,32 @@
+"""Turns `--set PATH=VALUE` into a layer of settings like that of a file."""
+
+from collections.abc import Sequence
+
+from fwk.model.errors import Problems, hint
+from fwk.plan.files.source import Node, read_value
+from fwk.plan.settings import over
+
+PLACE = "--set"
+RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")
+
+
+def overrides(sets: Sequence[str], problems: Problems) -> Node:
+    """What the command line says, in the shape of a host-specific file; later ones win.
+
+    A path is `cyan1/omni_ball.gain`, `*/camera.noise_levels`, or one of the run's own keys, `period_s`.
+    """
+    made = Node({}, PLACE)
+    for text in sets:
+        path, equals, value = text.partition("=")
+        component, dot, setting = path.partition(".")
+        if not equals or not path or (dot and not setting):
+            problems.add(PLACE, "", f"'{text}' is no PATH=VALUE; write for example cyan1/omni_ball.gain=0.5")
+        elif not dot and path not in RUN_KEYS:
+            right = "write NAME.SETTING=VALUE" if "/" in path else hint(path, RUN_KEYS)
+            problems.add(PLACE, "", f"no setting '{path}'; {right}")
+        else:
+            node = read_value(value, PLACE, problems)
+            for key in reversed(("config", component, *setting.split(".")) if dot else (path,)):
+                node = node and Node({key: node}, PLACE)
+            made = over(made, node) if node else made
+    return made

@@ -1,0 +1,196 @@
+"""Reads YAML so that every value knows the file and line it stands in."""
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from fwk.model.errors import Problems
+
+_HALF = re.compile("[\ud800-\udfff]")
+VALUES_MAX = 100_000
+"""Of a file with its aliases written out; more is a mistake or meant to hurt."""
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """A value and its place; the value of a mapping or list is made of nodes."""
+
+    value: Any
+    place: str
+    """`launch/soccer.yaml:41`; of a mapping's value, the line of its key."""
+
+    def plain(self) -> Any:
+        """The value as plain dicts, lists and scalars."""
+        if isinstance(self.value, dict):
+            return {key: node.plain() for key, node in self.value.items()}
+        return [node.plain() for node in self.value] if isinstance(self.value, list) else self.value
+
+    def child(self, key: str | int) -> "Node | None":
+        """The value below a key or list position, or None."""
+        if isinstance(self.value, dict):
+            return self.value.get(str(key))
+        if isinstance(self.value, list) and isinstance(key, int) and key < len(self.value):
+            node: Node = self.value[key]
+            return node
+        return None
+
+    def at(self, *path: str | int) -> "Node":
+        """The value at a path, or the last one on the way that is there."""
+        node = self
+        for key in path:
+            below = node.child(key)
+            if below is None:
+                return node
+            node = below
+        return node
+
+
+class _Loader(yaml.SafeLoader):
+    """YAML 1.2's plain values: `on` and `12:30` are text, `1e-3` is a number, `010` is ten."""
+
+    yaml_implicit_resolvers = {}
+
+
+_TAG = "tag:yaml.org,2002:"
+for _kind, _pattern in {
+    "null": r"~|null|Null|NULL|",
+    "bool": r"true|True|TRUE|false|False|FALSE",
+    "int": r"[-+]?[0-9]+|0o[0-7]+|0x[0-9a-fA-F]+",
+    "float": r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)",
+}.items():
+    _Loader.add_implicit_resolver(_TAG + _kind, re.compile(f"(?:{_pattern})$"), None)
+
+
+def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
+    """Reads a file; `shown` is its name in places. None if it cannot be read, which is then among the problems."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except OSError as error:
+        problems.add(shown, "", f"cannot be read: {error.strerror}")
+        return None
+    except UnicodeDecodeError as error:
+        problems.add(f"{shown}:{path.read_bytes()[: error.start].count(10) + 1}", "", "this is no UTF-8 text")
+        return None
+    return _parse(text, shown, problems)
+
+
+def read_value(text: str, place: str, problems: Problems) -> Node | None:
+    """Reads one value, as typed behind `--set PATH=`."""
+    if not text.strip():
+        return Node("", place)
+    scratch = Problems()
+    node = _parse(text, place, scratch)
+    if scratch:
+        problems.add(place, "", f"{text!r} is no YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
+        return None
+    return _replaced(node, place) if node else Node(None, place)
+
+
+def _replaced(node: Node, place: str) -> Node:
+    if isinstance(node.value, dict):
+        return Node({key: _replaced(below, place) for key, below in node.value.items()}, place)
+    if isinstance(node.value, list):
+        return Node([_replaced(below, place) for below in node.value], place)
+    return Node(node.value, place)
+
+
+def _parse(text: str, shown: str, problems: Problems) -> Node | None:
+    loader = None
+    try:
+        loader = _Loader(text)
+        root = loader.get_single_node()
+        return _Converter(shown, problems).convert(root, 1) if root else Node({}, f"{shown}:1")
+    except yaml.MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        start = f"{error.context} that begins in line {error.context_mark.line + 1}, " if error.context_mark else ""
+        reason = f"{start}{error.problem}"
+        problems.add(f"{shown}:{mark.line + 1 if mark else 1}", "", f"this is no YAML: {reason}")
+    except yaml.reader.ReaderError as error:
+        line = text[: error.position].count("\n") + 1
+        problems.add(f"{shown}:{line}", "", f"this is no YAML: character {chr(error.character)!r} is not allowed")
+    except RecursionError:
+        problems.add(f"{shown}:1", "", "values lie too deep in each other; a few levels are enough")
+    except _TooMuch:
+        problems.add(f"{shown}:1", "", f"more than {VALUES_MAX} values when its aliases are written out; use fewer")
+    finally:
+        if loader:
+            loader.dispose()
+    return None
+
+
+class _TooMuch(Exception):  # noqa: N818 - what the file holds
+    pass
+
+
+class _Converter:
+    def __init__(self, shown: str, problems: Problems) -> None:
+        self._shown = shown
+        self._problems = problems
+        self._around: list[yaml.Node] = []
+        self._values = 0
+
+    def convert(self, node: yaml.Node, line: int) -> Node:
+        """Turns a YAML node whose key stands in `line` into ours."""
+        place = f"{self._shown}:{line}"
+        self._values += 1
+        if self._values > VALUES_MAX:
+            raise _TooMuch
+        if node in self._around:
+            self._problems.add(place, "", "this value contains itself; write it out")
+            return Node(None, place)
+        self._around.append(node)
+        try:
+            if isinstance(node, yaml.MappingNode):
+                return Node(self._mapping(node), place)
+            if isinstance(node, yaml.SequenceNode):
+                return Node([self.convert(item, item.start_mark.line + 1) for item in node.value], place)
+            return Node(self._scalar(node, place), place)
+        finally:
+            self._around.pop()
+
+    def _mapping(self, node: yaml.MappingNode) -> dict[str, Node]:
+        made: dict[str, Node] = {}
+        for key, value in node.value:
+            line = key.start_mark.line + 1
+            word = _joined(key.value) if isinstance(key, yaml.ScalarNode) else None
+            if word is None:
+                self._problems.add(f"{self._shown}:{line}", "", "a key is one word, not a list or a mapping")
+            elif word in made:
+                first = made[word].place.rpartition(":")[2]
+                text = f"'{word}' stands here a second time, first in line {first}; keep one"
+                self._problems.add(f"{self._shown}:{line}", "", text)
+            else:
+                made[word] = self.convert(value, line)
+        return made
+
+    def _scalar(self, node: yaml.Node, place: str) -> Any:
+        kind, text = node.tag.removeprefix(_TAG), node.value
+        if kind == "str":
+            return _joined(text)
+        if kind == "null":
+            return None
+        try:
+            if kind == "bool":
+                return {"true": True, "false": False}[text.lower()]
+            if kind == "int":
+                return int(text, {"0o": 8, "0x": 16}.get(text[:2], 10))
+            if kind == "float":
+                return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
+        except (KeyError, ValueError):
+            self._problems.add(place, "", f"'{text}' is no {kind}")
+            return None
+        self._problems.add(place, "", f"the tag '{node.tag}' is not known here; leave it out")
+        return None
+
+
+def _joined(text: str) -> str:
+    """The text with what JSON writes as two halves, `"\\ud83e\\udd16"`, as one letter."""
+    if not _HALF.search(text):
+        return text
+    try:
+        return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
+    except UnicodeDecodeError:  # a half alone is no letter; whoever checks the value says so
+        return text

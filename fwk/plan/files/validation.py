@@ -1,0 +1,152 @@
+"""Checks values from a file against a pydantic model and words what does not fit, with the line it stands in."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import NoneType, UnionType
+from typing import Annotated, Any, TypeVar, Union, get_args, get_origin
+
+from pydantic import BaseModel, ValidationError
+from pydantic_core import ErrorDetails
+
+from fwk.model.errors import hint
+from fwk.plan.files.source import Node
+
+M = TypeVar("M", bound=BaseModel)
+Path = tuple[str | int, ...]
+Report = Callable[[Path, str, str], None]
+"""Takes a mistake: path of the value, its place, text."""
+
+_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type")
+_MAPPING = "it should be a mapping with keys such as 'name: value'"
+
+
+@dataclass(frozen=True)
+class _Mistake:
+    path: Path
+    text: str
+    missing: bool
+
+
+def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M, Node] | None:
+    """The values as an instance of the model; every mistake goes to `report`. `what` is the word for a key.
+
+    What does not fit is left out of the instance and of the node given back, so that the rest can be looked at too.
+    None if nothing is left.
+    """
+    first = True
+    while True:
+        made, mistakes = _tried(model, node, what)
+        for mistake in mistakes:
+            if first or not mistake.missing:  # later on, what is missing was left out here
+                report(mistake.path, node.at(*mistake.path).place, mistake.text)
+        if made:
+            return made, node
+        if any(mistake.path == () for mistake in mistakes):
+            return None
+        for path in reversed(
+            dict.fromkeys(mistake.path for mistake in mistakes)
+        ):  # lists stay in order before their end
+            node = _without(node, path)
+        first = False
+
+
+def _tried(model: type[M], node: Node, what: str) -> tuple[M | None, list[_Mistake]]:
+    try:
+        made = model.model_validate(node.plain())
+    except ValidationError as error:
+        return None, [
+            _Mistake(_path(node, found["loc"]), _text(model, node, found, what), found["type"] == "missing")
+            for found in error.errors(include_url=False)
+        ]
+    mixed_up = [_Mistake(path, text, False) for path, text in _mixed_up(made.model_dump(), node, ())]
+    return None if mixed_up else made, mixed_up
+
+
+def _without(node: Node, path: Path) -> Node:
+    below = node.child(path[0])
+    if below is None:
+        return node
+    kept = _without(below, path[1:]) if len(path) > 1 else None
+    if isinstance(node.value, dict):
+        return Node(
+            {key: kept if each is below else each for key, each in node.value.items() if kept or each is not below},
+            node.place,
+        )
+    return Node([kept if each is below else each for each in node.value if kept or each is not below], node.place)
+
+
+def _path(node: Node, location: Path) -> Path:
+    """The part of an error's location that is in the file; pydantic adds names of union members and the like."""
+    path: Path = ()
+    for key in location:
+        if node.at(*path).child(key) is None:
+            break
+        path = (*path, key)
+    return path
+
+
+def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) -> str:
+    location, kind = details["loc"], details["type"]
+    if kind == "extra_forbidden":
+        around = _model_at(model, location[:-1])
+        return f"no {what} '{_dotted(location)}'; {hint(str(location[-1]), around.model_fields if around else ())}"
+    if kind == "missing" and isinstance(location[-1], int):
+        return f"'{_dotted(location[:-1])}' is {_short(node.at(*location[:-1]).plain())}; it should be longer"
+    if kind == "missing":
+        return f"the {what} '{_dotted(location)}' is missing; it has no default"
+    message = (
+        _MAPPING
+        if kind in _NO_MAPPING
+        else details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    )
+    path = _path(node, location)
+    if not path:
+        return f"the default of '{_dotted(location)}' does not fit: {message}" if location else message
+    if node.at(*path).value is None:
+        return f"'{_dotted(path)}' is empty; {message}"
+    return f"'{_dotted(path)}' is {_short(node.at(*path).plain())}; {message}"
+
+
+def _mixed_up(made: Any, node: Node, path: Path) -> list[tuple[Path, str]]:
+    """Truth values that became numbers, and the other way round: pydantic lets them pass, people do not mean them."""
+    if isinstance(node.value, dict) and isinstance(made, dict):
+        pairs = [(key, made.get(key), below) for key, below in node.value.items()]
+        return [found for key, value, below in pairs for found in _mixed_up(value, below, (*path, key))]
+    given = node.value
+    if not isinstance(given, bool | int | float) or not isinstance(made, bool | int | float):
+        return []
+    if isinstance(given, bool) == isinstance(made, bool):
+        return []
+    right = "true or false" if isinstance(made, bool) else "a number"
+    return [(path, f"'{_dotted(path)}' is {_short(given)}; it should be {right}")]
+
+
+def _model_at(model: type[BaseModel], location: Path) -> type[BaseModel] | None:
+    """The model whose field is at a location, through optional fields, lists and mappings."""
+    kind: Any = model
+    for key in location:
+        if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+            kind = get_args(kind)[-1] if get_args(kind) else None
+        elif key in kind.model_fields:
+            kind = kind.model_fields[str(key)].annotation
+        elif key != kind.__name__:  # the name of a union's member stands in locations too
+            return None
+        kind = _unwrapped(kind)
+    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
+
+
+def _unwrapped(kind: Any) -> Any:
+    """Of an annotated or optional type the part that can hold fields."""
+    while get_origin(kind) in (Union, UnionType, Annotated):
+        kind = next((each for each in get_args(kind) if each is not NoneType), None)
+    return kind
+
+
+def _dotted(path: Path) -> str:
+    return ".".join(map(str, path))
+
+
+def _short(value: Any) -> str:
+    words = {True: "true", False: "false"}
+    text = words[value] if isinstance(value, bool) else repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -1,0 +1,1 @@
+"""Connecting components: channels, commands, needs, providers, start order."""

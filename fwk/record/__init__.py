@@ -1,1 +1,0 @@
-"""Recordings: LCM logs written, read, compared, described and drawn."""

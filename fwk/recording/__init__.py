@@ -1,0 +1,1 @@
+"""Recordings: writing, comparing, describing and drawing them."""

@@ -1,0 +1,85 @@
+"""Pictures of cameras in a recording: frames that the recorder wrote, and what components like procs.pictures write."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from fwk.lcm import messages
+from fwk.lcm.event_log import LogReader
+from lcmtypes.robot import picture_t
+
+FRAME = "fwk/frame"
+"""Channel of the frames that the launch file wants recorded."""
+LOSSLESS = "png"
+PLAIN = "raw"
+"""Format of bytes as they are, row by row: of frames with so many channels that png does not know them."""
+_PNG_CHANNELS = (1, 3, 4)
+_HOW = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]
+_FINGERPRINT = messages.fingerprint(picture_t)
+
+
+@dataclass(frozen=True)
+class RecordedPicture:
+    """A picture, still compressed."""
+
+    camera: str
+    """Channel of the camera's frames."""
+    frame: int
+    tick: int
+    time_us: int
+    shape: tuple[int, int, int]
+    """Height, width, channels."""
+    format: str
+    data: bytes
+
+    def pixels(self) -> NDArray[np.uint8] | None:
+        """Height x width (x 3, blue green red); None if the data are damaged."""
+        if self.format == PLAIN:
+            right = len(self.data) == math.prod(self.shape)
+            return np.frombuffer(self.data, np.uint8).reshape(self.shape).copy() if right else None
+        try:
+            found = cv2.imdecode(np.frombuffer(self.data, np.uint8), cv2.IMREAD_UNCHANGED) if self.data else None
+        except cv2.error:  # a picture that says it is larger than any
+            return None
+        return None if found is None else np.asarray(found, np.uint8)
+
+
+def picture_of(data: bytes) -> RecordedPicture | None:
+    """The picture that a message is; None if it is none."""
+    if data[:8] != _FINGERPRINT:
+        return None
+    try:
+        made: picture_t = messages.decode(picture_t, data, "")
+    except messages.MessageError:
+        return None
+    header = made.header
+    shape = (made.height_px, made.width_px, made.channels)
+    return RecordedPicture(made.camera, made.frame, header.tick, header.time_us, shape, made.format, bytes(made.data))
+
+
+def compressed(pixels: NDArray[np.uint8]) -> tuple[str, bytes]:
+    """A frame without loss: format and bytes.
+
+    Of the fast ways png with runs alone takes the fewest bytes: of a camera's noisy picture of 480 kB 304 kB in 9 ms,
+    where zlib takes 362 kB in 10 ms.
+    """
+    if pixels.ndim == 2 or pixels.shape[2] in _PNG_CHANNELS:
+        return LOSSLESS, cv2.imencode(".png", pixels, _HOW)[1].tobytes()
+    return PLAIN, pixels.tobytes()
+
+
+def pictures_in(log: Path) -> Iterator[RecordedPicture]:
+    """All pictures of a log, in its order.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+    for event in LogReader(log):
+        picture = picture_of(event.data)
+        if picture:
+            yield picture

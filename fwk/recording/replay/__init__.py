@@ -1,0 +1,1 @@
+"""Replay: recorded inputs to real components, at the iterations that had them."""

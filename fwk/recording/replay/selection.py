@@ -1,0 +1,111 @@
+"""Which components a replay runs: those asked for, the cameras that they need, none that cannot be run again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from importlib import import_module
+from typing import Any
+
+from pydantic import ValidationError
+
+from fwk.component.declaration import Declaration, declaration
+from fwk.model.plan import ComponentPlan
+from fwk.recording.replay.recording import Recording, RecordingError
+
+
+@dataclass
+class Choice:
+    """Components of a recording by index."""
+
+    components: set[int] = field(default_factory=set)
+    left_out: dict[int, str] = field(default_factory=dict)
+    """Those asked for that cannot be run, each with the reason."""
+
+
+def choose(recording: Recording, only: Sequence[str]) -> Choice:
+    """Those that `only` means, by name or pattern, or all; who looks at frames that are not recorded gets its camera.
+
+    Raises:
+        RecordingError: a pattern means nobody, or nobody who can be run again.
+    """
+    choosing = _Choosing(recording)
+    asked = [choosing.meant(pattern) for pattern in only] or [{each.index for each in recording.plan.components}]
+    for found in asked:
+        choosing.add(found)
+    for pattern, found in zip(only, asked, strict=False):
+        if found <= choosing.made.left_out.keys():
+            reasons = "; ".join(choosing.said(index) for index in sorted(found))
+            raise RecordingError(f"{recording.path}: '{pattern}' cannot be replayed: {reasons}")
+    return choosing.made
+
+
+def unrepeatable(component: ComponentPlan, settings: Any) -> str:
+    """Why a component cannot be run again with these settings; nothing: it can."""
+    declared = _declaration(component)
+    try:
+        return declared.component.unrepeatable(declared.config.model_validate(settings))
+    except ValidationError:  # its settings are others now, which its start will say
+        return ""
+
+
+class _Choosing:
+    def __init__(self, recording: Recording) -> None:
+        self.made = Choice()
+        self._recording = recording
+        self._components = recording.plan.components
+        self._channels = {channel.name: channel for channel in recording.plan.channels}
+
+    def meant(self, pattern: str) -> set[int]:
+        found = {each.index for each in self._components if fnmatchcase(each.name, pattern)}
+        if not found:
+            names = ", ".join(each.name for each in self._components)
+            raise RecordingError(f"{self._recording.path}: no component '{pattern}' in this run; there are: {names}")
+        return found
+
+    def add(self, found: set[int]) -> None:
+        for index in sorted(found):
+            cameras = self._cameras(index)
+            reason = self._reason(index) or self._blind(cameras)
+            if reason:
+                self.made.left_out[index] = reason
+            else:
+                self.made.components |= {index, *cameras.values()}
+
+    def said(self, index: int) -> str:
+        return f"{self._components[index].name}: {self.made.left_out[index]}"
+
+    def _blind(self, cameras: dict[str, int]) -> str:
+        for channel, camera in cameras.items():
+            if reason := self._reason(camera):
+                return (
+                    f"it looks at {channel}, whose frames are not recorded ('record: {{frames: {channel}}}' in the "
+                    f"launch file does), and {self._components[camera].name} cannot be run again: {reason}"
+                )
+        return ""
+
+    def _reason(self, index: int) -> str:
+        found: str = self._with_place(index, lambda component: unrepeatable(component, component.config))
+        return found
+
+    def _cameras(self, index: int) -> dict[str, int]:
+        """Channels of frames that a component looks at and that are not recorded, with their cameras."""
+        component = self._components[index]
+        declared = self._with_place(index, _declaration)
+        looks = [port.attribute for port in declared.ports if port.images and not port.writes]
+        seen = [channel for attribute in looks for channel in component.channels.get(attribute, ())]
+        recorded = self._recording.plan.record.frames
+        return {channel: self._channels[channel].writer for channel in seen if channel not in recorded}
+
+    def _with_place(self, index: int, find: Any) -> Any:
+        component = self._components[index]
+        try:
+            return find(component)
+        except Exception as error:
+            raise RecordingError(
+                f"{self._recording.path}: {component.name}: {component.module}:{component.class_name} cannot be had "
+                f"any more: {type(error).__name__}: {error}"
+            ) from error
+
+
+def _declaration(component: ComponentPlan) -> Declaration:
+    return declaration(getattr(import_module(component.module), component.class_name))

@@ -1,0 +1,129 @@
+"""Where the gateway's messages go: LCM log, public bus, display, and the newest of each for the summary."""
+
+import json
+import socket
+from collections.abc import Callable
+from pathlib import Path
+
+from fwk.bus.public import PublicBus
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.lcm.event_log import LogWriter
+from fwk.model.plan import Plan
+from lcmtypes.core import plan_t
+
+DISPLAY_PERIOD_US = US_PER_S // 4
+
+
+class Recorder:
+    """Writes the LCM log; its time stamps are logical time, so that equal runs give equal logs."""
+
+    def __init__(self, plan: Plan, path: Path, report: Callable[[str], None]) -> None:
+        self._writer = LogWriter(path, report)
+        first = plan_t()
+        first.json = json.dumps(plan.to_json())
+        self._writer.append("fwk/plan", first.encode(), 0)
+        self._report = report
+        self._due_us = 0
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Adds a message."""
+        self._writer.append(channel, data, time_us)
+
+    def tick(self) -> None:
+        """Once a second what was recorded so far reaches the file, so that a killed run leaves a log."""
+        if monotonic_us() >= self._due_us:
+            self._due_us = monotonic_us() + US_PER_S
+            self._writer.flush()
+
+    def close(self) -> None:
+        """Finishes the log."""
+        self._writer.close()
+        if self._writer.dropped:
+            self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
+
+
+class Mirror:
+    """Publishes everything on the public bus, except what came from there."""
+
+    def __init__(self, plan: Plan, bus: PublicBus) -> None:
+        self._bus = bus
+        self._came_from_there = frozenset(plan.outside)
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Publishes a message."""
+        if channel not in self._came_from_there:
+            self._bus.publish(channel, data)
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Nothing to do."""
+
+
+class Display:
+    """Feeds the display: lines and status at once, the newest of the shown channels four times a second."""
+
+    def __init__(self, plan: Plan, connection: socket.socket) -> None:
+        self._connection = connection
+        self._shown = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._newest: dict[str, bytes] = {}
+        self._due_us = 0
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a message."""
+        if channel in ("fwk/log", "fwk/status"):
+            self._send(channel, data)
+        elif channel in self._shown:
+            self._newest[channel] = data
+
+    def tick(self) -> None:
+        """Sends what changed, if it is time."""
+        if monotonic_us() >= self._due_us:
+            self._due_us = monotonic_us() + DISPLAY_PERIOD_US
+            for channel, data in self._newest.items():
+                self._send(channel, data)
+            self._newest = {}
+
+    def close(self) -> None:
+        """Sends the rest; the display ends by itself."""
+        self._due_us = 0
+        self.tick()
+        self._connection.close()
+
+    def _send(self, channel: str, data: bytes) -> None:
+        try:
+            self._connection.send(channel.encode() + b"\0" + data, socket.MSG_DONTWAIT)
+        except OSError:  # a slow terminal: the display lacks something, the run does not wait
+            return
+
+
+LOST = "fwk/lost"
+"""In what the supervisor is handed at the end: how many messages the gateway never got."""
+
+
+class Newest:
+    """Keeps the newest message of each channel; hands them to the supervisor at the end, and how many were lost."""
+
+    def __init__(self, plan: Plan, connection: socket.socket, lost: Callable[[], int]) -> None:
+        self._lost = lost
+        self._wanted = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._newest: dict[str, bytes] = {}
+        self._connection = connection
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Takes a message."""
+        if channel in self._wanted:
+            self._newest[channel] = data
+
+    def tick(self) -> None:
+        """Nothing to do."""
+
+    def close(self) -> None:
+        """Hands them over."""
+        self._connection.setblocking(True)
+        for channel, data in {**self._newest, LOST: str(self._lost()).encode()}.items():
+            try:
+                self._connection.send(channel.encode() + b"\0" + data)
+            except OSError:
+                return

@@ -1,1 +1,0 @@
-"""Replay: recorded inputs to real components, at the iterations at which they had them."""

@@ -1,0 +1,1 @@
+"""Requests that steer a running system, and the views that it gives."""

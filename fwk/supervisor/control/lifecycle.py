@@ -1,0 +1,147 @@
+"""Finds out what a wish such as `restart cyan1/*` means for the processes of a run, and whether it can be granted."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from fwk.control.dependents import users_of, with_needs, with_users
+from fwk.control.requests import Action, RequestError
+from fwk.model.plan import NOBODY, Plan
+from fwk.model.selection import matches, nearest
+from fwk.plan.files.source_files import Sources, mistakes
+from fwk.supervisor.processes.host_process import HostEntry
+
+_STOPS = ("stop", "unload", "kill")
+_STARTS_AGAIN = ("start", "restart", "reload")
+_RUNNING = ("starting", "running", "waiting")
+_LOADED = "; what can be loaded stands in the launch file, with 'start: false' if it does not start with the run"
+
+
+class Steering:
+    """Turns wishes for components into wishes for their processes."""
+
+    def __init__(self, plan: Plan, table: Sequence[HostEntry]) -> None:
+        self._plan = plan
+        self._table = table
+        self._sources = Sources(plan)
+
+    def components(self, patterns: Sequence[str]) -> list[int]:
+        """Indices of the components that patterns mean.
+
+        Raises:
+            RequestError: one means none.
+        """
+        names = [component.name for component in self._plan.components]
+        for pattern in patterns:
+            if not any(matches(name, pattern) for name in names):
+                raise RequestError(f"no component '{pattern}'; {nearest(pattern, names)}")
+        return [index for index, name in enumerate(names) if any(matches(name, pattern) for pattern in patterns)]
+
+    def component(self, name: str) -> int:
+        """Index of the component of that very name.
+
+        Raises:
+            RequestError: there is none.
+        """
+        names = [component.name for component in self._plan.components]
+        if name not in names:
+            raise RequestError(f"no component '{name}'; {nearest(name, names)}")
+        return names.index(name)
+
+    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[HostEntry]:
+        """The processes concerned; with `force`, unloading takes along who needs them.
+
+        Raises:
+            RequestError: it cannot be done; names who stands against it.
+        """
+        if not patterns:
+            raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
+        try:
+            chosen, components = self.components(patterns), self._plan.components
+        except RequestError as error:
+            raise RequestError(f"{error}{_LOADED if action == 'load' else ''}") from error
+        if action == "load":
+            chosen = [index for index in with_needs(chosen, components) if index in chosen or not self._runs(index)]
+        elif action == "unload" and force:
+            chosen = [index for index in with_users(chosen, components) if index in chosen or self._runs(index)]
+        elif action == "unload":
+            self._check_users(chosen)
+        elif action in _STARTS_AGAIN:
+            self.check_needs(chosen)
+        if action == "reload":
+            self._check_code(chosen)
+        entries = {self._plan.components[index].host: self._entry(index) for index in chosen}
+        self._check_whole(action, chosen, entries)
+        return list(entries.values())
+
+    def wish(self, action: Action, entry: HostEntry, now_us: int) -> None:
+        """Sets the desired state of a process."""
+        if action in _STOPS:
+            entry.want_stop(now_us)
+        elif action in ("start", "load"):
+            entry.want_start(now_us)
+        else:
+            entry.fresh_code = entry.fresh_code or action == "reload"
+            entry.want_restart(now_us)
+
+    def left_without(self, entries: Sequence[HostEntry]) -> list[dict[str, Any]]:
+        """Channels that lose their writer when these processes end, with the components that go on reading them."""
+        hosts = {entry.index for entry in entries}
+        found = []
+        for channel in self._plan.channels:
+            if channel.writer == NOBODY or self._plan.components[channel.writer].host not in hosts:
+                continue
+            readers = [
+                index for index in channel.readers if self._entry(index).index not in hosts and self._runs(index)
+            ]
+            if readers:
+                found.append({"channel": channel.name, "readers": [self._name(index) for index in readers]})
+        return found
+
+    def _entry(self, index: int) -> HostEntry:
+        return self._table[self._plan.components[index].host]
+
+    def _runs(self, index: int) -> bool:
+        entry = self._entry(index)
+        return entry.wanted and entry.state in _RUNNING
+
+    def _name(self, index: int) -> str:
+        return self._plan.components[index].name
+
+    def check_needs(self, chosen: Sequence[int]) -> None:
+        """Whether everything runs that these components need.
+
+        Raises:
+            RequestError: something does not; says what to type.
+        """
+        for index in chosen:
+            missing = [
+                each for each in self._plan.components[index].needs if each not in chosen and not self._runs(each)
+            ]
+            if missing:
+                name, needed = self._name(index), ", ".join(map(self._name, missing))
+                raise RequestError(f"{name} needs {needed}, which does not run; 'fwk load {name}' starts both")
+
+    def _check_users(self, chosen: Sequence[int]) -> None:
+        for index in chosen:
+            users = [each for each in users_of(index, self._plan.components) if each not in chosen and self._runs(each)]
+            if users:
+                name, by = self._name(index), " ".join(map(self._name, users))
+                more = f"fwk unload {name} {by}, or fwk unload --force {name}"
+                raise RequestError(f"{name} is needed by {by}; unload them too: {more}")
+
+    def _check_code(self, chosen: Sequence[int]) -> None:
+        """A file that is no Python is found while the old code still runs."""
+        files = {file for index in chosen for file in self._sources.files(self._plan.components[index])}
+        if found := mistakes(files):
+            names = ", ".join(self._name(index) for index in chosen)
+            raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code runs on: {names}")
+
+    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostEntry]) -> None:
+        """A process starts and stops as a whole."""
+        for host, entry in entries.items():
+            others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
+            if others:
+                raise RequestError(
+                    f"the process '{entry.name}' holds {', '.join(others)} as well; {action} all of them, "
+                    "or give each component its own process with --hosting process"
+                )

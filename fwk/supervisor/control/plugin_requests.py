@@ -1,0 +1,42 @@
+"""What components ask to be done with other components: collected during a tick, granted between two."""
+
+from fwk.clock import monotonic_us
+from fwk.component.log import Logger
+from fwk.control.requests import Action, RequestError
+from fwk.supervisor.control.lifecycle import Steering
+from fwk.supervisor.processes.hosts import Hosts
+from fwk.supervisor.requests import Wishes
+from lcmtypes.core import done_t
+
+_Wish = tuple[tuple[int, int, str, int], Action, list[str]]
+"""Tick, place in it, name of who asks, number; what; names."""
+
+
+class Directing:
+    """Grants wishes in one order, whichever came first: by tick, place in the tick, and name."""
+
+    def __init__(self, hosts: Hosts, steering: Steering, log: Logger) -> None:
+        self._hosts = hosts
+        self._steering = steering
+        self._log = log
+        self._wishes: list[_Wish] = []
+
+    def ask(self, done: done_t, wishes: Wishes) -> None:
+        """Takes what components of a host ask for."""
+        for name, asked in wishes.get("plugins", {}).items():
+            for number, (action, names) in enumerate(asked):
+                self._wishes.append(((done.tick, done.stage, name, number), action, names))
+
+    def decide(self) -> None:
+        """At a boundary: what can be granted is begun, the rest is refused in the log."""
+        wishes, self._wishes = sorted(self._wishes), []
+        for (_, _, name, _), action, names in wishes:
+            try:
+                entries = self._steering.hosts(action, names)
+            except RequestError as error:
+                self._log.warning(f"{name} wants to {action} {', '.join(names)}; refused: {error}")
+                continue
+            for entry in entries:
+                self._steering.wish(action, entry, monotonic_us())
+                self._hosts.asked.add(entry.index)
+            self._log.info(f"{name} asked to {action} {', '.join(entry.name for entry in entries)}")

@@ -1,0 +1,77 @@
+"""The supervisor's view of the run, published twice a second."""
+
+from collections.abc import Sequence
+from copy import copy
+
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.run_clock import Pace
+from lcmtypes.core import component_state_t, host_status_t, status_t
+
+PERIOD_US = US_PER_S // 2
+
+
+class StatusReport:
+    """Makes status messages and knows how fast the run is."""
+
+    def __init__(self, run: int, table: Sequence[HostEntry], loop: MainLoop, pace: Pace) -> None:
+        self.run = run
+        self._table = table
+        self._loop = loop
+        self._pace = pace
+        self._began_us = monotonic_us()
+        self._before = (self._began_us, 0, 0)  # wall, tick, logical time of the last message
+
+    @property
+    def due(self) -> bool:
+        """Whether it is time for the next message."""
+        return monotonic_us() >= self._before[0] + PERIOD_US
+
+    @property
+    def wall_s(self) -> float:
+        """Wall time since the loop began."""
+        return (monotonic_us() - self._began_us) / US_PER_S
+
+    def message(self) -> status_t:
+        """The state of everything now."""
+        now_us = monotonic_us()
+        wall_us, tick, time_us = self._before
+        self._before = (now_us, self._loop.tick, self._pace.time_us)
+        made = status_t()
+        made.run, made.tick, made.time_us = self.run, self._loop.tick, self._pace.time_us
+        elapsed_us = max(1, now_us - wall_us)
+        made.speed = (self._pace.time_us - time_us) / elapsed_us
+        made.ticks_per_s = (self._loop.tick - tick) * US_PER_S / elapsed_us
+        made.repeated, made.late = self._loop.repeated, self._loop.late
+        made.paused = self._loop.stands
+        made.hosts = [_host(entry) for entry in self._table]
+        made.n = len(made.hosts)
+        return made
+
+    def complete(self, status: status_t) -> None:
+        """Brings the figures of an earlier message up to what hosts said last; the states stay as they were then."""
+        for host, entry in zip(status.hosts, self._table, strict=True):
+            newest = {component.name: component for component in entry.components}
+            for component in host.components:
+                last = newest.get(component.name, component)
+                component.iterations, component.busy_us = last.iterations, last.busy_us
+                component.awake_us, component.worst_us = last.awake_us, last.worst_us
+                component.fetched, component.lost, component.strangers = last.fetched, last.lost, last.strangers
+
+
+def _host(entry: HostEntry) -> host_status_t:
+    made = host_status_t()
+    made.host, made.pid, made.restarts = entry.index, entry.pid, entry.restarts
+    made.state = "late" if entry.busy else entry.state
+    made.components = list(entry.components)
+    if entry.held and entry.alive:
+        made.state, made.components = "held", [_held(component) for component in entry.components]
+    made.n = len(made.components)
+    return made
+
+
+def _held(component: component_state_t) -> component_state_t:
+    made = copy(component)
+    made.state, made.reason = "held", component.reason or "a debugger has its process"
+    return made

@@ -1,0 +1,1 @@
+"""The host processes of a run: their states, starts, restarts and ends."""

@@ -1,0 +1,32 @@
+"""Stands in for a host that has left the run: whoever lacks one of its messages is sent on to the gateway."""
+
+import contextlib
+
+from fwk.bus.sockets import Sender
+from fwk.lcm.messages import MessageError
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+from fwk.supervisor.sync_receiver import Mailbox
+
+
+class StandIn:
+    """Has the port of the host as long as no process of its own does."""
+
+    def __init__(self, plan: Plan, host: int, mailbox: Mailbox) -> None:
+        ports = Ports.of(plan)
+        self._gateway = ports.host(ports.gateway)
+        self._members = ports.members
+        self._sender = Sender(ports.host(host))
+        self._mailbox = mailbox
+        mailbox.watch(self._sender.socket.fileno(), self._pass_on)
+
+    def close(self) -> None:
+        """The host comes back."""
+        self._mailbox.unwatch(self._sender.socket.fileno())
+        self._sender.socket.close()
+
+    def _pass_on(self) -> None:
+        with contextlib.suppress(MessageError):  # a stranger's; the hosts' complaints name it
+            message = self._sender.receive(self._members)
+            if message and message[0] == b"fwk/fetch":
+                self._sender.send(*message, self._gateway)

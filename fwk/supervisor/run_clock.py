@@ -1,0 +1,99 @@
+"""The central clock: the logical time of each tick, from its one source, and when on the wall a tick may begin."""
+
+from fwk.clock import US_PER_S, Clock
+from fwk.model.plan import Plan
+
+
+class Pace:
+    """Logical time of the run.
+
+    Simulated: from the time source if there is one, else a period a tick; `speed` logical seconds a wall second, 0
+    without waiting. Wall: the wall time since the first tick; a tick begins every period.
+
+    Simulated time can be paused, and then be stepped by some ticks.
+    """
+
+    def __init__(self, plan: Plan, speed: float) -> None:
+        self.period_us = plan.period_us
+        self.wall = plan.clock == "wall"
+        self.clock = Clock(plan.period_us)
+        """The newest tick and its logical time."""
+        self._speed = speed
+        self._next_us = -1
+        self._origin_us = -1  # wall clock only: wall time of logical time 0
+        self._anchor: tuple[int, int] | None = None  # wall and logical time at which the pace was last set
+        self._paused = False
+        self._steps = 0  # ticks that may still begin while paused
+
+    @property
+    def time_us(self) -> int:
+        """Logical time of the newest tick."""
+        return self.clock.now_us
+
+    @property
+    def speed(self) -> float:
+        """Logical seconds a wall second; 0: as fast as it goes."""
+        return self._speed
+
+    @speed.setter
+    def speed(self, value: float) -> None:
+        self._speed = value
+        self._anchor = None
+
+    @property
+    def stands(self) -> bool:
+        """Whether no tick may begin."""
+        return self._paused and not self._steps
+
+    def pause(self) -> None:
+        """No further tick begins."""
+        self._paused, self._steps = True, 0
+
+    def resume(self) -> None:
+        """Ticks begin again, at the same pace as before."""
+        self._paused, self._steps, self._anchor = False, 0, None
+
+    def step(self, ticks: int) -> None:
+        """So many more ticks begin, then none."""
+        self._paused, self._steps, self._anchor = True, ticks, None
+
+    @property
+    def loop_time_us(self) -> float:
+        """Wall time that a tick may take if the pace is to be kept; 0: as long as it takes."""
+        return self.period_us if self.wall else self.period_us / self._speed if self._speed > 0 else 0.0
+
+    def source(self, next_us: int) -> None:
+        """The time source says when the next tick happens."""
+        self._next_us = next_us
+
+    def begin_us(self, now_us: int) -> int:
+        """Wall time at which the next tick may begin, as seen at wall time `now_us`."""
+        if not self.wall and self._speed <= 0:
+            return now_us
+        upcoming = self.clock.tick * self.period_us if self.wall else self._upcoming_us()
+        if self._anchor is None:
+            self._anchor = (now_us, upcoming)
+        wall_us, logical_us = self._anchor
+        begin = wall_us + (upcoming - logical_us if self.wall else round((upcoming - logical_us) / self._speed))
+        if begin < now_us - US_PER_S // 2:  # too slow for this pace: do not run after lost time
+            self._anchor = (now_us, upcoming)
+            return now_us
+        return begin
+
+    def advance(self, now_us: int) -> int:
+        """Begins the next tick at wall time `now_us`; returns its logical time."""
+        clock = self.clock
+        clock.tick += 1
+        if self._steps:
+            self._steps -= 1
+        if self.wall:
+            if self._origin_us < 0:
+                self._origin_us = now_us - self.period_us
+            clock.now_us = max(clock.now_us + 1, now_us - self._origin_us)
+        else:
+            clock.now_us = self._upcoming_us()
+        self._next_us = -1
+        return clock.now_us
+
+    def _upcoming_us(self) -> int:
+        return self._next_us if self._next_us > self.time_us else self.time_us + self.period_us

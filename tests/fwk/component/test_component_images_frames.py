@@ -1,0 +1,42 @@
+"""What is no frame is refused where it is given out."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fwk import Component, VisionMaster
+from fwk.component.images import SLOTS, FrameError
+from fwk.testing import Bench
+
+
+class Camera(Component):
+    stage = "sensor_acquire"
+    image: VisionMaster
+
+
+@pytest.mark.parametrize(
+    ("pixels", "shape"),
+    [
+        (np.zeros((2, 2)), r"float64 \(2, 2\)"),
+        (np.zeros((2, 2, 3, 1), np.uint8), r"uint8 \(2, 2, 3, 1\)"),
+        (np.zeros((0, 3), np.uint8), r"uint8 \(0, 3\)"),
+        (np.broadcast_to(np.uint8(0), (3000, 3000)), r"uint8 \(3000, 3000\)"),
+    ],
+)
+def test_what_is_no_frame_is_refused(pixels: Any, shape: str) -> None:
+    bench = Bench(Camera)
+    with pytest.raises(
+        FrameError, match=f"robot/image: a frame is a uint8 array, .* of at most 8388608 bytes, not {shape}"
+    ):
+        bench.component.image.publish(pixels)
+    bench.iterate()
+    assert bench.port("image").sent == []
+
+
+def test_a_ring_holds_no_more_of_one_iteration_than_its_readers_could_see() -> None:
+    bench = Bench(Camera)
+    for _ in range(SLOTS - 1):
+        bench.component.image.publish(np.zeros((2, 2), np.uint8))
+    with pytest.raises(FrameError, match=f"robot/image: at most {SLOTS - 1} frames in one iteration"):
+        bench.component.image.publish(np.zeros((2, 2), np.uint8))

@@ -1,0 +1,24 @@
+"""A camera that was started again: its frames are new ones, not those that it gave out before."""
+
+import numpy as np
+
+from fwk.clock import Clock
+from fwk.component.channels import Reads, Writes
+from fwk.component.images import Image, Ring, VisionMaster
+from fwk.component.log import Logger
+from lcmtypes.robot import frame_t
+
+
+def test_the_first_frame_of_a_restarted_camera_is_not_taken_for_its_predecessors_first() -> None:
+    ring = Ring.create("camera")
+    announcements = Reads("r/image", frame_t)
+    image = Image(announcements, ring, Logger("r/finder", Clock(), print))
+    sequence = 0
+    for shade in (10, 20):  # each time a new process, which goes on where the marks are
+        writer = Writes("r/image", frame_t)
+        writer.sequence = sequence
+        VisionMaster(writer, ring).publish(np.full((4, 4), shade, np.uint8))
+        announcements.freeze(writer.take())
+        sequence = writer.sequence
+        assert image.pixels is not None
+        assert (image.pixels == shade).all()

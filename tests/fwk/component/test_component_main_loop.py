@@ -1,0 +1,131 @@
+"""Who has the main loop, and what components see of it, without processes."""
+
+import pytest
+
+from fwk import Clock, Component, MainLoop, Reads, Writes, channel
+from fwk.component.main_loop import Holding
+from fwk.testing.memory import MemorySystem
+from lcmtypes.robot import imu_t
+
+STAGES = {"r/a": ["think"], "r/b": ["think", "act"]}
+
+
+@pytest.mark.parametrize(
+    ("order", "error"),
+    [
+        ([], "r/driver: a tick runs 1 to 1000 stages, not 0"),
+        (["think"] * 1001, "r/driver: a tick runs 1 to 1000 stages, not 1001"),
+        (["think", "thikn"], "r/driver: no stage 'thikn'; the stages are think, act"),
+    ],
+)
+def test_an_order_that_cannot_be_is_refused_at_once(order: list[str], error: str) -> None:
+    main_loop = MainLoop("r/driver", ("think", "act"))
+    with pytest.raises(ValueError, match=error):
+        main_loop.take_over(order)
+    assert main_loop.take() is None
+
+
+def test_the_first_gets_it_and_the_second_is_told_who_has_it() -> None:
+    holding = Holding(STAGES)
+    holding.ask(3, 5, "r/b", ["act", "act"])
+    holding.ask(3, 5, "r/a", ["think"])
+    assert holding.decide()
+    assert (holding.holder, holding.order) == ("r/a", ("think",))
+    assert holding.refused == ["r/b wants the main loop, but r/a has it; refused until that gives it back"]
+
+
+def test_the_earlier_place_in_a_tick_wins_whoever_answers_first() -> None:
+    holding = Holding(STAGES)
+    holding.ask(3, 5, "r/a", ["think"])
+    holding.ask(3, 1, "r/b", ["act"])
+    holding.decide()
+    assert holding.holder == "r/b"
+
+
+def test_who_has_it_changes_the_order_and_gives_it_back_to_the_next() -> None:
+    holding = Holding(STAGES)
+    holding.ask(1, 5, "r/a", ["think"])
+    holding.decide()
+    holding.ask(2, 0, "r/a", ["think", "act"])
+    assert holding.decide()
+    assert list(holding.order) == ["think", "act"]
+    holding.ask(3, 0, "r/b", [])  # it is not b's to give
+    assert not holding.decide()
+    holding.ask(4, 0, "r/a", [])
+    holding.ask(4, 1, "r/b", ["act"])
+    assert holding.decide()
+    assert (holding.holder, list(holding.order), holding.refused) == ("r/b", ["act"], [])
+
+
+def test_an_order_without_a_stage_of_its_own_is_refused() -> None:
+    holding = Holding(STAGES)
+    holding.ask(1, 5, "r/a", ["act"])
+    assert not holding.decide()
+    assert holding.refused == [
+        "r/a wants the main loop for act; refused: without a stage of its own (think) it could never give it back"
+    ]
+
+
+def test_whose_process_ends_has_given_it_back() -> None:
+    holding = Holding(STAGES)
+    holding.ask(1, 5, "r/a", ["think"])
+    holding.decide()
+    holding.ask(2, 0, "r/a", ["think", "think"])
+    holding.left(["r/a"])
+    holding.ask(2, 0, "r/b", ["act"])
+    assert holding.asked
+    holding.decide()
+    assert (holding.holder, holding.asked) == ("r/b", False)
+    holding.left(["r/a"])
+    assert not holding.decide()
+
+
+def test_an_order_of_unknown_stages_or_of_none_is_a_mistake() -> None:
+    loop = MainLoop("r/a", ["think", "act"])
+    with pytest.raises(ValueError, match="r/a: no stage 'thnk'; the stages are think, act"):
+        loop.take_over(["act", "thnk"])
+    with pytest.raises(ValueError, match="1 to 1000 stages, not 0"):
+        loop.take_over([])
+    assert loop.take() is None
+
+
+class Conducts(Component):
+    """Has three ticks played otherwise."""
+
+    stage = "think"
+    clock: Clock
+    main_loop: MainLoop
+    state: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.state.value.heading_rad = self.main_loop.mine
+        self.state.write()
+        if self.clock.tick == 2 and not self.main_loop.mine:
+            self.main_loop.take_over(["act", "think", "act"])
+        if self.clock.tick == 5:
+            self.main_loop.give_back()
+
+
+class Plays(Component):
+    stage = "act"
+    other: Reads[imu_t] = channel("r/state")
+    heard: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.heard.value.heading_rad = self.other.header.tick
+        self.heard.write()
+
+
+def test_a_system_in_memory_runs_the_stages_that_are_asked_for() -> None:
+    system = MemorySystem({"r/conducts": Conducts, "r/plays": Plays})
+    system.tick(7)
+    played = [imu_t.decode(data) for data in system.sent["r/heard"]]
+    assert [(imu.header.tick, imu.header.stage, imu.heading_rad) for imu in played] == [
+        (1, 7, 1),
+        (2, 7, 2),
+        *((tick, place, tick - (place == 0)) for tick in (3, 4, 5) for place in (0, 2)),
+        (6, 7, 6),
+        (7, 7, 7),
+    ]
+    states = [imu_t.decode(data) for data in system.sent["r/state"]]
+    assert [bool(state.heading_rad) for state in states] == [False, False, True, True, True, False, False]

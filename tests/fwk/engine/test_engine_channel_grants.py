@@ -1,0 +1,200 @@
+"""What is asked of the blackboard and what is granted, without processes."""
+
+from typing import Any
+
+import pytest
+
+from fwk import Blackboard, Component, Reads, VisionMaster, Writes
+from fwk.engine.channel_grants import Openings
+from fwk.lcm.messages import fingerprint, type_name
+from fwk.model.channel_table import BlackboardEvent, Fact, Instances, facts_of, text_of
+from fwk.model.plan import Plan
+from fwk.testing.plans import plan_of
+from lcmtypes.robot import frame_t, imu_t, odometry_t
+
+A, B, READER = 0, 1, 2
+IMU = (type_name(imu_t), fingerprint(imu_t).hex())
+ODOMETRY = (type_name(odometry_t), fingerprint(odometry_t).hex())
+FRAME = (type_name(frame_t), fingerprint(frame_t).hex())
+
+
+class Opener(Component):
+    stage = "think"
+    blackboard: Blackboard
+    imu: Writes[imu_t]
+
+
+class Camera(Component):
+    stage = "act"
+    image: VisionMaster
+
+
+class Reader(Component):
+    stage = "act"
+    imu: Reads[imu_t]
+
+
+def plan(spare_channels: int = 8) -> Plan:
+    return plan_of({"a/opener": Opener, "b/opener": Opener, "a/reader": Reader}, spare_channels=spare_channels)
+
+
+def begun(spare_channels: int = 8) -> Openings:
+    """With everybody there."""
+    made = Openings(plan(spare_channels))
+    for component in (A, B, READER):
+        made.came(component, 1)
+    made.decide()
+    return made
+
+
+def decided(openings: Openings) -> list[tuple[str, int, str]]:
+    """Kind, component, and channel or reason."""
+    facts, _ = openings.decide()
+    return [(fact.kind, fact.component, fact.opening.name if fact.opening else fact.reason) for fact in facts]
+
+
+def happened(openings: Openings) -> list[tuple[str, str, str]]:
+    _, events = openings.decide()
+    return [(event.kind, event.channel, event.component) for event in events]
+
+
+def test_who_comes_is_the_writer_and_reader_of_what_it_declares() -> None:
+    openings = Openings(plan())
+    openings.came(READER, 1)
+    openings.came(A, 1)
+    assert openings.asked
+    assert happened(openings) == [("writer_added", "a/imu", "a/opener"), ("reader_added", "a/imu", "a/reader")]
+    assert not openings.asked
+    imu = openings.instances.find("a/imu")
+    assert imu
+    assert (openings.instances.writer(imu), openings.instances.readers(imu)) == ("a/opener", ("a/reader",))
+    openings.left(A)
+    assert happened(openings) == [("writer_removed", "a/imu", "a/opener")]
+    assert openings.instances.writer(imu) == ""
+
+
+def test_the_first_to_open_creates_an_instance_and_the_last_to_close_destroys_it() -> None:
+    openings = begun()
+    openings.ask(1, 0, "a/opener", [["read", 1, "x/spot", *IMU]])
+    assert happened(openings) == [
+        ("instance_created", "x/spot", "a/opener"),
+        ("reader_added", "x/spot", "a/opener"),
+    ]
+    openings.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU]])
+    assert happened(openings) == [("writer_added", "x/spot", "b/opener")]
+    openings.ask(3, 0, "a/opener", [["close", 1]])
+    assert happened(openings) == [("reader_removed", "x/spot", "a/opener")]
+    openings.ask(4, 0, "b/opener", [["close", 1]])
+    assert happened(openings) == [
+        ("writer_removed", "x/spot", "b/opener"),
+        ("instance_destroyed", "x/spot", "b/opener"),
+    ]
+
+
+def test_wishes_are_granted_in_the_order_of_tick_place_component_and_asking() -> None:
+    openings = begun()
+    openings.ask(2, 0, "a/opener", [["write", 2, "x/late", *IMU]])
+    openings.ask(1, 1, "a/opener", [["write", 1, "x/spot", *IMU]])
+    openings.ask(1, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "x/late", *IMU]])
+    assert [(component, name) for _, component, name in decided(openings)] == [
+        (B, "x/spot"),
+        (B, "x/late"),
+        (A, "x/spot: b/opener is its writer; a/opener has to wait"),
+        (A, "x/late"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("wish", "reason"),
+    [
+        (["write", 1, "b/imu", *IMU], "b/opener is its writer by the plan; a/opener can only read it"),
+        (["write", 1, "out/joy", *IMU], "programs outside write it by the plan; a/opener can only read it"),
+        (["write", 1, "b/spot", *IMU], "b/opener is its writer; a/opener has to wait"),
+        (
+            ["read", 1, "b/imu", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener",
+        ),
+        (
+            ["read", 1, "out/joy", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]})",
+        ),
+        (
+            ["write", 1, "x/read", *ODOMETRY],
+            f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener",
+        ),
+        (["read", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
+        (["write", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
+        (
+            ["read", 1, "x/more", *IMU],
+            "2 channels were opened at run time already; say 'spare_channels: N' in the launch file for more",
+        ),
+    ],
+)
+def test_what_is_refused_names_both_sides(wish: list[Any], reason: str) -> None:
+    components: dict[str, type[Component]] = {"a/opener": Opener, "b/opener": Opener, "c/camera": Camera}
+    openings = Openings(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
+    for component in range(len(components)):
+        openings.came(component, 1)
+    openings.ask(1, 0, "b/opener", [["write", 1, "b/spot", *IMU], ["read", 2, "x/read", *IMU]])
+    openings.decide()
+    openings.ask(2, 0, "a/opener", [wish])
+    assert decided(openings) == [("refuse", A, f"{wish[2]}: {reason}")]
+
+
+def test_there_are_as_many_channels_as_the_plan_has_spare() -> None:
+    openings = begun(spare_channels=1)
+    openings.ask(1, 0, "a/opener", [["write", 1, "x/one", *IMU], ["write", 2, "x/two", *IMU]])
+    assert [kind for kind, _, _ in decided(openings)] == ["write", "refuse"]
+    openings.ask(2, 0, "a/opener", [["close", 1]])
+    assert [kind for kind, _, _ in decided(openings)] == ["close"]
+    openings.ask(3, 0, "a/opener", [["write", 3, "x/one", *IMU], ["write", 4, "x/one", *ODOMETRY]])
+    facts, _ = openings.decide()
+    assert [fact.kind for fact in facts] == ["write", "refuse"]
+    assert facts[0].opening
+    assert facts[0].opening.channel == len(plan().channels)
+
+
+def test_a_pattern_follows_instances_of_its_type_and_keeps_none_alive() -> None:
+    openings = begun()
+    openings.ask(1, 0, "a/opener", [["each", 1, "*/imu", *IMU], ["each", 2, "x/*", *IMU]])
+    assert decided(openings) == [("read", A, "a/imu"), ("read", A, "b/imu")]
+    openings.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["write", 2, "x/other", *ODOMETRY]])
+    assert decided(openings)[2:] == [("read", A, "x/spot")]
+    openings.ask(3, 0, "b/opener", [["close", 1]])
+    assert decided(openings) == [("close", B, "x/spot"), ("close", A, "x/spot")]
+    assert openings.instances.find("x/spot") is None
+
+
+def test_who_goes_has_closed_everything_and_what_it_asked_is_void() -> None:
+    openings = begun()
+    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU]])
+    openings.decide()
+    openings.ask(2, 0, "a/opener", [["write", 3, "x/more", *IMU]])
+    openings.left(A)
+    openings.came(A, 2)
+    _, events = openings.decide()
+    assert BlackboardEvent("instance_destroyed", "x/spot", "robot.imu_t", "a/opener") in events
+    assert openings.instances.find("x/more") is None
+    assert A in openings.instances.present
+
+
+def test_who_is_busy_is_served_later() -> None:
+    openings = begun()
+    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU]])
+    openings.left(B)
+    assert openings.decide(lambda _: True) == ([], [])
+    assert openings.asked
+    assert [kind for kind, _, _ in decided(openings)] == ["go", "write"]
+
+
+def test_facts_travel_and_a_snapshot_makes_the_same_table() -> None:
+    openings = begun()
+    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU], ["read", 3, "y/z", *IMU]])
+    facts, _ = openings.decide()
+    assert facts_of(text_of(facts)) == facts
+    refused = [Fact("refuse", 1, 2, reason="because")]
+    assert facts_of(text_of(refused)) == refused
+    copy = Instances(plan())
+    copy.apply(facts_of(text_of(openings.instances.snapshot())))
+    views = [[table.view(each) for each in table.matching("*")] for table in (copy, openings.instances)]
+    assert views[0] == views[1]

@@ -1,0 +1,105 @@
+"""The ledger of marks, played without processes."""
+
+import pytest
+
+from fwk import Component, Reads, Writes
+from fwk.engine.visibility import Ledger, Void
+from fwk.testing.plans import plan_of
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+
+class Senses(Component):
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+
+class Locates(Component):
+    stage = "worldstate"
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+
+class Thinks(Component):
+    stage = "think"
+    pose: Reads[pose_t]
+    imu: Reads[imu_t]
+
+
+ACQUIRE, WORLDSTATE, THINK = 1, 4, 5
+IMU, POSE = 0, 1
+
+
+@pytest.fixture
+def ledger() -> Ledger:
+    return Ledger(plan_of({"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}))
+
+
+def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledger: Ledger) -> None:
+    ledger.begin()
+    ledger.publish(POSE, 1)
+    ledger.begin()
+    assert ledger.news(THINK, 0) == ([POSE], [1])
+    assert ledger.news(WORLDSTATE, 0) == ([], [])
+
+
+def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_tick_is_repeated(ledger: Ledger) -> None:
+    ledger.begin()
+    ledger.publish(POSE, 1)
+    assert ledger.news(THINK, 0) == ([], [])
+    ledger.begin()
+    ledger.publish(POSE, 2)
+    assert ledger.news(THINK, 0) == ([POSE], [1])
+
+
+def test_a_host_that_is_told_in_one_stage_knows_what_its_components_of_later_stages_read() -> None:
+    parts = {"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}
+    ledger = Ledger(plan_of(parts, groups=[["r/senses", "r/thinks"]]))
+    ledger.begin()
+    ledger.publish(POSE, 1)
+    seen = ledger.begin()
+    assert ledger.news(ACQUIRE, 0) == ([POSE], [1])
+    ledger.begin()
+    assert ledger.news(THINK, seen) == ([], [])
+
+
+def test_only_what_changed_since_the_last_time_is_told_again(ledger: Ledger) -> None:
+    ledger.publish(IMU, 1)
+    seen = ledger.begin()
+    assert ledger.news(THINK, 0) == ([IMU], [1])
+    ledger.publish(POSE, 1)
+    ledger.begin()
+    assert ledger.news(THINK, seen) == ([POSE], [1])
+
+
+def test_what_a_stage_publishes_itself_is_told_to_it_the_next_time(ledger: Ledger) -> None:
+    seen = ledger.begin()
+    ledger.publish(IMU, 5)
+    ledger.begin()
+    assert ledger.news(WORLDSTATE, seen) == ([IMU], [5])
+
+
+def test_a_newcomer_is_told_everything(ledger: Ledger) -> None:
+    ledger.publish(IMU, 7)
+    for _ in range(100):
+        ledger.begin()
+    ledger.publish(POSE, 3)
+    ledger.begin()
+    assert ledger.news(THINK, 0) == ([IMU, POSE], [7, 3])
+
+
+def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Ledger) -> None:
+    ledger.publish(IMU, 7)
+    ledger.publish(IMU, 6)
+    ledger.begin()
+    assert ledger.marks[IMU] == 7
+
+
+def test_a_dead_writers_channels_are_void_above_what_it_published_and_go_on_there(ledger: Ledger) -> None:
+    step = ledger.begin()
+    ledger.publish(IMU, 9)
+    ledger.void(host=0, incarnation=2, tick=3)
+    assert ledger.voids_since(step) == [Void(IMU, 9, 3, 2, step)]
+    ledger.begin()
+    assert ledger.voids_since(ledger.begin()) == []
+    assert ledger.sequences(0) == {"r/imu": 9}

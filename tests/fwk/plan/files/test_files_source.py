@@ -1,0 +1,47 @@
+"""YAML as launch files read it: plain values as people mean them, and every value's line."""
+
+from pathlib import Path
+
+import pytest
+
+from fwk.model.errors import Problems
+from fwk.plan.files.source import Node, read_value, read_yaml
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1e-3", 0.001),
+        ("-.5", -0.5),
+        (".inf", float("inf")),
+        ("010", 10),
+        ("0x1F", 31),
+        ("true", True),
+        ("yes", "yes"),
+        ("on", "on"),
+        ("12:30", "12:30"),
+        ("2026-11-21", "2026-11-21"),
+        ("1_000", "1_000"),
+        ("'5'", "5"),
+        ("", ""),
+        ("~", None),
+        ("[1, {a: b}]", [1, {"a": "b"}]),
+        ("udpm://239.255.76.67:7667?ttl=0", "udpm://239.255.76.67:7667?ttl=0"),
+    ],
+)
+def test_plain_values(text: str, value: object) -> None:
+    problems = Problems()
+    node = read_value(text, "--set", problems)
+    assert node
+    assert (node.plain(), bool(problems)) == (value, False)
+    assert type(node.plain()) is type(value)
+
+
+def test_every_value_knows_the_line_of_its_key(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text("one:\n  two: 2\n  three:\n    - x\n    - y\nfour: &f {five: 5}\nsix: *f\n")
+    node = read_yaml(tmp_path / "a.yaml", "a.yaml", Problems())
+    assert node
+    paths: list[tuple[str | int, ...]] = [("one",), ("one", "two"), ("one", "three"), ("one", "three", 1), ("six",)]
+    assert [node.at(*path).place for path in paths] == ["a.yaml:1", "a.yaml:2", "a.yaml:3", "a.yaml:5", "a.yaml:7"]
+    assert node.at("one", "nothing", "deep").place == "a.yaml:1"
+    assert node.at("six", "five") == Node(5, "a.yaml:6")

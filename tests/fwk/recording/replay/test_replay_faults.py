@@ -1,0 +1,231 @@
+"""A replay of what went wrong in a run: late iterations that never ran, messages that somebody never got."""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+
+from fwk import Component, Config, Reads, Writes
+from fwk.lcm.event_log import LogWriter
+from fwk.model.plan import Plan
+from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.replay import Replay
+from fwk.testing.plans import plan_of
+from lcmtypes.core import change_t, done_t, plan_t, tick_event_t, tick_record_t
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+SENSOR, COUNTER = 0, 1  # components, their hosts and the channels that they write
+ACQUIRE, THINK, ACT = 1, 5, 7
+Event = tuple[int, int, int, int]
+LATE = (tick_event_t.LATE, COUNTER, 0, 0)
+STOPPED = (tick_event_t.STOPPED, COUNTER, 0, 0)
+
+
+class GainConfig(Config):
+    gain: float = 1.0
+    """Of what is heard."""
+
+
+class Sensor(Component):
+    """Counts."""
+
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 1.0
+        self.imu.write()
+
+
+class Counter(Component):
+    """Adds up what it hears; says at the end how often it ran and by which settings."""
+
+    stage = "think"
+    config: GainConfig
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        self.pose.value.x_m += 1.0
+        self.pose.value.heading_rad += self.config.gain * sum(each.heading_rad for each in self.imu.fresh)
+        self.pose.write()
+
+    def finalize(self) -> None:
+        self.pose.value.y_m = self.config.gain
+        self.pose.write()
+
+
+class Idler(Component):
+    """Does nothing, in a stage after the counter's."""
+
+    stage = "act"
+
+    def loop(self) -> None:
+        pass
+
+
+PLAN = plan_of({"r/sensor": Sensor, "r/counter": Counter})
+SHARED = plan_of(
+    {"r/sensor": Sensor, "r/counter": Counter, "r/idler": Idler}, groups=[["r/sensor"], ["r/counter", "r/idler"]]
+)
+
+
+class Made:
+    """A log that is made by hand, tick by tick."""
+
+    def __init__(self, path: Path, plan: Plan = PLAN) -> None:
+        self.path = path
+        self._log = LogWriter(path, print)
+        self._tick = 0
+        said = plan_t()
+        said.json = json.dumps(plan.to_json())
+        self._log.append("fwk/plan", said.encode(), 0)
+
+    def sensed(self, number: int) -> None:
+        """The sensor's message of the tick that comes next."""
+        message = imu_t()
+        message.heading_rad = float(number)
+        self._write(message, "r/sensor", number, self._tick + 1, ACQUIRE)
+
+    def counted(self, number: int, heading_rad: float, tick: int, stage: int = THINK, y_m: float = 0.0) -> None:
+        """The counter's message of a tick."""
+        message = pose_t()
+        message.x_m, message.y_m, message.heading_rad = float(number - (stage == done_t.FINAL)), y_m, heading_rad
+        self._write(message, "r/counter", number, tick, stage)
+
+    def counted_anew(self, number: int, heading_rad: float, tick: int) -> None:
+        """The first message of a counter that was started again."""
+        message = pose_t()
+        message.x_m, message.heading_rad = 1.0, heading_rad
+        self._write(message, "r/counter#2", number, tick, THINK)
+
+    def tick(self, *events: Event, marks: Sequence[int], gain: float = 0.0) -> None:
+        """A tick in which the sensor runs, and then this happens; `gain` is what the counter is told before."""
+        self._tick += 1
+        made = tick_record_t()
+        made.tick, made.time_us = self._tick, self._tick * 50_000
+        began = [(tick_event_t.STARTED, host, 0, 1) for host in (SENSOR, COUNTER)] if self._tick == 1 else []
+        sensed = [stage(ACQUIRE), done(SENSOR, self._tick, ACQUIRE), stage(THINK)]
+        first = [event for event in events if event == STOPPED]
+        for kind, index, tick, where in [*began, *first, *sensed, *(event for event in events if event != STOPPED)]:
+            event = tick_event_t()
+            event.kind, event.index, event.tick, event.stage = kind, index, tick, where
+            made.events.append(event)
+        made.n_events = len(made.events)
+        made.n_marks, made.channel, made.sequence = 2, [SENSOR, COUNTER], list(marks)
+        if gain:
+            change = change_t()
+            change.component, change.number, change.settings = COUNTER, 1, json.dumps({"gain": gain})
+            made.n_changes, made.changes = 1, [change]
+        self._log.append("fwk/record", made.encode(), made.time_us)
+
+    def replayed(self, *only: str) -> Replay:
+        """The replay of all this."""
+        self._log.close()
+        made = Replay(Recording(self.path), only)
+        made.run()
+        return made
+
+    def _write(self, message: imu_t | pose_t, writer: str, number: int, tick: int, where: int) -> None:
+        header = message.header
+        header.tick, header.stage, header.sequence, header.writer = tick, where, number, writer
+        header.time_us = tick * 50_000
+        self._log.append("r/imu" if isinstance(message, imu_t) else "r/pose", message.encode(), 0)
+
+
+def stage(index: int) -> Event:
+    return tick_event_t.STAGE, index, 0, index
+
+
+def done(host: int, tick: int, where: int) -> Event:
+    return tick_event_t.DONE, host, tick, where
+
+
+def missed(number: int) -> Event:
+    """The counter never got that message of the sensor."""
+    return tick_event_t.MISSED, COUNTER, number, SENSOR
+
+
+def differences(replay: Replay) -> list[str]:
+    return [str(each) for each in replay.differences]
+
+
+def test_an_iteration_that_was_late_and_never_ran_is_not_replayed(tmp_path: Path) -> None:
+    made = Made(tmp_path / "log.lcm")
+    made.sensed(1)
+    made.counted(1, 1.0, tick=1)
+    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    made.tick(LATE, marks=(2, 1))
+    made.sensed(3)
+    made.counted(2, 1.0, tick=1, stage=done_t.FINAL, y_m=1.0)  # the settings that were meant for it it was never told
+    made.tick(STOPPED, done(COUNTER, 1, done_t.FINAL), marks=(3, 2), gain=5.0)
+    assert differences(made.replayed()) == []
+
+
+def test_an_iteration_that_was_late_has_the_inputs_and_settings_of_its_tick(tmp_path: Path) -> None:
+    made = Made(tmp_path / "log.lcm")
+    made.sensed(1)
+    made.tick(LATE, marks=(1, 0))
+    made.sensed(2)
+    made.counted(1, 1.0, tick=1)
+    made.counted(2, 11.0, tick=2)
+    made.tick(done(COUNTER, 1, THINK), done(COUNTER, 2, THINK), marks=(2, 2), gain=5.0)
+    assert differences(made.replayed()) == []
+
+
+def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> None:
+    made = Made(tmp_path / "log.lcm")
+    made.sensed(1)
+    made.counted(1, 0.0, tick=1)
+    made.tick(missed(1), done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    made.counted(2, 2.0, tick=2)
+    made.tick(done(COUNTER, 2, THINK), marks=(2, 2))
+    replay = made.replayed()
+    assert differences(replay) == []
+    assert replay.compared == 4
+
+
+def started_anew(folder: Path, *never_got: Event) -> Made:
+    """Two ticks; in the second a process in the place of one that died has answered for another component."""
+    made = Made(folder / "log.lcm", SHARED)
+    made.sensed(1)
+    made.counted(1, 1.0, tick=1)
+    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
+    made.tick(lost, started, stage(ACT), *never_got, done(COUNTER, 2, ACT), marks=(2, 1))
+    return made
+
+
+def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Path) -> None:
+    """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
+    made = started_anew(tmp_path)
+    made.sensed(3)
+    made.counted_anew(2, 2.0, tick=3)
+    made.tick(missed(3), done(COUNTER, 3, THINK), marks=(3, 2))
+    assert differences(made.replayed()) == []
+
+
+def test_the_newest_that_a_new_process_never_got_nobody_in_it_has(tmp_path: Path) -> None:
+    made = started_anew(tmp_path, missed(2))
+    made.sensed(3)
+    made.counted_anew(2, 3.0, tick=3)
+    made.tick(done(COUNTER, 3, THINK), marks=(3, 2))
+    assert differences(made.replayed()) == []
+
+
+def test_what_the_recording_never_got_its_writer_writes_again(tmp_path: Path) -> None:
+    made = Made(tmp_path / "log.lcm")
+    made.counted(1, 1.0, tick=1)
+    made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
+    made.sensed(2)
+    made.tick(done(COUNTER, 2, THINK), marks=(2, 2))
+    made.counted(3, 3.0, tick=3)
+    made.tick(done(COUNTER, 3, THINK), marks=(3, 3))
+    replay = made.replayed()
+    assert {channel: numbers for channel, numbers in replay.lost.items() if numbers} == {}
+    assert differences(replay)[0].startswith("r/pose: tick 3")  # 1 and 2 and 3 are 6
+    assert replay.compared == 3
+    assert made.replayed("r/counter").lost == {"r/imu": {1, 3}, "r/pose": set()}

@@ -1,0 +1,110 @@
+"""Where the gateway's messages go, without a gateway."""
+
+import socket
+from pathlib import Path
+
+import pytest
+
+from fwk import Component, Writes, channel
+from fwk.lcm.event_log import LogReader
+from fwk.logs.rotating import RotatingFile
+from fwk.logs.text_file import TextLog
+from fwk.recording.sinks import Display, Newest, Recorder
+from fwk.testing.plans import plan_of
+from lcmtypes.core import log_t
+from lcmtypes.robot import imu_t
+
+
+class World(Component):
+    stage = "pre_loop"
+    truth: Writes[imu_t] = channel("world/truth")
+    other: Writes[imu_t] = channel("robot/other")
+
+
+PLAN = plan_of({"world/simulator": World})
+
+
+def line(text: str) -> bytes:
+    made = log_t()
+    made.component, made.text, made.level, made.tick, made.time_us = "r/base", text, log_t.WARNING, 3, 150_000
+    made.file, made.line = "base.py", 7
+    return made.encode()
+
+
+def received(end: socket.socket) -> list[bytes]:
+    end.setblocking(False)
+    found: list[bytes] = []
+    while True:
+        try:
+            packet = end.recv(1 << 16)
+        except BlockingIOError:
+            return found
+        if not packet:
+            return found
+        found.append(packet)
+
+
+def test_the_recorder_keeps_order_and_logical_time(tmp_path: Path) -> None:
+    recorder = Recorder(PLAN, tmp_path / "a.lcm", pytest.fail)
+    for number in range(100):
+        recorder.message("world/truth", b"%d" % number, number * 50_000)
+        recorder.tick()
+    recorder.close()
+    plan, *events = LogReader(tmp_path / "a.lcm")
+    assert plan.channel == "fwk/plan"
+    assert [(event.channel, event.data, event.time_us) for event in events] == [
+        ("world/truth", b"%d" % number, number * 50_000) for number in range(100)
+    ]
+
+
+def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:
+    recorder = Recorder(PLAN, tmp_path / "a.lcm", pytest.fail)
+    recorder.message("world/truth", b"1", 0)
+    recorder.tick()
+    assert [event.channel for event in LogReader(tmp_path / "a.lcm")] == ["fwk/plan", "world/truth"]
+    recorder.close()
+
+
+def test_the_text_log_has_a_line_for_each_and_nothing_else(tmp_path: Path) -> None:
+    log = TextLog(RotatingFile(tmp_path / "fwk.log", 1000, 1, pytest.fail))
+    log.message("world/truth", b"\0" * 100, 0)
+    log.message("fwk/log", line("wheels are hot"), 0)
+    log.close()
+    (written,) = (tmp_path / "fwk.log").read_text().splitlines()
+    assert "tick 3 0.150 s warning r/base base.py:7: wheels are hot" in written
+
+
+def test_the_display_gets_lines_at_once_and_of_the_rest_the_newest() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    display = Display(PLAN, ours)
+    display.message("fwk/log", line("hello"), 0)
+    for number in range(50):
+        display.message("world/truth", b"%d" % number, 0)
+        display.message("robot/other", b"not shown", 0)
+    assert [packet.partition(b"\0")[0] for packet in received(theirs)] == [b"fwk/log"]
+    display.close()
+    assert received(theirs) == [b"world/truth\x0049"]
+    theirs.close()
+
+
+def test_a_display_that_does_not_read_holds_up_nobody() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    display = Display(PLAN, ours)
+    for _ in range(10_000):
+        display.message("fwk/log", line("flood"), 0)
+    theirs.close()
+    display.message("fwk/log", line("into the void"), 0)
+    display.close()
+
+
+def test_the_newest_messages_are_handed_over_at_the_end() -> None:
+    ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    newest = Newest(PLAN, ours, lambda: 7)
+    for number in range(3):
+        newest.message("world/truth", b"%d" % number, 0)
+        newest.message("robot/other", b"x", 0)
+    assert received(theirs) == []
+    newest.close()
+    assert received(theirs) == [b"world/truth\x002", b"fwk/lost\x007"]
+    for each in (ours, theirs):
+        each.close()

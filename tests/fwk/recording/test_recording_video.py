@@ -1,0 +1,105 @@
+"""Videos of recordings: one picture a tick, of what was newest at its end."""
+
+import json
+import resource
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cv2
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from fwk.cli.video import video as command
+from fwk.model.plan import Plan
+from fwk.recording.video import Picture, VideoError, drawing, render_video
+from lcmtypes.core import plan_t
+from tests.fwk.recording.recording_made import entries, write
+
+Newest = Callable[[str], Any]
+
+
+def grey(newest: Newest) -> Picture | None:
+    """As bright as the tick's number; needs odometry and world model of the same tick."""
+    seen, model = newest("cyan2/odometry"), newest("cyan2/world_model")
+    if seen is None:
+        return None
+    assert seen.header.tick == model.header.tick
+    return np.full((48, 64, 3), 10 * seen.header.tick, np.uint8)
+
+
+class Grey:
+    """The same as a class."""
+
+    def draw(self, newest: Newest) -> Picture | None:
+        return grey(newest)
+
+
+def played(file: Path) -> tuple[list[int], float]:
+    """Brightness of each picture, and pictures a second."""
+    capture = cv2.VideoCapture(str(file))
+    found: list[int] = []
+    while True:
+        there, picture = capture.read()
+        if not there:
+            return found, float(capture.get(cv2.CAP_PROP_FPS))
+        found.append(round(float(picture.mean())))
+
+
+def test_each_tick_is_one_picture_at_the_speed_of_logical_time(tmp_path: Path) -> None:
+    log = write(tmp_path / "log", entries(ticks=20))
+    assert render_video(log, tmp_path / "out.mp4", grey) == 20
+    brightness, per_s = played(tmp_path / "out.mp4")
+    assert brightness == pytest.approx([10 * tick for tick in range(1, 21)], abs=4)
+    assert per_s == pytest.approx(20.0)
+
+
+def test_pictures_begin_when_there_is_something_to_show(tmp_path: Path) -> None:
+    late = [made for made in entries(ticks=20) if made[0].startswith("cyan1") or made[2] > 500_000]
+    assert render_video(write(tmp_path / "log", late), tmp_path / "out.mp4", grey) == 10
+
+
+def test_what_goes_wrong_is_told(tmp_path: Path) -> None:
+    log = write(tmp_path / "log", entries(ticks=3))
+    with pytest.raises(VideoError, match="log: nothing to show"):
+        render_video(log, tmp_path / "out.mp4", lambda newest: newest("nothing"))
+    with pytest.raises(VideoError, match=r"out\.mp4: cannot write a video there"):
+        render_video(log, tmp_path / "no folder" / "out.mp4", grey)
+    with pytest.raises(VideoError, match="picture 2 is 64x20, not 64x10 as the first"):
+        render_video(
+            log, tmp_path / "out.mp4", lambda n: np.zeros((10 * n("cyan1/odometry").header.tick, 64, 3), np.uint8)
+        )
+    for name in ("no.such:module", "fwk.clock:nothing", ""):
+        with pytest.raises(VideoError, match=f"no drawing '{name}': .*; say module:name"):
+            drawing(name)
+
+
+def test_a_video_for_which_there_is_no_room_is_told(tmp_path: Path) -> None:
+    log, before = write(tmp_path / "log", entries(ticks=3)), resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (200, before[1]))  # Python ignores SIGXFSZ: writing fails instead
+    try:
+        with pytest.raises(VideoError, match=r"out\.mp4: cannot be written: .* of 3 pictures are in it; is there room"):
+            render_video(log, tmp_path / "out.mp4", grey)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> None:
+    app = typer.Typer()
+    app.command()(command)
+    run = CliRunner().invoke
+    log, out = write(tmp_path / "log", entries(ticks=3)), tmp_path / "out.mp4"
+    alone = run(app, [str(tmp_path), "-o", str(out)])
+    assert alone.exit_code == 1
+    assert alone.stderr == f"error: {log}: no readable plan of its run in it; name the drawing with --draw\n"
+    plan = Plan("x", "x.yaml", (), (), 50_000, "simulated", 1, (), (), (), video=f"{__name__}:Grey")
+    said = plan_t()
+    said.json = json.dumps(plan.to_json())
+    write(log, [("fwk/plan", said.encode(), 0), *entries(ticks=3)])
+    drawn = run(app, [str(tmp_path), "-o", str(out)])
+    assert (drawn.exit_code, drawn.stdout) == (0, f"{out}: 3 pictures\n")
+    assert run(app, [str(log), "-o", str(out), "--draw", f"{__name__}:grey"]).exit_code == 0
+    assert run(app, [str(log), "-o", "out.avi"]).exit_code == 2
+    assert run(app, [str(tmp_path / "none"), "-o", str(out)]).exit_code == 2
