@@ -33,6 +33,7 @@ lint: types  ## Format, lint, types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
 	$(BIN)/mypy
+	$(BIN)/lint-imports --no-logo
 
 test: lint  ## Everything that has to hold before a commit
 	$(BIN)/pytest $(PARALLEL)

@@ -8,7 +8,8 @@ from rich.console import Console
 from rich.table import Table
 
 from fwk.cli.arguments import Hosting
-from fwk.clock import US_PER_S, rate_word
+from fwk.clock import rate_word
+from fwk.display.plan_overview import counted, overview, value_at
 from fwk.model.errors import PlanError
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.plan.load import LaunchOptions, load_plan
@@ -47,33 +48,15 @@ def check(
         for problem in error.problems:
             place, rest = problem.place, str(problem).removeprefix(problem.place)
             typer.echo(typer.style(place, bold=True) + rest, err=True)
-        typer.echo(_counted(len(error.problems), "mistake"), err=True)
+        typer.echo(counted(len(error.problems), "mistake"), err=True)
         raise typer.Exit(BAD_INPUT) from error
     console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
-    for line in summary(plan):
+    for line in overview(plan):
         console.print(line, highlight=False, markup=False, soft_wrap=True)
     if channels:
         console.print(_channel_table(plan))
     if settings:
         console.print(_settings_table(plan))
-
-
-def summary(plan: Plan) -> list[str]:
-    """A plan in a few lines."""
-    parts = [
-        _counted(len(plan.components), "component"),
-        _counted(len(plan.channels), "channel"),
-        _counted(len(plan.hosts), "process", "processes"),
-        _counted(len(plan.stages), "stage"),
-        f"{US_PER_S / plan.period_us:g} ticks/s",
-    ]
-    changed = [
-        f"{component.name}.{key} = {value_at(component.config, key)} ({origin})"
-        for component in plan.components
-        for key, origin in component.origins.items()
-        if origin == "--set" or ".host.yaml:" in origin
-    ]
-    return [f"{plan.name}: {', '.join(parts)}", *changed]
 
 
 def _channel_table(plan: Plan) -> Table:
@@ -99,14 +82,3 @@ def _settings_table(plan: Plan) -> Table:
         for key, origin in component.origins.items():
             table.add_row(f"{component.name}.{key}", str(value_at(component.config, key)), origin)
     return table
-
-
-def value_at(config: object, dotted: str) -> object:
-    """The setting that a dotted name stands for."""
-    for key in dotted.split("."):
-        config = config[key] if isinstance(config, dict) else None
-    return config
-
-
-def _counted(number: int, one: str, many: str = "") -> str:
-    return f"{number} {one if number == 1 else many or f'{one}s'}"

@@ -6,8 +6,8 @@ import shutil
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from fwk.cli.check import value_at
 from fwk.cli.run_dir import RunDirError
+from fwk.display.plan_overview import value_at
 from fwk.model.plan import Plan
 from fwk.plan.files.launch_file import INSTALLED
 

@@ -17,8 +17,8 @@ from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.selection import matches, nearest
 from fwk.plan.files.overrides import PLACE, overrides
+from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
-from fwk.plan.settings import effective
 
 _NOW = "now"
 

@@ -1,8 +1,8 @@
 """What is printed before a run, and when it has ended: result, pace, what went wrong, where the recording lies."""
 
-from fwk.cli.check import summary as overview
 from fwk.display import figures
 from fwk.display.lines import losses
+from fwk.display.plan_overview import overview
 from fwk.display.scoreboard import Scoreboard
 from fwk.model.plan import Plan
 from fwk.supervisor.options import Outcome, RunOptions

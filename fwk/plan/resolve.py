@@ -10,9 +10,9 @@ from fwk.model.errors import Problems
 from fwk.model.selection import matches, nearest
 from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.files.launch_file import Files
+from fwk.plan.files.settings import effective
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
-from fwk.plan.settings import effective
 from fwk.plan.stages import stages_in
 from fwk.plan.wiring.component_spec import Wish
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from fwk.model.errors import Problems, hint
+from fwk.plan.files.settings import over
 from fwk.plan.files.source import Node, read_value
-from fwk.plan.settings import over
 
 PLACE = "--set"
 RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")

@@ -1,0 +1,34 @@
+"""Describes a plan in a few lines."""
+
+from fwk.clock import US_PER_S
+from fwk.model.plan import Plan
+
+
+def overview(plan: Plan) -> list[str]:
+    """Sums a plan up in a few lines."""
+    parts = [
+        counted(len(plan.components), "component"),
+        counted(len(plan.channels), "channel"),
+        counted(len(plan.hosts), "process", "processes"),
+        counted(len(plan.stages), "stage"),
+        f"{US_PER_S / plan.period_us:g} ticks/s",
+    ]
+    changed = [
+        f"{component.name}.{key} = {value_at(component.config, key)} ({origin})"
+        for component in plan.components
+        for key, origin in component.origins.items()
+        if origin == "--set" or ".host.yaml:" in origin
+    ]
+    return [f"{plan.name}: {', '.join(parts)}", *changed]
+
+
+def value_at(config: object, dotted: str) -> object:
+    """Returns the setting with that dotted name."""
+    for key in dotted.split("."):
+        config = config[key] if isinstance(config, dict) else None
+    return config
+
+
+def counted(number: int, one: str, many: str = "") -> str:
+    """Returns a number with its noun in the right form."""
+    return f"{number} {one if number == 1 else many or f'{one}s'}"
