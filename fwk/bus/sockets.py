@@ -43,17 +43,23 @@ def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.so
     return made
 
 
+def own_socket(port: int) -> socket.socket:
+    """Opens a non-blocking socket that sends from `port`, to this machine only, and hears what is sent to `port`."""
+    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
+    made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
+    made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+    made.bind((LOOPBACK, port))
+    made.setblocking(False)
+    return made
+
+
 class Sender:
     """Sends LCM messages from a port of its own, by which receivers know who it is; hears what is sent to that port."""
 
     def __init__(self, port: int) -> None:
         self.port = port
-        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
-        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
-        self.socket.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-        self.socket.bind((LOOPBACK, port))
-        self.socket.setblocking(False)
+        self.socket = own_socket(port)
         # Not from 0: whoever sends from this port next must not seem to go on with a message that this one left undone.
         self._number = itertools.count(secrets.randbits(32))
         self._assembler = wire.Assembler()
