@@ -1,8 +1,9 @@
 """The seam between a participant of a run and the machine: sockets, waiting and the wall clock.
 
-Supervisor, host and gateway are *participants*: generators that yield the wall time until which they wait and are resumed with the
-descriptors that became readable, or with none at that time. A participant opens every socket through its `Network` and knows no
-other source of time, so the same code runs on UDP sockets, in a simulated world and on a recording.
+Supervisor, host and gateway are *participants*: generators that yield the wall time until which they wait and are
+resumed with the descriptors that became readable, or with none at that time. A participant opens every socket through
+its `Network` and knows no other source of time, so the same code runs on UDP sockets, in a simulated world and on a
+recording.
 """
 
 from collections.abc import Generator
