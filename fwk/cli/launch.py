@@ -11,10 +11,10 @@ import typer
 
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
-from fwk.cli.profile import write_profiles
-from fwk.cli.run_dir import RunDirError, make_run_dir, prune
-from fwk.cli.run_files import write_run_files
-from fwk.cli.runs import GB
+from fwk.cli.recordings.runs import GB
+from fwk.cli.run.profile import write_profiles
+from fwk.cli.run.run_directory import RunDirError, make_run_dir, prune
+from fwk.cli.run.run_files import write_run_files
 from fwk.display.summary import introduction, summary
 from fwk.launcher.run import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
 from fwk.lcm.event_log import LogError

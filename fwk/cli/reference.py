@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from fwk.cli import launch, main
+from fwk.cli import commands, launch
 
 _HEAD = """\
 # Commands
@@ -19,7 +19,7 @@ Exit codes of all commands: 0 success, 2 bad input, with a message that names th
 
 def reference() -> str:
     """The page, in Markdown."""
-    sections = [_HEAD, *_sections("fwk-launch", _made(launch.app)), *_sections("fwk", _made(main.app))]
+    sections = [_HEAD, *_sections("fwk-launch", _made(launch.app)), *_sections("fwk", _made(commands.app))]
     return "\n".join(sections)
 
 

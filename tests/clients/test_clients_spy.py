@@ -22,7 +22,7 @@ from tests.fwk.recording.recording_made import Entry, write
 from tests.system.system_runs import PortBlock
 
 pytestmark = pytest.mark.system
-FWK_SPY = "import typer; from fwk.cli.spy import spy; typer.run(spy)"
+FWK_SPY = "import typer; from fwk.cli.look.spy import spy; typer.run(spy)"
 Table = dict[str, dict[str, str]]
 
 

@@ -14,10 +14,10 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from fwk.cli import launch as launching
-from fwk.cli.bb import _message
+from fwk.cli.commands import app as fwk
 from fwk.cli.launch import app as fwk_launch
-from fwk.cli.main import app as fwk
-from fwk.cli.send import made
+from fwk.cli.look.bb import _message
+from fwk.cli.steer.send import made
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError

@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as some
 from typer.testing import CliRunner
 
-from fwk.cli.main import app as fwk
+from fwk.cli.commands import app as fwk
 from fwk.lcm.event_log import LogWriter
 from lcmtypes.robot import picture_t
 from tests.faults.faults_fuzz import damaged

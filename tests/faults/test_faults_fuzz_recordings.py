@@ -12,7 +12,7 @@ from hypothesis import strategies as some
 from typer.testing import CliRunner
 
 from fwk import Component, Reads, Writes
-from fwk.cli.main import app as fwk
+from fwk.cli.commands import app as fwk
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
 from fwk.recording.compare import Comparison
 from fwk.recording.log_info import log_info

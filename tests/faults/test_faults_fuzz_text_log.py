@@ -8,7 +8,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as some
 from typer.testing import CliRunner
 
-from fwk.cli.main import app as fwk
+from fwk.cli.commands import app as fwk
 from fwk.logs.reader import read_lines
 
 GOOD = {"level": "info", "component": "a/b", "tick": 5, "time_us": 1, "wall_us": 1, "file": "f", "line": 1, "text": "t"}

@@ -36,10 +36,10 @@ def test_pausing_stepping_and_speed_change_nothing(start: Start, tmp_path: Path)
     assert run.json("speed") == {**said, "tick": tick + 6, "time_us": (tick + 6) * 50_000, "ok": True}
     run.ask("speed", speed=0.0)
     assert run.tick == tick + 6
-    assert "goes on at speed max" in run.fwk("resume")
+    assert "running at speed max" in run.fwk("resume")
     run.ticks_pass(50)
     assert "is not a pace" in run.fwk("speed", "fast", code=2)
-    assert "goes on at speed 3" in run.fwk("speed", "3")
+    assert "running at speed 3" in run.fwk("speed", "3")
     run.ask("step", ticks=2)
     assert run.ask("status")["paused"]
     ticks = run.tick
@@ -53,7 +53,7 @@ def test_pausing_stepping_and_speed_change_nothing(start: Start, tmp_path: Path)
 
 def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
     run = start()
-    assert "goes on at speed 1e-06" in run.fwk("speed", "1e-6")
+    assert "running at speed 1e-06" in run.fwk("speed", "1e-6")
     assert "is not a pace" in run.fwk("speed", "1e-9", code=2)
     for impossible in (1e-9, 1e30):
         with pytest.raises(RefusedError, match=r"1e-06 to 1e|less than or equal to 1000000"):
@@ -77,7 +77,7 @@ def test_the_clock_on_the_wall_obeys_nobody(start: Start) -> None:
     }
     for words, what in asked.items():
         assert f"the clock on the wall cannot be {what}, and this run follows it" in run.fwk(*words, code=2)
-    assert "goes on at speed" in run.fwk("speed")
+    assert "running at speed" in run.fwk("speed")
     run.ticks_pass(2)
     run.end()
 

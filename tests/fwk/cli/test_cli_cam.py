@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from fwk.cli.main import app
-from fwk.cli.picture_out import as_text
+from fwk.cli.commands import app
+from fwk.cli.look.picture_output import as_text
 from fwk.lcm.event_log import LogWriter
 from lcmtypes.robot import picture_t
 

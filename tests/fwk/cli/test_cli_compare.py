@@ -6,7 +6,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.compare import compare
+from fwk.cli.recordings.compare import compare
 from fwk.lcm.event_log import LogWriter
 
 

@@ -12,13 +12,13 @@ import typer
 from typer.testing import CliRunner
 
 from fwk.bus.port_lock import PortLock
-from fwk.cli import doctor_checks as checks
-from fwk.cli.doctor import doctor
-from fwk.cli.doctor_checks import Finding, Level
+from fwk.cli.check import machine_checks as checks
+from fwk.cli.check.doctor import doctor
+from fwk.cli.check.machine_checks import Finding, Level
 from fwk.model.ports import Ports
 from tests.system.system_runs import PortBlock
 
-DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.doctor import doctor; typer.run(doctor)"]
+DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.check.doctor import doctor; typer.run(doctor)"]
 
 
 def test_ports_of_another_run_are_named(ports: PortBlock) -> None:
@@ -77,7 +77,7 @@ def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.Mon
 @pytest.mark.parametrize(("level", "code"), [(Level.OK, 0), (Level.WARNING, 0), (Level.BAD, 1)])
 def test_only_what_stops_runs_is_a_failure(monkeypatch: pytest.MonkeyPatch, level: Level, code: int) -> None:
     found = [lambda: Finding(level, "gears", "turning", "oil them" if code else "")]
-    monkeypatch.setattr("fwk.cli.doctor.all_checks", lambda wanted: found)
+    monkeypatch.setattr("fwk.cli.check.doctor.all_checks", lambda wanted: found)
     app = typer.Typer()
     app.command()(doctor)
     result = CliRunner().invoke(app, [])

@@ -6,10 +6,10 @@ import sys
 import pytest
 from typer.testing import CliRunner
 
-from fwk.cli.main import NAMES, app
+from fwk.cli.commands import MODULES, app
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", MODULES)
 def test_every_command_explains_itself(name: str) -> None:
     result = CliRunner().invoke(app, [name, "--help"])
     assert result.exit_code == 0
@@ -24,7 +24,7 @@ def test_an_unknown_command_is_refused_with_the_nearest() -> None:
 
 
 def test_a_command_is_imported_only_when_it_is_needed() -> None:
-    asked = "import sys, fwk.cli.main; print('fwk.cli.compare' in sys.modules)"
+    asked = "import sys, fwk.cli.commands; print('fwk.cli.recordings.compare' in sys.modules)"
     assert subprocess.check_output([sys.executable, "-c", asked], text=True).strip() == "False"
 
 

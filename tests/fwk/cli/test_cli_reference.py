@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from fwk.cli.main import NAMES
+from fwk.cli.commands import MODULES
 from fwk.cli.reference import reference
 
 PAGE = Path(__file__).parents[3] / "docs" / "commands.md"
@@ -14,7 +14,7 @@ def test_the_page_is_what_the_commands_say() -> None:
 
 def test_every_command_has_a_section_with_its_options() -> None:
     page = reference()
-    for name in NAMES:
+    for name in MODULES:
         assert f"## `fwk {name} " in page
     assert "| `--hosting process\\|robot\\|single` | one process a component" in page
     assert "| `--set PATH=VALUE` |" in page

@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from fwk.cli.run_dir import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
-from fwk.cli.runs import runs
+from fwk.cli.recordings.runs import runs
+from fwk.cli.run.run_directory import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
 from tests.fwk.cli.cli_processes import PROCS, launch, write_files
 
 
@@ -59,7 +59,7 @@ def test_what_is_kept_or_no_run_directory_stays(tmp_path: Path) -> None:
 MAKER = """
 import os, sys
 from pathlib import Path
-from fwk.cli.run_dir import make_run_dir
+from fwk.cli.run.run_directory import make_run_dir
 print(make_run_dir("used", Path(sys.argv[1])).name, flush=True)
 if os.fork() == 0:
     sys.stdin.read()

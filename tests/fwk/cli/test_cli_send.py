@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from fwk.cli.send import made
+from fwk.cli.steer.send import made
 from fwk.lcm.messages import MessageError, encode
 
 

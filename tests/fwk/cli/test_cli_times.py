@@ -1,6 +1,6 @@
 """Histograms in figures."""
 
-from fwk.cli.times import Stopwatch
+from fwk.cli.look.times import Stopwatch
 from fwk.model.histogram import Histogram
 
 

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from fwk.cli.run_dir import make_run_dir
+from fwk.cli.run.run_directory import make_run_dir
 from fwk.display.summary import introduction, summary
 from fwk.supervisor.options import Outcome, RunOptions
 from tests.fwk.cli.cli_runs import MATCH, component, game_state, plan, status

@@ -8,7 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.spy import spy as command
+from fwk.cli.look.spy import spy as command
 from fwk.lcm import spy_jar as spy
 from fwk.lcm.type_registry import by_fingerprint
 

@@ -6,7 +6,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.check import check
+from fwk.cli.check.check import check
 
 FILE = """
 components:

@@ -10,7 +10,7 @@ import jsonschema
 import pytest
 from typer.testing import CliRunner
 
-from fwk.cli.config import config
+from fwk.cli.steer.config import config
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import Plan
 from fwk.plan.files.json_schema import schema_of_file, schema_of_files

@@ -5,7 +5,7 @@ from pathlib import Path
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.check import check
+from fwk.cli.check.check import check
 
 ROWS = [
     (

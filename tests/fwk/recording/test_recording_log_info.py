@@ -8,7 +8,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.log_info import log_info as command
+from fwk.cli.recordings.log_info import log_info as command
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
 from fwk.lcm.messages import type_named
 from fwk.lcm.type_registry import use_types_of

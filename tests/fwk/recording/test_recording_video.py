@@ -12,7 +12,7 @@ import pytest
 import typer
 from typer.testing import CliRunner
 
-from fwk.cli.video import video as command
+from fwk.cli.recordings.video import video as command
 from fwk.model.plan import Plan
 from fwk.recording.video import Picture, VideoError, drawing, render_video
 from lcmtypes.core import plan_t

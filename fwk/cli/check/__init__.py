@@ -1,0 +1,1 @@
+"""Commands that check without starting anything: launch files, the machine."""

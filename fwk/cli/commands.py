@@ -1,0 +1,90 @@
+"""The subcommands of `fwk` as a typer application; each is imported from its module when it is used."""
+
+from collections.abc import Iterator, MutableMapping
+from importlib import import_module
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from fwk.cli.arguments import SeveralNames
+
+MODULES = {
+    "check": "check.check",
+    "status": "look.status",
+    "top": "look.top",
+    **dict.fromkeys(("start", "stop", "restart", "reload", "load", "unload", "kill"), "steer.lifecycle"),
+    "debug": "steer.debug",
+    **dict.fromkeys(("pause", "resume", "step", "speed"), "steer.clock"),
+    "config": "steer.config",
+    "bb": "look.bb",
+    "log": "look.log",
+    "note": "steer.note",
+    "send": "steer.send",
+    "call": "steer.call",
+    "replay": "recordings.replay",
+    "compare": "recordings.compare",
+    "log-info": "recordings.log_info",
+    "runs": "recordings.runs",
+    "video": "recordings.video",
+    "cam": "look.cam",
+    "spy": "look.spy",
+    "doctor": "check.doctor",
+}
+"""Command, as typed and in the order of the help, to its module in `fwk.cli`. The function or typer application there
+has the command's name: `log-info` is `log_info`.
+"""
+
+
+class _Commands(MutableMapping[str, Any]):
+    """Subcommands by name, imported on first use: `fwk check` does not wait for the imports of `fwk cam`."""
+
+    def __init__(self) -> None:
+        self._made: dict[str, Any] = {}
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self._made and name in MODULES:
+            self._made[name] = _command(name)
+        return self._made[name]
+
+    def __setitem__(self, name: str, command: Any) -> None:
+        self._made[name] = command
+
+    def __delitem__(self, name: str) -> None:
+        del self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(dict.fromkeys((*MODULES, *self._made)))
+
+    def __len__(self) -> int:
+        return len(list(iter(self)))
+
+
+class _Group(TyperGroup):
+    """A typer group whose commands come from modules."""
+
+    def __init__(self, **attributes: Any) -> None:
+        super().__init__(**attributes)
+        self.commands = _Commands()
+
+
+def _command(name: str) -> Any:
+    word = name.replace("-", "_")
+    made = getattr(import_module(f"fwk.cli.{MODULES[name]}"), word)
+    if not isinstance(made, typer.Typer):
+        function, made = made, typer.Typer(add_completion=False)
+        made.command(name, cls=SeveralNames)(function)
+    command = typer.main.get_command(made)
+    command.name = name
+    return command
+
+
+app = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True)
+
+
+@app.callback()
+def fwk() -> None:
+    """Tools for runs, launch files and recordings; `fwk-launch` starts a run.
+
+    Exit codes: 0 success; 1 a negative result, such as a difference or a failed component; 2 bad input.
+    """

@@ -1,0 +1,1 @@
+"""Commands that show a run: state, times, channels, log, cameras."""

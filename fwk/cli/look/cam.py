@@ -1,0 +1,108 @@
+"""`fwk cam`: what a camera sees, in a run that goes on or in a recording."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any, NoReturn
+
+import typer
+
+from fwk.cli.look import picture_output
+from fwk.cli.look.picture_output import Pixels, fail
+from fwk.cli.look.recorded_pictures import Recorded
+from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.run_options import BAD_INPUT, BusPort, Json, ask, asking
+from fwk.component.images import Ring
+from fwk.control import client
+from fwk.model.errors import hint
+
+FRAME_TYPE = "robot.frame_t"
+
+
+def cam(
+    name: Annotated[
+        str, typer.Argument(metavar="[NAME]", help="a camera, such as cyan1/camera, or its channel; none: lists them")
+    ] = "",
+    save: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="write the frame there; with --log also a folder, for all pictures"),
+    ] = None,
+    show: Annotated[bool, typer.Option("--show", help="draw it in the terminal, as without --save")] = False,
+    raw: Annotated[bool, typer.Option("--raw", help="with --save: the bytes as they are, row by row")] = False,
+    log: Annotated[
+        Path | None, typer.Option(metavar="LOG", help="of a recording with pictures, or its run directory")
+    ] = None,
+    tick: Annotated[
+        int | None, typer.Option(min=1, metavar="N", help="with --log: the newest as of tick N, not the last")
+    ] = None,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Lists cameras, or saves or shows a frame of one.
+
+    Recordings have pictures if the launch file says 'record: {frames: ...}', or has 'use: procs.pictures'.
+    """
+    if raw and not save:
+        raise typer.BadParameter("--raw says how to save; add --save FILE")
+    if tick and not log:
+        raise typer.BadParameter("--tick is for recordings; add --log LOG")
+    if name and not save and not sys.stdout.isatty():
+        raise typer.BadParameter("a picture is shown in a terminal only; say where it shall go with --save FILE")
+    if log:
+        with failing(BAD_INPUT):
+            recorded = Recorded(find_log(log), tick)
+            if not name:
+                typer.echo(json.dumps(recorded.rows(), indent=2) if as_json else "\n".join(recorded.lines()))
+                return
+            if save and (save.is_dir() or not save.suffix):
+                typer.echo(f"{save}: {recorded.save_all(name, save)} pictures")
+                return
+            pixels, where = recorded.newest(name)
+    elif name:
+        pixels, where = _newest(name, bus_port)
+    else:
+        _list(_cameras(bus_port), as_json)
+        return
+    if save:
+        picture_output.save(pixels, save, raw)
+        height_px, width_px, channels = (*pixels.shape, 1)[:3]
+        typer.echo(f"{save}: {where}, {height_px} x {width_px} x {channels}")
+    if show or not save:
+        picture_output.show(pixels)
+        typer.echo(where)
+
+
+def _cameras(bus_port: int | None) -> list[dict[str, Any]]:
+    with asking(), client.gateway(bus_port) as run:
+        rows = [row for row in run.ask("channels")["channels"] if row["type"] == FRAME_TYPE]
+    if not rows:
+        fail("the run has no cameras")
+    return rows
+
+
+def _list(rows: list[dict[str, Any]], as_json: bool) -> None:
+    if as_json:
+        keys = ("channel", "writer", "readers", "sequence", "tick", "age_s")
+        typer.echo(json.dumps([{key: row[key] for key in keys} for row in rows], indent=2))
+        return
+    for row in rows:
+        age = "no frame yet" if row["age_s"] is None else f"frame {row['sequence']}, {row['age_s']:.2f} s ago"
+        typer.echo(f"{row['writer'] or 'nobody':20} {row['channel']:20} {age}")
+
+
+def _newest(name: str, bus_port: int | None) -> tuple[Pixels, str]:
+    rows = _cameras(bus_port)
+    row = next((row for row in rows if name in (row["writer"], row["channel"])), None)
+    if row is None:
+        _unknown(name, rows)
+    with asking():
+        ring = Ring.of_process(ask(bus_port, "run")["pid"], row["channel"])
+    newest = ring.newest() if ring else None
+    if newest is None:
+        fail(f"{row['channel']}: no frame yet")
+    return newest[1], f"{row['channel']}, frame {newest[0]}"
+
+
+def _unknown(name: str, rows: list[dict[str, Any]]) -> NoReturn:
+    names = [each for row in rows for each in (row["writer"], row["channel"]) if each]
+    fail(f"no camera '{name}' in the run; {hint(name, names)}", BAD_INPUT)

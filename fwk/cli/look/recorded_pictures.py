@@ -1,0 +1,85 @@
+"""The pictures of a recording, as `fwk cam` lists, saves and shows them."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from fwk.cli.look import picture_output
+from fwk.cli.look.picture_output import Pixels, fail
+from fwk.cli.run_options import BAD_INPUT
+from fwk.clock import US_PER_S
+from fwk.model.errors import hint
+from fwk.model.plan import NOBODY
+from fwk.recording.pictures import RecordedPicture, pictures_in
+from fwk.recording.replay.recording import Recording, RecordingError
+
+
+class Recorded:
+    """Pictures of a log up to a tick, if one is named."""
+
+    def __init__(self, log: Path, tick: int | None) -> None:
+        self._log = log
+        self._tick = tick
+        self._counts: dict[str, int] = {}
+        self._last: dict[str, RecordedPicture] = {}
+        for picture in self._pictures():
+            self._counts[picture.camera] = self._counts.get(picture.camera, 0) + 1
+            self._last[picture.camera] = picture
+        if not self._counts:
+            upto = f" up to tick {tick}" if tick else ""
+            how = "'record: {frames: ...}' in the launch file, or a component 'use: procs.pictures', records some"
+            fail(f"{log}: no pictures{upto}; {how}")
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Every camera with how many pictures there are of it, for programs."""
+        found = sorted(self._last.items())
+        return [
+            {"channel": camera, "pictures": self._counts[camera], "format": last.format, "tick": last.tick}
+            for camera, last in found
+        ]
+
+    def lines(self) -> list[str]:
+        """The same for people."""
+        return [
+            f"{row['channel']:20} {row['pictures']} pictures ({row['format']}), the last of tick {row['tick']}"
+            for row in self.rows()
+        ]
+
+    def newest(self, name: str) -> tuple[Pixels, str]:
+        """The last picture of a camera, and what it is."""
+        picture = self._last[self._camera(name)]
+        where = f"{picture.camera}, frame {picture.frame}, tick {picture.tick}, {picture.time_us / US_PER_S:.3f} s"
+        return self._decoded(picture), where
+
+    def save_all(self, name: str, folder: Path) -> int:
+        """Writes all pictures of a camera as numbered png files; returns how many there were."""
+        camera = self._camera(name)
+        for picture in self._pictures():
+            if picture.camera == camera:
+                picture_output.save(self._decoded(picture), folder / f"frame{picture.frame:06}.png")
+        return self._counts[camera]
+
+    def _pictures(self) -> Iterator[RecordedPicture]:
+        return (each for each in pictures_in(self._log) if self._tick is None or each.tick <= self._tick)
+
+    def _camera(self, name: str) -> str:
+        """The channel that is meant by its name or by that of the camera's component."""
+        camera = self._written_by().get(name, name)
+        if camera not in self._last:
+            fail(f"{self._log}: no pictures of '{name}'; {hint(name, self._last)}", BAD_INPUT)
+        return camera
+
+    def _written_by(self) -> dict[str, str]:
+        """Camera components with their channels, if the recording says."""
+        try:
+            plan = Recording(self._log).plan
+        except RecordingError:
+            return {}
+        cameras = [each for each in plan.channels if each.images and each.writer != NOBODY]
+        return {plan.components[each.writer].name: each.name for each in cameras}
+
+    def _decoded(self, picture: RecordedPicture) -> Pixels:
+        pixels = picture.pixels()
+        if pixels is None:
+            fail(f"{self._log}: frame {picture.frame} of {picture.camera} is damaged")
+        return pixels

@@ -1,0 +1,1 @@
+"""Commands on what runs leave behind: recordings, run directories, videos."""

@@ -1,0 +1,39 @@
+"""`fwk compare A B`: do two logs hold the same messages?"""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.cli.arguments import folder
+from fwk.cli.recordings.find_log import failing, find_log
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.compare import Comparison
+
+EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
+
+
+def compare(
+    a: Annotated[Path, typer.Argument(metavar="A", help="log or run directory")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="log or run directory")],
+    common: Annotated[
+        bool, typer.Option("--common", help="only sequence numbers that both logs reach; for logs of different length")
+    ] = False,
+    types: Annotated[
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ names the fields")
+    ] = Path(),
+) -> None:
+    """Compares two logs on every channel outside fwk/ and names the first difference.
+
+    Exit code 0: the same messages; 1: different; 2: a file is unusable.
+    """
+    with failing(UNUSABLE):
+        use_types_of(types)
+        result = Comparison(find_log(a), find_log(b), common)
+    for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
+        if skipped:
+            typer.echo(f"{path}: {skipped} damaged bytes passed over", err=True)
+    if result.difference:
+        typer.echo(f"different: {result.difference}")
+        raise typer.Exit(DIFFERENT)
+    typer.echo(f"equal: {result.messages} messages on {result.channels} channels")

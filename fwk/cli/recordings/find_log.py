@@ -1,0 +1,43 @@
+"""What the commands on recordings share: finding the log in a run directory, and ending with a plain sentence."""
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import typer
+
+from fwk.cli.run.run_directory import named
+from fwk.lcm.event_log import SYNC, LogError
+from fwk.lcm.typegen import TypeGenerationError
+
+
+@contextmanager
+def failing(code: int) -> Iterator[None]:
+    """Turns mistakes in files into their sentence on stderr and an exit code."""
+    try:
+        yield
+    except (LogError, TypeGenerationError) as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(code) from error
+
+
+def find_log(path: Path) -> Path:
+    """The log that is meant: the file itself, or the one log in a run directory, which may be said by its name alone.
+
+    Raises:
+        LogError: the directory holds no log, or several.
+    """
+    path = named(path)
+    if not os.path.isdir(path):  # False, too, for what can be no path or is forbidden
+        return path
+    found = [file for file in sorted(path.iterdir()) if file.is_file() and _is_log(file)]
+    if len(found) != 1:
+        names = ", ".join(file.name for file in found) or "none"
+        raise LogError(f"{path}: a run directory holds one LCM log, this one: {names}; name the file itself")
+    return found[0]
+
+
+def _is_log(file: Path) -> bool:
+    with open(file, "rb") as opened:
+        return opened.read(len(SYNC)) == SYNC

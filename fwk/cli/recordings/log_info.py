@@ -1,0 +1,77 @@
+"""`fwk log-info FILE`: what is in a log."""
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.table import Table
+
+from fwk.cli.arguments import folder
+from fwk.cli.recordings.find_log import failing, find_log
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.log_info import ChannelInfo, LogInfo
+from fwk.recording.log_info import log_info as read_info
+
+WIDTH_IN_A_PIPE = 200
+
+
+def log_info(
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="log or run directory")],
+    as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
+    types: Annotated[
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
+    ] = Path(),
+) -> None:
+    """Shows channels, types, counts, rates, ticks, gaps and damage of a log."""
+    with failing(2):
+        use_types_of(types)
+        info = read_info(find_log(file))
+    if as_json:
+        typer.echo(json.dumps(_plain(info), indent=2))
+        return
+    console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
+    for line in _summary(info):
+        console.print(line, highlight=False, markup=False, soft_wrap=True)
+    console.print(_table(info))
+
+
+def _plain(info: LogInfo) -> dict[str, Any]:
+    channels = {
+        name: {**{key: value for key, value in asdict(made).items() if key[0] != "_"}, "rate_hz": made.rate_hz}
+        for name, made in info.channels.items()
+    }
+    derived = {"file": str(info.file), "duration_s": info.duration_s, "ticks": info.ticks}
+    return {**asdict(info), **derived, "channels": channels}
+
+
+def _summary(info: LogInfo) -> list[str]:
+    made = [f"{info.file}: {info.size_bytes} bytes, {info.events} events on {len(info.channels)} channels"]
+    ticks = f", ticks {info.ticks[0]} to {info.ticks[1]}" if info.ticks else ""
+    made.append(f"duration {info.duration_s:.3f} s{ticks}")
+    if info.dropped:
+        made.append(f"{info.dropped} events were dropped by the program that wrote the log")
+    if info.damaged_bytes:
+        made.append(f"{info.damaged_bytes} damaged bytes passed over")
+    return made
+
+
+def _table(info: LogInfo) -> Table:
+    table = Table("channel", "type", box=None, pad_edge=False)
+    for title in ("messages", "Hz", "bytes", "ticks", "lost", "repeated", "undecodable"):
+        table.add_column(title, justify="right")
+    for name, made in info.channels.items():
+        ticks = f"{made.first_tick}-{made.last_tick}" if made.first_tick is not None else ""
+        counts = [str(made.messages), f"{made.rate_hz:.1f}", str(made.bytes), ticks, _lost(made)]
+        table.add_row(name, ", ".join(made.types), *counts, str(made.repeated or ""), str(made.undecodable or ""))
+    return table
+
+
+def _lost(made: ChannelInfo) -> str:
+    """How many are missing, and where: `7 (12, 20-25)`."""
+    places = [str(first) if first == last else f"{first}-{last}" for first, last in made.gaps]
+    more = ", ..." if len(made.gaps) == ChannelInfo.GAPS_SHOWN else ""
+    return f"{made.lost} ({', '.join(places)}{more})" if made.lost else ""

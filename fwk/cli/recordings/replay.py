@@ -1,0 +1,111 @@
+"""`fwk replay`: recorded inputs to real components, and whether they do the same again."""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.cli.recordings.find_log import failing, find_log
+from fwk.host.debugger import LEFT, DebugRequest
+from fwk.host.debugger import debug as debug_process
+from fwk.host.failures import Failure
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import hint
+from fwk.recording.difference import Difference
+from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.replay.replay import Replay
+
+DIFFERENT, UNUSABLE = 1, 2
+
+
+def replay(
+    run: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="a run directory, its name, or its log")],
+    verify: Annotated[bool, typer.Option("--verify", help="compare every output; exit 1 at a difference")] = False,
+    only: Annotated[list[str] | None, typer.Option(metavar="NAME", help="only these components; repeatable")] = None,
+    from_tick: Annotated[
+        int, typer.Option(min=1, metavar="N", help="report differences, or stop in the debugger, from this tick on")
+    ] = 1,
+    to_tick: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after this tick")] = None,
+    debug: Annotated[
+        str | None, typer.Option(metavar="NAME", help="under pdb, from this component's next iteration on")
+    ] = None,
+) -> None:
+    """Feeds recorded inputs to real components at the recorded iterations.
+
+    Drivers of devices are left alone, and so is who looks at a device's frames, unless the frames are recorded, too.
+
+    Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one; 2 the recording cannot be
+    replayed.
+    """
+    with failing(UNUSABLE):
+        log = find_log(run)
+        try:
+            done = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
+        except RecordingError as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(UNUSABLE) from error
+    found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
+    typer.echo(f"{done.iterations} iterations replayed")
+    for name, reason in done.left_out.items():
+        typer.echo(f"not replayed: {name}: {reason}")
+    if done.recording.skipped_bytes:
+        typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are no whole message", err=True)
+    if lost := {channel: numbers for channel, numbers in done.lost.items() if numbers}:
+        which = ", ".join(f"{len(lost[channel])} of {channel} (the first is {min(lost[channel])})" for channel in lost)
+        typer.echo(f"{log}: messages were lost in the run: {which}; who read them may differ", err=True)
+    if not verify:
+        return
+    if not found:
+        typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")
+        return
+    first = min(found, key=lambda difference: difference.key)
+    typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
+    named = replace(first, names=("the recording", "the replay"))
+    typer.echo(f"  {_component(done, first)}: {named}")
+    raise typer.Exit(DIFFERENT)
+
+
+def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None) -> Replay:
+    recording = Recording(log)
+    for folder in recording.plan.folders:
+        use_types_of(Path(folder))
+        if folder not in sys.path:
+            sys.path.append(folder)
+    made = Replay(recording, only)
+    if debugged:
+        _debug(made, debugged, from_tick, to_tick)
+    else:
+        made.run(to_tick)
+    return made
+
+
+def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None:
+    """As `made.run`, under pdb; ends the command when the debugger is left."""
+    components = {component.name: component for component in made.recording.plan.components}
+    if name not in components:
+        raise RecordingError(f"--debug: no component '{name}' in this run; {hint(name, components)}")
+    reached = 0
+
+    def begins(tick: int) -> None:
+        nonlocal reached
+        reached = tick
+
+    def work() -> None:
+        try:
+            made.run(to_tick, begins)
+        except RecordingError as error:
+            raise Failure(str(error)) from (error.__cause__ or error)
+
+    request = DebugRequest(components[name].host, components[name])
+    if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:
+        typer.echo(f"left in tick {reached}")
+        raise typer.Exit(0)
+
+
+def _component(done: Replay, difference: Difference) -> str:
+    """Whose message differs; the header says it of a channel that was opened at run time."""
+    plan = done.recording.plan
+    declared = [plan.components[item.writer].name for item in plan.channels if item.name == difference.channel]
+    return declared[0] if declared else difference.writer.partition("#")[0]

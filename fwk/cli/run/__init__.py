@@ -1,0 +1,1 @@
+"""What belongs to starting a run: its directory, its files, its profile."""

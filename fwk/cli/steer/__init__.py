@@ -1,0 +1,1 @@
+"""Commands that change a run: lifecycle, clock, settings, messages, debugging."""

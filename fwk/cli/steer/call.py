@@ -1,0 +1,109 @@
+"""`fwk call NAME FIELD=VALUE...`: sends a command or a request to a component of a run."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fwk.cli.arguments import seconds
+from fwk.cli.look.bb import field_lines
+from fwk.cli.run_options import FAILED, BusPort, Json, ask, asking
+from fwk.cli.steer.send import made
+from fwk.component.commands import ANSWERS
+from fwk.control import client
+from fwk.control.client import RefusedError
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import hint
+from fwk.plan.wiring.command_wiring import OUTSIDE
+
+TIMEOUT_S = 10.0
+
+
+def call(
+    name: Annotated[str, typer.Argument(metavar="NAME", help="of the commands or requests, such as house/pour")],
+    fields: Annotated[
+        list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
+    ] = None,
+    timeout_s: Annotated[
+        float,
+        typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait for the last answer"),
+    ] = TIMEOUT_S,
+    expires_s: Annotated[
+        float | None,
+        typer.Option(
+            "--expires",
+            parser=seconds,
+            metavar="SECONDS",
+            help="logical time after which it is not begun; default: as long",
+        ),
+    ] = None,
+    accepted: Annotated[bool, typer.Option("--accepted", help="do not wait until it is done")] = False,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Sends a command or a request to the component of a run that carries it out, and shows what becomes of it.
+
+    Exit codes: 0 it was done, or accepted if that is asked for; 1 it was not; 2 it could not be sent.
+    """
+    wanted = ("done", "accepted") if accepted else ("done",)
+    with asking():
+        last = _called(name, fields or [], timeout_s, expires_s or timeout_s, accepted, bus_port)
+    well = last["state"] in wanted
+    if as_json:
+        typer.echo(json.dumps(last))
+    else:
+        typer.echo(_sentence(last, timeout_s), err=not well)
+        for key, value in last["reply"].items() if well else ():
+            typer.echo("\n".join(field_lines(key, value, "  ")))
+    if not well:
+        raise typer.Exit(FAILED)
+
+
+def _called(
+    name: str, fields: list[str], timeout_s: float, expires_s: float, accepted: bool, bus_port: int | None
+) -> dict[str, Any]:
+    """The last answer, or, after the time-out, `timed_out` and what was the last until then."""
+    with client.gateway(bus_port) as gateway:
+        data = _encoded(gateway, name, fields, bus_port)
+        last: dict[str, Any] = {}
+        for answer in gateway.follow("call", timeout_s, name=name, data=data.hex(), expires_s=expires_s):
+            last = {"reply": {}, "reason": "", **answer, "timed_out": False}
+            if last["state"] not in ("sent", "accepted") or (accepted and last["state"] == "accepted"):
+                return last
+    return {**last, "timed_out": True, "owner": _owner(name, bus_port)}
+
+
+def _owner(name: str, bus_port: int | None) -> str:
+    """Who carries the commands out, and how that is."""
+    with client.gateway(bus_port) as gateway:
+        rows = gateway.ask("channels")["channels"]
+    owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
+    (component,) = ask(bus_port, "status", names=[owner])["components"]
+    return f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
+
+
+def _encoded(gateway: client.Client, name: str, fields: list[str], bus_port: int | None) -> bytes:
+    types = {row["channel"]: row["type"] for row in gateway.ask("channels")["channels"]}
+    known = {channel.partition("@")[0]: kind for channel, kind in types.items() if channel.endswith(f"@{OUTSIDE}")}
+    if name not in known:
+        otherwise = "" if known else "no component of this run has a port for commands"
+        raise RefusedError(f"nobody carries out '{name}'; {hint(name, known, otherwise)}")
+    for folder in ask(bus_port, "run")["folders"]:
+        use_types_of(Path(folder))
+    try:
+        return messages.encode(made(known[name], fields), name)
+    except MessageError as error:
+        raise RefusedError(str(error)) from error
+
+
+def _sentence(last: dict[str, Any], timeout_s: float) -> str:
+    if last["timed_out"]:
+        lacking = f"no {_LACKING[last['state']]} within {timeout_s:g} s"
+        return f"error: {last['name']}: {last['state']}, and {lacking}; {last['owner']}"
+    return f"{last['name']}: {last['state']}, tick {last['tick']}{': ' if last['reason'] else ''}{last['reason']}"
+
+
+_LACKING = {"sent": "answer", "accepted": "last answer"}

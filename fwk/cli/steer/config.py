@@ -1,0 +1,257 @@
+"""`fwk config`: the settings of a run, where they come from, and live changes."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from fwk.cli.conditions import pattern
+from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, Json, asking
+from fwk.control import client
+from fwk.control.client import ControlError
+from fwk.control.host_file import KeepError, Kept, forget, keep
+from fwk.control.requests import RequestError
+from fwk.control.settings import RunSettings
+from fwk.control.settings_diff import differences
+from fwk.model.errors import PlanError
+from fwk.plan.classes import UnusableError
+from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
+from fwk.plan.files.launch_file import host_file, shown
+from fwk.plan.load import load_plan
+
+WIDTH_IN_A_PIPE = 200
+config = typer.Typer(add_completion=False, no_args_is_help=True)
+SomeSettings = Annotated[
+    list[str] | None,
+    typer.Argument(metavar="NAME...", help="components, patterns, or NAME.SETTING; all by default"),
+]
+
+LaunchFile = Annotated[
+    str | None, typer.Option("--file", metavar="FILE", help="as a launch file says it, instead of a run")
+]
+
+
+@config.callback()
+def settings() -> None:
+    """Shows the settings of a run with their origins, and changes them between two ticks."""
+
+
+@config.command("list")
+def list_settings(
+    names: SomeSettings = None, file: LaunchFile = None, bus_port: BusPort = None, as_json: Json = False
+) -> None:
+    """Lists every effective setting with its origin and meaning."""
+    _show(_rows(names or [], file, bus_port), as_json)
+
+
+@config.command()
+def search(
+    text: Annotated[
+        str, typer.Argument(metavar="REGEXP", help="found in name, value, origin or meaning, in capitals or not")
+    ],
+    file: LaunchFile = None,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Lists the settings in which a text is found; exit code 1 if there is none."""
+    wanted = pattern(text, "REGEXP")
+    rows = [row for row in _rows([], file, bus_port) if any(map(wanted.search, _texts(row)))]
+    if not rows and not as_json:
+        typer.echo(f"error: '{text}' is found in no setting", err=True)
+        raise typer.Exit(FAILED)
+    _show(rows, as_json)
+
+
+@config.command()
+def schema(
+    of: Annotated[
+        str, typer.Argument(metavar="[FILE|MODULE]", help="a launch file, or a component's module: only its settings")
+    ] = "",
+    host: Annotated[bool, typer.Option("--host", help="of host-specific files, NAME.host.yaml")] = False,
+) -> None:
+    """Prints the JSON Schema of launch files, with all settings and ports of the components that are found from here.
+
+    With FILE it knows the names of its components, too. Editors complete and check with it; see docs/launch-file.md.
+    """
+    try:
+        if of.endswith((".yaml", ".yml")):
+            made = schema_of_file(of, host)
+        elif of:
+            made = schema_of_component(of)
+        else:
+            made = schema_of_files(host)
+    except (PlanError, UnusableError) as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    typer.echo(json.dumps(made, indent=1))
+
+
+@config.command()
+def get(
+    path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
+    file: LaunchFile = None,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Prints the value of a setting; of several, if the name is a pattern, one a line with its own name."""
+    rows = _rows([path], file, bus_port)
+    if as_json:
+        typer.echo(json.dumps(rows, indent=2))
+    elif len(rows) == 1:
+        typer.echo(_value(rows[0]["value"]))
+    else:
+        for row in rows:
+            typer.echo(f"{_path(row)} = {_value(row['value'])}")
+
+
+@config.command("set")
+def set_settings(
+    changes: Annotated[
+        list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.gain=0.5")
+    ],
+    save: Annotated[bool, typer.Option("--save", help="keep them in the host-specific file for later runs")] = False,
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Changes settings between two ticks, all of them or none; says since which tick the components have them.
+
+    `--save` keeps them in NAME.host.yaml beside the launch file NAME.yaml, before they are set. If that fails, nothing
+    is changed.
+    """
+    origin = "fwk config set"
+    with asking(), client.supervisor(bus_port) as run:
+        if save:
+            run.ask("set", changes=changes, check=True)
+            file = host_file(Path(run.ask("run")["file"]))
+            _keep(file, changes)
+            origin = f"{origin} --save, {shown(file)}"
+        try:
+            answer = run.ask("set", changes=changes, origin=origin)
+        except ControlError as error:
+            raise type(error)(f"{error}; for later runs it is kept in {shown(file)}" if save else str(error)) from error
+    if as_json:
+        typer.echo(json.dumps(answer))
+        return
+    _say(answer, f", kept in {shown(file)}" if save else "")
+
+
+@config.command()
+def unset(
+    paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.gain")],
+    bus_port: BusPort = None,
+    as_json: Json = False,
+) -> None:
+    """Takes settings out of the host-specific file, all or none; the run takes over what the files say then.
+
+    NAME is what was typed with `fwk config set --save`, a pattern for example.
+    """
+    with asking(), client.supervisor(bus_port) as run:
+        run.ask("settings", names=paths)
+        try:
+            forget(host_file(Path(run.ask("run")["file"])), paths)
+        except KeepError as error:
+            typer.echo(f"error: {error}; nothing was changed", err=True)
+            raise typer.Exit(FAILED) from error
+        _take_over(run, paths, "fwk config unset", as_json)
+
+
+@config.command()
+def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+    """Reads the launch files again and takes over what they say otherwise of settings.
+
+    What was typed with --set when the run began stays; live changes that were not kept are undone. Settings that
+    cannot be changed while the run goes on are named.
+    """
+    with asking(), client.supervisor(bus_port) as run:
+        _take_over(run, names or [], "fwk config reload", as_json)
+
+
+def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool) -> None:
+    rows = run.ask("settings", names=names)["settings"]
+    try:
+        changes, later = differences(rows, load_plan(run.ask("run")["file"]))
+    except PlanError as error:
+        typer.echo(error, err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    answer = run.ask("set", changes=changes, origin=origin) if changes else {"settings": []}
+    if as_json:
+        typer.echo(json.dumps({**answer, "later": later}))
+        return
+    for each in later:
+        typer.echo(f"{each}: from the next run on")
+    if not changes:
+        typer.echo("the files say nothing else")
+    else:
+        _say(answer, "")
+
+
+@config.command()
+def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+    """Shows each change of a setting as it happens, until the run ends."""
+    with asking(), client.supervisor(bus_port) as run:
+        known: dict[str, Any] = {}
+        for answer in run.follow("watch_settings", names=names or []):
+            now = {_path(row): row for row in answer["settings"]}
+            changed = {path: row for path, row in now.items() if path in known and row != known[path]}
+            known |= now
+            for path, row in changed.items():
+                if as_json:
+                    typer.echo(json.dumps({**row, "tick": answer["tick"]}))
+                else:
+                    typer.echo(f"tick {answer['tick']}: {path} = {_value(row['value'])} ({row['origin']})")
+
+
+def _rows(names: list[str], file: str | None, bus_port: int | None) -> list[dict[str, Any]]:
+    with asking():
+        if file is None:
+            with client.supervisor(bus_port) as run:
+                found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
+            return found
+        try:
+            return RunSettings(load_plan(file)).rows(names)
+        except (PlanError, RequestError) as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(BAD_INPUT) from error
+
+
+def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
+    if as_json:
+        typer.echo(json.dumps(rows, indent=2))
+        return
+    table = Table("setting", "value", "type", "live", "origin", "meaning", box=None, pad_edge=False)
+    for row in rows:
+        path, value, kind, *others = map(escape, _texts(row))
+        table.add_row(path, value, kind, "yes" if row["editable"] else "no", *others)
+    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
+
+
+def _texts(row: dict[str, Any]) -> tuple[str, ...]:
+    return _path(row), _value(row["value"]), row["type"], row["origin"], row["meaning"]
+
+
+def _value(value: object) -> str:
+    """A value as people type it, also in other scripts than Latin."""
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _say(answer: dict[str, Any], kept: str) -> None:
+    for component in answer["settings"]:
+        for setting, value in component["values"].items():
+            typer.echo(f"{component['component']}.{setting} = {_value(value)} since tick {answer['tick']}{kept}")
+
+
+def _keep(file: Path, changes: list[str]) -> None:
+    try:
+        keep(file, [Kept.of(each) for each in changes])
+    except KeepError as error:
+        typer.echo(f"error: {error}; nothing was set", err=True)
+        raise typer.Exit(FAILED) from error
+
+
+def _path(row: dict[str, Any]) -> str:
+    return f"{row['component']}.{row['setting']}"

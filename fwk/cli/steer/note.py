@@ -1,0 +1,17 @@
+"""`fwk note TEXT`: a line for the run's log."""
+
+from typing import Annotated
+
+import typer
+
+from fwk.cli.run_options import BusPort, ask, asking
+
+
+def note(
+    text: Annotated[list[str], typer.Argument(metavar="TEXT", help="what there is to say about this moment")],
+    bus_port: BusPort = None,
+) -> None:
+    """Writes a line into the log and the recording of a run, so that the moment is found again; says at which tick."""
+    with asking():
+        answer = ask(bus_port, "note", text=" ".join(text))
+    typer.echo(f"noted, tick {answer['tick']}")

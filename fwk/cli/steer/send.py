@@ -1,0 +1,87 @@
+"""`fwk send CHANNEL FIELD=VALUE...`: writes a message into a run from outside."""
+
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from fwk.bus.public import PublicBus
+from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, asking
+from fwk.control import client
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
+from fwk.lcm.type_registry import use_types_of
+from fwk.model.errors import Problems, hint
+from fwk.plan.files.source import read_value
+
+
+def send(
+    channel: Annotated[str, typer.Argument(metavar="CHANNEL", help="one that the launch file names under 'outside:'")],
+    fields: Annotated[
+        list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
+    ] = None,
+    bus_port: BusPort = None,
+) -> None:
+    """Publishes one message on the public bus of a run, on a channel that programs outside may write.
+
+    The run stamps it when it takes it, between two ticks.
+    """
+    with asking():
+        with client.gateway(bus_port) as board:
+            rows = {row["channel"]: row for row in board.ask("channels")["channels"]}
+        with client.supervisor(bus_port) as run:
+            about = run.ask("run")
+    try:
+        row = rows.get(channel)
+        outside = [name for name, each in rows.items() if each["outside"]]
+        if row is None or not row["outside"]:
+            who = f"{row['writer'] or 'nobody'} writes it" if row else "it is not there"
+            right = hint(channel, outside) if outside else "name it under 'outside:' in the launch file"
+            raise MessageError(f"{channel}: {who}; {right}")
+        for folder in about["folders"]:
+            use_types_of(Path(folder))
+        data = messages.encode(made(row["type"], fields or []), channel)
+    except MessageError as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    if not about["public_url"]:
+        typer.echo(f"error: {about['plan']} has no public bus", err=True)
+        raise typer.Exit(FAILED)
+    bus = PublicBus(about["public_url"])
+    bus.publish(channel, data)
+    bus.close()
+    typer.echo(f"{channel}: {len(data)} bytes sent")
+
+
+def made(type_name: str, fields: list[str]) -> Any:
+    """A message with these fields set.
+
+    Raises:
+        MessageError: there is no such type or field, or a value is none.
+    """
+    message: Any = messages.type_named(type_name)()
+    for text in fields:
+        path, equals, typed = text.partition("=")
+        problems = Problems()
+        node = read_value(typed, "", problems)
+        if not equals or problems or node is None:
+            raise MessageError(f"'{text}' is no FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")
+        *above, last = path.split(".")
+        target = message
+        for name in above:
+            target = getattr(target, name, None)
+        known = list(getattr(target, "__slots__", ()))
+        if last not in known:
+            raise MessageError(f"{type_name} has no field '{path}'; {hint(last, known)}")
+        kind = target.__typenames__[known.index(last)]
+        setattr(target, last, _fitting(node.plain(), kind, path))
+    return message
+
+
+def _fitting(value: Any, kind: str, path: str) -> Any:
+    if kind == "byte" and isinstance(value, list):
+        try:
+            return bytes(value)
+        except (ValueError, TypeError) as error:
+            raise MessageError(f"{path}: bytes are numbers from 0 to 255") from error
+    return value
