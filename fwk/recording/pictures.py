@@ -1,4 +1,4 @@
-"""Pictures of cameras in a recording: frames that the recorder wrote, and what components like procs.pictures write."""
+"""Pictures of cameras in a recording: frames that the recorder wrote, and what components like view.pictures write."""
 
 import math
 from collections.abc import Iterator

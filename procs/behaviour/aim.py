@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from procs.behaviour.geometry import bearing_rad, wrap_rad
 from procs.behaviour.view import Robot
-from procs.field import Field, Point
+from procs.model.field import Field, Point
+from procs.model.geometry import bearing_rad, wrap_rad
 
 _BLOCK_M = 0.25 + 0.11  # a ball's middle passes a robot's middle at this distance
 _REACTION_S = 0.25

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from procs.behaviour.view import Ball
-from procs.field import Point
+from procs.model.field import Point
 
 SLIDING_M_S2 = 3.0
 ROLLING_M_S2 = 0.4

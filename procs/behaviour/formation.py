@@ -3,10 +3,10 @@
 import math
 
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.geometry import ahead, bearing_rad, between, clamp
 from procs.behaviour.path import Disc, find_way
-from procs.behaviour.restarts import State
-from procs.field import Field, Point
+from procs.model.field import Field, Point
+from procs.model.geometry import ahead, bearing_rad, between, clamp
+from procs.referee.restarts import State
 
 _OWN_SET_PIECE_M = 2.3
 _THEIR_SET_PIECE_M = 3.3

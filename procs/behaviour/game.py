@@ -4,10 +4,10 @@ from enum import Enum
 from typing import NamedTuple
 
 from lcmtypes.soccer import game_state_t
-from procs.behaviour.geometry import plausible
-from procs.behaviour.restarts import State, Team
 from procs.behaviour.view import Frame
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import plausible
+from procs.referee.restarts import State, Team
 
 
 class Whose(Enum):

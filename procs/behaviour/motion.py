@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
 
-from procs.behaviour.geometry import clamp, wrap_rad
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import clamp, wrap_rad
 
 
 class Pose(NamedTuple):

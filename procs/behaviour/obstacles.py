@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
-from procs.behaviour.geometry import clamp, plausible
 from procs.behaviour.path import Disc
-from procs.field import SIDES, Field, Point
+from procs.model.field import SIDES, Field, Point
+from procs.model.geometry import clamp, plausible
 
 _ROBOT_M = 0.25
 _BALL_M = 0.11

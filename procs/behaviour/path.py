@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _GRAZE_RAD = 0.02
 _SWITCH_RAD = 0.35

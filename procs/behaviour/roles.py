@@ -8,8 +8,8 @@ from typing import NamedTuple
 from procs.behaviour import ballistics
 from procs.behaviour.formation import places
 from procs.behaviour.view import Ball, Robot, View
-from procs.field import Field, Point
-from procs.physics.teams import number_of
+from procs.model.field import Field, Point
+from procs.model.robot import number_of
 
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
 

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from procs.behaviour import aim, ballistics, formation
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.geometry import bearing_rad, clamp
-from procs.behaviour.restarts import State
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
-from procs.field import Field, Point
+from procs.model.field import Field, Point
+from procs.model.geometry import bearing_rad, clamp
+from procs.referee.restarts import State
 
 _SHOT_RANGE_M = 9.0  # less than half the field: a goal from the own half would not count
 _ROOM_M = 0.15  # beside a shot's way at the goal ...

@@ -8,8 +8,8 @@ import math
 from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, robot_estimate_t, world_model_t
-from procs.behaviour.geometry import plausible, wrap_rad
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import plausible, wrap_rad
 
 
 class Frame(NamedTuple):

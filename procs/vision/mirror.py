@@ -15,7 +15,7 @@ from functools import cached_property
 
 import numpy as np
 
-from procs.vision.algebra import Floats, product
+from procs.model.algebra import Floats, product
 
 
 @dataclass(frozen=True)

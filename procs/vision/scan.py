@@ -7,7 +7,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from procs.vision.algebra import Floats
+from procs.model.algebra import Floats
 from procs.vision.colours import Picture
 from procs.vision.mirror import Mirror
 

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from procs.vision.algebra import Floats
+from procs.model.algebra import Floats
 from procs.vision.mirror import Mirror
 
 

@@ -53,13 +53,13 @@ def test_only_cameras_and_nobody_who_plays_sees_the_truth() -> None:
 def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:
     plan = plan_of("vision.yaml")
     camera, *detectors = plan.components
-    assert (camera.name, camera.module) == ("cyan1/camera", "procs.camera_driver")
+    assert (camera.name, camera.module) == ("cyan1/camera", "procs.drivers.camera_driver")
     assert [each.name for each in detectors] == ["cyan1/omni_ball", "cyan1/omni_field"]
 
 
 def test_frames_has_a_tree_that_those_who_ask_for_transforms_need() -> None:
     plan = plan_of("frames.yaml")
-    (tree,) = [each for each in plan.components if each.module == "procs.frame_tree"]
-    (spot,) = [each for each in plan.components if each.module == "procs.ball_spot"]
+    (tree,) = [each for each in plan.components if each.module == "procs.localization.frame_tree"]
+    (spot,) = [each for each in plan.components if each.module == "procs.world_model.ball_spot"]
     assert spot.needs == (tree.index,)
     assert spot.channels["tf.transforms"] == ("cyan1/transforms",)

@@ -72,8 +72,8 @@ def test_the_wheel_holds_framework_components_types_and_launch_files(wheel: Path
     wanted = {
         "fwk/py.typed",
         "fwk/cli/launch.py",
-        "procs/simulator.py",
-        "procs/physics/kinematics.py",
+        "procs/simulation/simulator.py",
+        "procs/simulation/physics/world.py",
         "lcmtypes/core.lcm",
         "lcmtypes/core/header_t.py",
         "lcmtypes/core/header_t.pyi",

@@ -28,7 +28,7 @@ def match(launch: Launch, ports: PortBlock, tmp_path: Path) -> Steered:
     """One robot on the field, under way; its base is not started again when it dies."""
     robot = (LAUNCH / "msl-robot.yaml").read_text()
     (tmp_path / "msl-robot.yaml").write_text(
-        robot.replace("use: procs.base\n", "use: procs.base\n      restart: {when: never}\n")
+        robot.replace("use: procs.drivers.base\n", "use: procs.drivers.base\n      restart: {when: never}\n")
     )
     (tmp_path / "one.yaml").write_text((LAUNCH / "one-robot.yaml").read_text())
     return Steered(launch("one.yaml", "--speed", "max", "--set", f"public_url={ports.public_url}"), ports)

@@ -9,7 +9,7 @@ import pexpect
 import pytest
 
 from procs.vision.colours import Picture
-from tests.procs.support_pictures import read, shades, simulated, write_folder, write_video
+from tests.procs.vision.picture_parts import read, shades, simulated, write_folder, write_video
 from tests.system.conftest import Launch
 from tests.system.control_system import Steered
 from tests.system.system_logs import Recording, difference
@@ -85,8 +85,8 @@ def with_pictures(tmp_path: Path) -> tuple[Path, list[Picture]]:
     """A launch file with exact pictures of all cameras on the bus, and what its camera sees, again and again."""
     pictures = shades(5)
     folder = write_folder(tmp_path / "seen", pictures)
-    camera = f"{{use: procs.camera_driver, config: {{source: {folder}, at_end: loop}}}}"
-    on_the_bus = "{use: procs.pictures, config: {rate_hz: 0, format: png}}"
+    camera = f"{{use: procs.drivers.camera_driver, config: {{source: {folder}, at_end: loop}}}}"
+    on_the_bus = "{use: procs.view.pictures, config: {rate_hz: 0, format: png}}"
     text = f"components:\n  cyan1/camera: {camera}\n  world/pictures: {on_the_bus}\n"
     (tmp_path / "pictures.yaml").write_text(text)
     return tmp_path / "pictures.yaml", pictures

@@ -1,6 +1,5 @@
 """JSON Schema of launch files with the settings and ports of the components, for editors that complete and check."""
 
-import pkgutil
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -77,15 +76,23 @@ def _uses(files: Files) -> Iterable[str]:
 def _found(folders: Sequence[str]) -> dict[str, Declaration]:
     """The components in `procs`, as `use` names them."""
     found = {}
-    for module in pkgutil.iter_modules(imported("procs", folders).__path__, "procs."):
-        if module.ispkg:
-            continue
-        if alone := _class(module.name, folders):
-            found[module.name] = alone
+    for module in _modules(imported("procs", folders).__path__):
+        if alone := _class(module, folders):
+            found[module] = alone
         else:
-            uses = (f"{module.name}:{name}" for name in _names(module.name, folders))
+            uses = (f"{module}:{name}" for name in _names(module, folders))
             found |= {use: each for use in uses if (each := _class(use, folders))}
     return found
+
+
+def _modules(roots: Iterable[str]) -> list[str]:
+    """Names of the modules below the folders of a package, tests apart; subfolders need no `__init__.py`."""
+    files = ((Path(root), file) for root in roots for file in sorted(Path(root).rglob("*.py")))
+    return [
+        ".".join((root.name, *file.relative_to(root).with_suffix("").parts))
+        for root, file in files
+        if not file.name.startswith("test_")
+    ]
 
 
 def _names(module: str, folders: Sequence[str]) -> list[str]:

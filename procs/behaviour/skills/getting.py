@@ -4,9 +4,9 @@ import math
 from abc import abstractmethod
 
 from procs.behaviour import ballistics
-from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _HANDLING_ON_M = 1.0
 _PUSH_M = 0.27  # middles of robot and ball when the ball is pressed into the mouth; they touch at 0.33

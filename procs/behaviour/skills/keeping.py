@@ -1,8 +1,8 @@
 """The goalkeeper's skill: stay between ball and goal, and be where a shot will cross the line."""
 
-from procs.behaviour.geometry import bearing_rad, clamp
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import bearing_rad, clamp
 
 _BEFORE_LINE_M = 0.45
 _SHOT_M_S = 0.8

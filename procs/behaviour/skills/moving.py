@@ -2,9 +2,9 @@
 
 import math
 
-from procs.behaviour.geometry import ahead, bearing_rad, wrap_rad
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _NEAR_M = 0.1
 _NEAR_RAD = 0.1

@@ -4,9 +4,9 @@ import math
 from abc import abstractmethod
 
 from procs.behaviour import ballistics
-from procs.behaviour.geometry import ahead, bearing_rad, clamp, wrap_rad
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
-from procs.field import Point
+from procs.model.field import Point
+from procs.model.geometry import ahead, bearing_rad, clamp, wrap_rad
 
 _LOST_S = 0.3  # the light barrier may miss the ball so long before it counts as lost
 _DRIBBLE_M_S = 2.7

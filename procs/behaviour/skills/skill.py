@@ -5,7 +5,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from procs.behaviour.view import View
-from procs.field import Field, Point
+from procs.model.field import Field, Point
 
 
 class Status(IntEnum):

@@ -68,6 +68,6 @@ def test_installed_components_are_an_application_too(load: Callable[..., Plan]) 
     plan = load("include: one-robot.yaml")
     ball = next(each for each in plan.components if each.name == "cyan1/omni_ball")
     found = {"/".join(file.parts[-2:]) for file in Sources(plan).files(ball)}
-    assert {"procs/omni_ball.py", "vision/ball.py", "vision/mirror.py"} <= found
+    assert {"vision/omni_ball.py", "vision/ball_finder.py", "vision/mirror.py"} <= found
     assert not any(name.startswith(("fwk/", "lcmtypes/")) for name in found)
-    assert "procs/agent.py" not in found
+    assert "behaviour/agent.py" not in found

@@ -85,8 +85,8 @@ def test_a_robots_guide_takes_the_provider_that_its_template_names(load: Load) -
         """,
     ),
     Broken(
-        "it.yaml:1: a/farer: no module 'procs.frame_tre'; did you mean 'procs.frame_tree'?",
-        "components: {a/farer: {use: procs.frame_tre}, a/guide: {use: plan_parts:Guide}}",
+        "it.yaml:1: a/farer: no module 'procs.localization.frame_tre'; did you mean 'procs.localization.frame_tree'?",
+        "components: {a/farer: {use: procs.localization.frame_tre}, a/guide: {use: plan_parts:Guide}}",
     ),
     Broken(
         "--without: a/guide: it cannot do without a/farer, which is left out; leave out both or none",

@@ -1,0 +1,80 @@
+"""Decides what the robot does: its role in the team and the skill for the moment."""
+
+import math
+
+from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
+from lcmtypes.robot import kicker_state_t
+from lcmtypes.soccer import game_state_t, role_t, skill_command_t, skill_status_t, world_model_t
+from procs.behaviour import roles
+from procs.behaviour.game import game_of
+from procs.behaviour.tactics import Order, Tactics
+from procs.behaviour.view import Frame, view_of
+from procs.model.field import Field, Point
+from procs.model.geometry import wrap_rad
+from procs.model.robot import side_of, team_of
+from procs.referee.restarts import team_number
+
+
+class AgentConfig(Config):
+    """Settings of the decisions."""
+
+    field: Field = Field()
+    """Measures of the field."""
+    new_target_m: float = 0.05
+    """A skill's target that moved this far makes a new command ..."""
+    new_heading_rad: float = 0.05
+    """... and so does a heading that turned this far."""
+
+
+class Agent(Component):
+    """Thinks in the attack frame, speaks in the world frame."""
+
+    stage = "think"
+
+    config: AgentConfig
+    clock: Clock
+    log: Logger
+    world_model: Reads[world_model_t]
+    game_state: Reads[game_state_t] = channel("world/game_state")
+    kicker_state: Reads[kicker_state_t]
+    skill_status: Reads[skill_status_t]
+    role: Writes[role_t]
+    skill_command: Writes[skill_command_t]
+
+    def init(self) -> None:
+        self._robot = self.name.rpartition("/")[0]
+        self._frame = Frame(-side_of(team_of(self._robot)))
+        self._tactics = Tactics(self.config.field)
+
+    def loop(self) -> None:
+        role = self.role.value
+        view = view_of(self.world_model.value, self._robot, role.role, self._frame)
+        game = game_of(self.game_state.value, team_number(self._robot), self._frame)
+        idle = roles.Job(role.role or roles.DEFENDER, view.own.place)
+        job = roles.assign(view, self.config.field).get(self._robot, idle)
+        order = self._tactics.decide(view, game, job, self.kicker_state.value.ball_held, self.clock.period_s)
+        role.role, role.intention = job.role, order.intention or order.skill
+        self.role.write()
+        self._command(order)
+
+    def _command(self, order: Order) -> None:
+        command = self.skill_command.value
+        place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)
+        if self._is_new(order.skill, place, heading_rad):
+            command.command_id += 1
+            command.skill = order.skill
+            command.x_m, command.y_m, command.heading_rad = *place, heading_rad
+        self.skill_command.write()
+
+    def _is_new(self, skill: str, place: Point, heading_rad: float) -> bool:
+        command, status = self.skill_command.value, self.skill_status.value
+        if skill != command.skill or math.dist(place, (command.x_m, command.y_m)) > self.config.new_target_m:
+            return True
+        if abs(wrap_rad(heading_rad - command.heading_rad)) > self.config.new_heading_rad:
+            return True
+        # The skill has ended and is wanted again.
+        ended = status.status in (skill_status_t.FINAL, skill_status_t.FAILED)
+        return ended and status.command_id == command.command_id and status.skill not in _STAYING
+
+
+_STAYING = ("stop", "goto", "keep_goal", "mark", "dribble")

@@ -1,0 +1,127 @@
+"""Drives the robot to its target, around obstacles and within its limits."""
+
+import math
+
+from fwk import Clock, Component, Config, Reads, Writes
+from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
+from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
+from procs.behaviour import motion, obstacles
+from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
+from procs.behaviour.path import Way, find_way
+from procs.model.field import Field, Point
+from procs.model.geometry import plausible, wrap_rad
+
+
+class NavigatorConfig(Config):
+    """Settings of the way-finding."""
+
+    limits: Limits = Limits()
+    """What the robot can do."""
+    field: Field = Field()
+    """Measures of the field."""
+    target_timeout_s: float = 0.5
+    """The robot stops when its target or its world model is older."""
+    near_m: float = 0.08
+    """The target counts as reached this close to it ..."""
+    near_rad: float = 0.1
+    """... and to its heading."""
+
+
+class Navigator(Component):
+    """From a target in the world to a velocity in the robot's frame."""
+
+    stage = "act"
+
+    config: NavigatorConfig
+    clock: Clock
+    drive_target: Reads[drive_target_t]
+    world_model: Reads[world_model_t]
+    odometry: Reads[odometry_t]
+    kicker_state: Reads[kicker_state_t]
+    motor_command: Writes[motor_command_t]
+    navigator_state: Writes[navigator_state_t]
+
+    def init(self) -> None:
+        self._before = STANDSTILL  # commanded, world frame
+        self._direction_rad: float | None = None
+
+    def loop(self) -> None:
+        target, model, state = self.drive_target.value, self.world_model.value, self.navigator_state.value
+        state.target_id = target.target_id
+        state.error = navigator_state_t.OK
+        here = plausible(model.x_m, model.y_m, model.heading_rad)
+        if not here or not model.localized or not self._fresh(self.world_model):
+            state.error, state.arrived, state.distance_m = navigator_state_t.LOST, False, 0.0
+            self._stop(model.heading_rad if here else 0.0)
+        elif target.stop or not self._fresh(self.drive_target) or not _makes_sense(target):
+            state.arrived, state.distance_m = target.stop, 0.0
+            self._stop(model.heading_rad)
+        else:
+            self._drive(target, model)
+        self.navigator_state.write()
+
+    def finalize(self) -> None:
+        """Leaves the motors off."""
+        self.motor_command.value = motor_command_t()
+        self.motor_command.write()
+
+    def _fresh(self, reader: Reads[drive_target_t] | Reads[world_model_t]) -> bool:
+        return reader.has_value and self.clock.since_s(reader.header.time_us) <= self.config.target_timeout_s
+
+    def _stop(self, heading_rad: float) -> None:
+        self._direction_rad = None
+        self._command(STANDSTILL, heading_rad)
+
+    def _drive(self, target: drive_target_t, model: world_model_t) -> None:
+        config, state = self.config, self.navigator_state.value
+        pose = self._pose(model)
+        place = obstacles.reachable(Point(target.x_m, target.y_m), config.field)
+        around = obstacles.discs(model, config.field, target.avoid_robots, target.avoid_ball)
+        way = find_way(pose.place, place, around, self._direction_rad)
+        self._direction_rad = way.direction_rad
+        turn_rad = wrap_rad(target.heading_rad - pose.heading_rad)
+        state.distance_m = math.dist(pose.place, place)
+        state.arrived = state.distance_m < config.near_m and abs(turn_rad) < config.near_rad
+        if way.blocked:
+            state.error = navigator_state_t.OBSTRUCTED
+        self._command(self._velocity(target, way, turn_rad), pose.heading_rad)
+
+    def _pose(self, model: world_model_t) -> Pose:
+        measured = self.odometry.value
+        velocity = Velocity(measured.vx_m_s, measured.vy_m_s, measured.omega_rad_s)
+        if not plausible(*velocity):
+            velocity = STANDSTILL
+        return motion.ahead_in_time(
+            Pose(Point(model.x_m, model.y_m), model.heading_rad), velocity, self.config.limits.latency_s
+        )
+
+    def _velocity(self, target: drive_target_t, way: Way, turn_rad: float) -> Velocity:
+        limits = self.config.limits
+        limit_m_s = min(target.speed_m_s, limits.speed_m_s) if target.speed_m_s > 0 else limits.speed_m_s
+        speed_m_s = motion.speed_to_go_m_s(way.length_m, target.end_speed_m_s, limit_m_s, limits)
+        if math.isfinite(way.free_m) and way.free_m < way.length_m:
+            speed_m_s = min(speed_m_s, motion.speed_to_go_m_s(way.free_m, 0.2, limit_m_s, limits))
+        held = self.kicker_state.value.ball_held
+        omega_limit_rad_s = limits.ball_omega_rad_s if held else limits.omega_rad_s
+        return Velocity(
+            speed_m_s * math.cos(way.direction_rad),
+            speed_m_s * math.sin(way.direction_rad),
+            motion.turning_to_go_rad_s(turn_rad, omega_limit_rad_s, limits),
+        )
+
+    def _command(self, wanted: Velocity, heading_rad: float) -> None:
+        limits, held = self.config.limits, self.kicker_state.value.ball_held
+        change_m_s2 = limits.ball_acceleration_m_s2 if held else limits.acceleration_m_s2
+        period_s = self.clock.period_s
+        self._before = motion.approach(self._before, wanted, period_s, change_m_s2, limits.angular_acceleration_rad_s2)
+        # The robot turns on while it follows the command, so the command is meant for the middle of that time.
+        middle_rad = heading_rad + self._before.omega_rad_s * period_s / 2
+        command = self.motor_command.value
+        command.vx_m_s, command.vy_m_s = motion.turned(self._before.vx_m_s, self._before.vy_m_s, -middle_rad)
+        command.omega_rad_s = self._before.omega_rad_s
+        command.enabled = True
+        self.motor_command.write()
+
+
+def _makes_sense(target: drive_target_t) -> bool:
+    return plausible(target.x_m, target.y_m, target.heading_rad, target.speed_m_s, target.end_speed_m_s)

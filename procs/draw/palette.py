@@ -1,7 +1,0 @@
-"""Colours of the teams, as blue, green, red."""
-
-from procs.draw.canvas import Colour
-from procs.physics.teams import CYAN, MAGENTA
-
-TEAM_COLOURS: dict[str, Colour] = {CYAN: (214, 176, 0), MAGENTA: (170, 40, 214)}
-UNKNOWN_TEAM: Colour = (120, 120, 120)

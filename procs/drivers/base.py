@@ -1,0 +1,110 @@
+"""Driver of the wheels: tells them how to turn for a wanted velocity, and sums up how far they went."""
+
+from pydantic import PositiveFloat
+
+from fwk import US_PER_S, Clock, Component, Config, Logger, Reads, Writes
+from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
+from procs.drivers.odometry import Odometry
+from procs.drivers.ramp import Ramp, within_wheel_limit
+from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+
+_PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, not even when they are pushed
+_LONGEST_GAP_S = 0.5  # a measurement after a longer silence says nothing about the time before
+
+
+class BaseConfig(Config):
+    """Settings of the wheels' driver."""
+
+    wheel_distance_m: PositiveFloat = 0.2
+    """From the robot's middle to each wheel."""
+    wheel_limit_m_s: PositiveFloat = 3.5
+    """Highest rim speed of a wheel."""
+    speed_m_s: PositiveFloat = 3.5
+    """Highest speed over the ground."""
+    acceleration_m_s2: PositiveFloat = 3.0
+    """Limit while the robot gets faster."""
+    braking_m_s2: PositiveFloat = 4.0
+    """Limit while the robot gets slower."""
+    omega_rad_s: PositiveFloat = 6.0
+    """Highest turning speed."""
+    angular_acceleration_rad_s2: PositiveFloat = 20.0
+    """Limit of its change."""
+    command_timeout_s: PositiveFloat = 0.25
+    """The robot brakes to a standstill when its newest motor command is older."""
+
+
+class Base(Component):
+    """Odometry when sensors are read, wheel commands when actuators act."""
+
+    stage = ("sensor_acquire", "act_exec")
+
+    wheel_state: Reads[wheel_state_t]
+    motor_command: Reads[motor_command_t]
+    odometry: Writes[odometry_t]
+    wheel_command: Writes[wheel_command_t]
+    config: BaseConfig
+    clock: Clock
+    log: Logger
+
+    def init(self) -> None:
+        config = self.config
+        self._odometry = Odometry()
+        self._measured_us = 0
+        self._late = False
+        self._ramp = Ramp(
+            config.speed_m_s,
+            config.acceleration_m_s2,
+            config.braking_m_s2,
+            config.omega_rad_s,
+            config.angular_acceleration_rad_s2,
+        )
+
+    def loop(self) -> None:
+        # Measurements count whenever they come: one that arrives between the stages must not be missing in the sum.
+        for state in self.wheel_state.fresh:
+            self._add(state)
+        if self.clock.stage == "act_exec":
+            self._drive()
+        else:
+            self._report()
+
+    def finalize(self) -> None:
+        """Leaves the wheels stopped."""
+        self.wheel_command.value = wheel_command_t()
+        self.wheel_command.write()
+
+    def _add(self, state: wheel_state_t) -> None:
+        first, second, third = state.measured_m_s
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.measured_m_s):
+            self.log.warning(f"wheels say {first}, {second}, {third} m/s, which cannot be; ignored")
+            return
+        passed_s = (state.header.time_us - self._measured_us) / US_PER_S
+        self._measured_us = state.header.time_us
+        if not 0 < passed_s <= _LONGEST_GAP_S:
+            passed_s = self.clock.period_s
+        self._odometry.advance(velocity_of((first, second, third), self.config.wheel_distance_m), passed_s)
+
+    def _report(self) -> None:
+        report, odometry = self.odometry.value, self._odometry
+        report.x_m, report.y_m, report.heading_rad = odometry.x_m, odometry.y_m, odometry.heading_rad
+        report.vx_m_s, report.vy_m_s, report.omega_rad_s = odometry.velocity
+        report.path_length_m = odometry.path_length_m
+        self.odometry.write()
+
+    def _drive(self) -> None:
+        config = self.config
+        velocity = self._ramp.advance(self._wanted(), self.clock.period_s)
+        possible = within_wheel_limit(velocity, config.wheel_limit_m_s, config.wheel_distance_m)
+        self.wheel_command.value.wheel_m_s = list(wheels_of(possible, config.wheel_distance_m))
+        self.wheel_command.write()
+
+    def _wanted(self) -> Velocity:
+        command = self.motor_command.value
+        age_s = self.clock.since_s(self.motor_command.header.time_us)
+        late = self.motor_command.has_value and age_s > self.config.command_timeout_s
+        if late and not self._late:
+            self.log.warning(f"no motor command for {age_s:.2f} s: braking")
+        self._late = late
+        if late or not command.enabled:
+            return STANDSTILL
+        return Velocity(command.vx_m_s, command.vy_m_s, command.omega_rad_s)

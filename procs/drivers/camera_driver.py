@@ -1,0 +1,136 @@
+"""Driver of a real camera, or of pictures that were taken before: gives the frames out as the simulated camera does."""
+
+from pathlib import Path
+from typing import Literal
+
+import cv2
+import numpy as np
+from pydantic import Field as Setting
+from pydantic import PositiveFloat
+
+from fwk import Clock, Component, Config, Logger, VisionMaster
+from procs.drivers.live_pictures import Backoff, Live, Wanted, check_device, open_device, open_stream
+from procs.drivers.recorded_pictures import Endless, Folder, Recorded, SourceError, Video
+from procs.vision.colours import Picture
+
+
+class CameraDriverConfig(Config):
+    """Settings of the camera's driver."""
+
+    source: str | int = "/dev/video0"
+    """Where pictures come from: a device (`/dev/video0`, or its number), an address (`rtsp://...`, `http://...`), a
+    video file, or a folder of pictures, taken in the order of their names."""
+    width_px: int = Setting(default=0, ge=0, le=10_000)
+    """Frames are made that wide, and a device is asked for it; 0, with height_px: as they come."""
+    height_px: int = Setting(default=0, ge=0, le=10_000)
+    """See width_px."""
+    grey: bool = False
+    """Frames of one channel (gray8) instead of three (bgr8)."""
+    rate_hz: float = Setting(default=0.0, ge=0.0, le=1000.0)
+    """Pictures a second that a device is asked for; 0: its own rate."""
+    every_ticks: int = Setting(default=1, ge=1, le=1000)
+    """A frame every so many ticks. Of files it is always the next picture: picture k, from 0, in tick
+    1 + k * every_ticks. Of a device it is the newest, if there is a new one."""
+    at_end: Literal["stop", "loop", "fail"] = "stop"
+    """After the last picture of a file or folder: no more frames, from the beginning again, or the component fails."""
+    retry_s: PositiveFloat = 0.5
+    """A lost device or stream is opened again after this time, which doubles with each failure."""
+    longest_retry_s: PositiveFloat = 10.0
+    """But at least that often."""
+
+
+class CameraDriver(Component):
+    """Frames of a video file or a folder depend on the tick alone; those of a device are what it sees."""
+
+    stage = "sensor_acquire"
+    image: VisionMaster
+    config: CameraDriverConfig
+    clock: Clock
+    log: Logger
+
+    @classmethod
+    def unrepeatable(cls, config: CameraDriverConfig) -> str:
+        source = str(config.source)
+        if "://" in source:
+            return f"'{source}' is a stream, what it sent cannot be had again"
+        if _is_device(source):
+            return f"'{source}' is a device, what it saw cannot be had again"
+        return "" if Path(source).exists() else f"'{source}' is not there any more"
+
+    def init(self) -> None:
+        """Opens the source.
+
+        Raises:
+            SourceError: it cannot be opened.
+        """
+        self._live: Live | None = None
+        self._recorded: Recorded | None = None
+        self._open()
+
+    def loop(self) -> None:
+        number, rest = divmod(self.clock.tick - 1, self.config.every_ticks)
+        if self._live:
+            for text in self._live.news():
+                self.log.warning(f"{self.config.source} {text}")
+        if rest:
+            return
+        pixels = self._live.picture() if self._live else self._picture(number)
+        if pixels is not None:
+            self.image.publish(self._as_wanted(pixels))
+
+    def config_changed(self) -> None:
+        self.finalize()
+        try:
+            self._open()
+        except SourceError as error:
+            self.log.error(f"{error}; no frames until other settings come")
+
+    def finalize(self) -> None:
+        if self._live:
+            self._live.close()
+        if self._recorded:
+            self._recorded.close()
+
+    def _open(self) -> None:
+        config = self.config
+        self._live, self._recorded, self._ended = None, None, False
+        if bool(config.width_px) != bool(config.height_px):
+            raise SourceError(f"{self.name}: width_px and height_px belong together; give both or none")
+        source, path = str(config.source), Path(str(config.source))
+        backoff = Backoff(config.retry_s, config.longest_retry_s)
+        if "://" in source:
+            self._live = Live(lambda: open_stream(source), backoff)
+        elif path.is_file() or path.is_dir():
+            self._recorded = Folder(path) if path.is_dir() else Video(path)
+            self._recorded = Endless(self._recorded) if config.at_end == "loop" else self._recorded
+        else:
+            device = Path(f"/dev/video{source}") if source.isdecimal() else path
+            wanted = Wanted(config.width_px, config.height_px, config.rate_hz)
+            check_device(device)
+            self._live = Live(lambda: open_device(device, wanted), backoff)
+
+    def _picture(self, number: int) -> Picture | None:
+        if self._ended or self._recorded is None:
+            return None
+        found = self._recorded.picture(number)
+        if found is None:
+            self._ended = True
+            end = f"{self.config.source} has ended after {self._recorded.count} pictures"
+            if self.config.at_end == "fail":
+                raise SourceError(end)
+            self.log.info(f"{end}; no more frames")
+        return found
+
+    def _as_wanted(self, pixels: Picture) -> Picture:
+        config = self.config
+        if config.grey:
+            pixels = np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
+        if config.width_px and pixels.shape[:2] != (config.height_px, config.width_px):
+            size, shrinks = (config.width_px, config.height_px), config.width_px < pixels.shape[1]
+            method = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
+            pixels = np.asarray(cv2.resize(pixels, size, interpolation=method), np.uint8)
+        return pixels
+
+
+def _is_device(source: str) -> bool:
+    return source.isdecimal() or source.startswith("/dev/")

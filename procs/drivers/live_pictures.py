@@ -1,0 +1,152 @@
+"""Pictures as they come, from a device of this machine or a stream of the network, in a thread of their own."""
+
+import os
+import stat
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from procs.drivers.recorded_pictures import SourceError
+from procs.vision.colours import Picture
+
+DEVICES = Path("/dev")
+OPEN_TIMEOUT_MS = 5000
+READ_TIMEOUT_MS = 2000
+CLOSE_S = 1.0
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a device is asked for; 0: its own. Whether it does so is its business."""
+
+    width_px: int = 0
+    height_px: int = 0
+    rate_hz: float = 0.0
+
+
+@dataclass(frozen=True)
+class Backoff:
+    """How long to wait until a lost source is opened again: first, doubling with each failure, at most."""
+
+    first_s: float = 0.5
+    longest_s: float = 10.0
+
+
+def open_stream(url: str) -> cv2.VideoCapture:
+    """Opens a stream: rtsp, http and whatever else ffmpeg knows.
+
+    Raises:
+        SourceError: nobody sends pictures there.
+    """
+    limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, OPEN_TIMEOUT_MS, cv2.CAP_PROP_READ_TIMEOUT_MSEC, READ_TIMEOUT_MS]
+    capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG, limits)
+    if not capture.isOpened():
+        raise SourceError(f"'{url}': no pictures come from there; does the camera run, and is the address right?")
+    return capture
+
+
+def open_device(path: Path, wanted: Wanted) -> cv2.VideoCapture:
+    """Opens a Video4Linux device.
+
+    Raises:
+        SourceError: there is none, it may not be used, or it gives no pictures.
+    """
+    check_device(path)
+    capture = cv2.VideoCapture(str(path), cv2.CAP_V4L2)
+    if not capture.isOpened():
+        raise SourceError(f"'{path}': it gives no pictures; does another program use it, or is it no camera?")
+    capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
+    for what, value in (
+        (cv2.CAP_PROP_FRAME_WIDTH, wanted.width_px),
+        (cv2.CAP_PROP_FRAME_HEIGHT, wanted.height_px),
+        (cv2.CAP_PROP_FPS, wanted.rate_hz),
+    ):
+        if value:
+            capture.set(what, value)
+    return capture
+
+
+def check_device(path: Path) -> None:
+    """Raises SourceError if there is no such device, or if this user may not read it."""
+    try:
+        kind = path.stat().st_mode
+    except OSError as error:
+        there = ", ".join(str(each) for each in sorted(DEVICES.glob("video*"))) or "none"
+        raise SourceError(f"'{path}': {error.strerror}; video devices of this machine: {there}") from error
+    if not stat.S_ISCHR(kind):
+        raise SourceError(f"'{path}': no device")
+    if not os.access(path, os.R_OK | os.W_OK):
+        raise SourceError(f"'{path}': you may not use it; most systems want you in the group 'video'")
+
+
+class Live:
+    """The newest picture of a source that is read all the time, and opened again whenever it is lost.
+
+    Raises:
+        SourceError: it cannot be opened to begin with.
+    """
+
+    def __init__(self, source: Callable[[], cv2.VideoCapture], backoff: Backoff) -> None:
+        self._source = source
+        self._backoff = backoff
+        self._lock = threading.Lock()
+        self._newest: Picture | None = None
+        self._news: list[str] = []
+        self._closing = threading.Event()
+        self._thread = threading.Thread(target=self._work, args=(source(),), name="camera", daemon=True)
+        self._thread.start()
+
+    def picture(self) -> Picture | None:
+        """The newest picture since the last call, or None."""
+        with self._lock:
+            taken, self._newest = self._newest, None
+        return taken
+
+    def news(self) -> list[str]:
+        """What happened since the last call: lost, and why; found again."""
+        with self._lock:
+            taken, self._news = self._news, []
+        return taken
+
+    def close(self) -> None:
+        """No more pictures are wanted; a source that hangs is left to itself."""
+        self._closing.set()
+        self._thread.join(CLOSE_S)
+
+    def _work(self, capture: cv2.VideoCapture | None) -> None:
+        while capture is not None:
+            there, pixels = capture.read()
+            if self._closing.is_set():
+                capture.release()
+                return
+            if there:
+                with self._lock:
+                    self._newest = np.asarray(pixels, np.uint8)
+            else:
+                capture.release()
+                self._tell("lost: it gives no more pictures; it is opened again until it is back")
+                capture = self._open_again()
+
+    def _open_again(self) -> cv2.VideoCapture | None:
+        """Tries until it succeeds; None if that is no longer wanted."""
+        wait_s, said = self._backoff.first_s, ""
+        while not self._closing.wait(wait_s):
+            try:
+                capture = self._source()
+            except SourceError as error:
+                if str(error) != said:
+                    said = str(error)
+                    self._tell(f"not back: {said}")
+                wait_s = min(2 * wait_s, self._backoff.longest_s)
+            else:
+                self._tell("back")
+                return capture
+        return None
+
+    def _tell(self, text: str) -> None:
+        with self._lock:
+            self._news.append(text)

@@ -1,0 +1,54 @@
+"""Limits of speed and acceleration between what is wanted of a base and what its wheels are told."""
+
+import math
+
+from procs.model.kinematics import STANDSTILL, Velocity, wheels_of
+
+
+class Ramp:
+    """Follows a wanted velocity (robot frame) as fast as the limits allow, without leaving its direction."""
+
+    def __init__(
+        self,
+        speed_m_s: float,
+        acceleration_m_s2: float,
+        braking_m_s2: float,
+        omega_rad_s: float,
+        angular_acceleration_rad_s2: float,
+    ) -> None:
+        """Limits: speed, its growth, its decrease, turning speed and the change of that."""
+        self.velocity = STANDSTILL
+        self._speed_m_s = speed_m_s
+        self._acceleration_m_s2 = acceleration_m_s2
+        self._braking_m_s2 = braking_m_s2
+        self._omega_rad_s = omega_rad_s
+        self._angular_acceleration_rad_s2 = angular_acceleration_rad_s2
+
+    def advance(self, wanted: Velocity, duration_s: float) -> Velocity:
+        """The velocity to command for the next `duration_s`. What is no finite number counts as standstill."""
+        if not all(map(math.isfinite, wanted)):
+            wanted = STANDSTILL
+        speed_m_s = math.hypot(wanted.vx_m_s, wanted.vy_m_s)
+        scale = min(1.0, self._speed_m_s / speed_m_s) if speed_m_s else 1.0
+        change_x = wanted.vx_m_s * scale - self.velocity.vx_m_s
+        change_y = wanted.vy_m_s * scale - self.velocity.vy_m_s
+        slower = speed_m_s * scale < math.hypot(self.velocity.vx_m_s, self.velocity.vy_m_s)
+        limit_m_s = (self._braking_m_s2 if slower else self._acceleration_m_s2) * duration_s
+        change_m_s = math.hypot(change_x, change_y)
+        share = min(1.0, limit_m_s / change_m_s) if change_m_s else 1.0
+        omega = min(self._omega_rad_s, max(-self._omega_rad_s, wanted.omega_rad_s))
+        turn_limit = self._angular_acceleration_rad_s2 * duration_s
+        turn = min(turn_limit, max(-turn_limit, omega - self.velocity.omega_rad_s))
+        self.velocity = Velocity(
+            self.velocity.vx_m_s + change_x * share,
+            self.velocity.vy_m_s + change_y * share,
+            self.velocity.omega_rad_s + turn,
+        )
+        return self.velocity
+
+
+def within_wheel_limit(velocity: Velocity, wheel_limit_m_s: float, wheel_distance_m: float) -> Velocity:
+    """The same motion, slower if need be, so that no wheel has to turn faster than it can."""
+    fastest_m_s = max(map(abs, wheels_of(velocity, wheel_distance_m)))
+    scale = min(1.0, wheel_limit_m_s / fastest_m_s) if fastest_m_s else 1.0
+    return Velocity(*(part * scale for part in velocity))

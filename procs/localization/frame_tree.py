@@ -1,0 +1,73 @@
+"""Keeps the tree of a robot's frames: where it stands in the world, and what is mounted on it where."""
+
+from pydantic import Field
+
+from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, Writes, channel, transform_message
+from lcmtypes.robot import transforms_t
+from lcmtypes.soccer import pose_t
+
+
+class Mounting(Config):
+    """Where a part sits; turned about the x axis of its parent, then y, then z."""
+
+    parent: str = "base"
+    """Frame that it is mounted on."""
+    x_m: float = 0.0
+    """Forward of the parent's origin."""
+    y_m: float = 0.0
+    """To the left of it."""
+    z_m: float = 0.0
+    """Above it."""
+    roll_rad: float = 0.0
+    """About x."""
+    pitch_rad: float = 0.0
+    """About y."""
+    yaw_rad: float = 0.0
+    """About z."""
+
+    @property
+    def transform(self) -> Transform:
+        """The part in its parent."""
+        shift_m = (self.x_m, self.y_m, self.z_m)
+        return Transform.of_angles(shift_m, self.roll_rad, self.pitch_rad, self.yaw_rad)
+
+
+class FrameTreeConfig(Config):
+    """Settings of the tree."""
+
+    world: str = Field("world", frozen=True)
+    """Frame of the field: origin in its centre."""
+    base: str = Field("base", frozen=True)
+    """Frame of the robot: on the ground below its centre, x forward, y left."""
+    mounted: dict[str, Mounting] = Field({"camera": Mounting(z_m=0.75), "kicker": Mounting(x_m=0.24)}, frozen=True)
+    """Frames that do not move on the robot."""
+
+
+class FrameTree(Component):
+    """Provides `Transforms` to the components of its robot."""
+
+    stage = "worldstate"
+    provides = Transforms
+    config: FrameTreeConfig
+    pose: Reads[pose_t]
+    transforms: Writes[transforms_t] = channel("transforms")
+
+    def init(self) -> None:
+        """Frames in a ring or with two parents are refused here."""
+        config, tree = self.config, TransformTree()
+        tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
+        for name, mounting in config.mounted.items():
+            tree.put(mounting.parent, name, 0, mounting.transform, fixed=True)
+        self._mounted = [
+            transform_message(mounting.parent, name, 0, mounting.transform, fixed=True)
+            for name, mounting in config.mounted.items()
+        ]
+
+    def loop(self) -> None:
+        pose, config = self.pose, self.config
+        told = list(self._mounted)
+        if pose.has_value and pose.value.localized:
+            stands = Transform.of((pose.value.x_m, pose.value.y_m, 0.0), pose.value.heading_rad)
+            told.append(transform_message(config.world, config.base, pose.header.time_us, stands))
+        self.transforms.value.transforms, self.transforms.value.n = told, len(told)
+        self.transforms.write()

@@ -1,0 +1,75 @@
+"""A few places where a lost robot might be, followed until one of them has clearly explained the pictures best."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from procs.localization.pose_filter import moved
+from procs.model.frames import Floats, rotation
+
+_MEMORY = 0.85  # of a hypothesis' mean score from frame to frame
+_MOST = 8
+_SAME_M = 0.5
+_SAME_RAD = 0.3
+_OLD_ENOUGH = 6  # frames
+_CLEAR_LEAD = 0.15  # over the next best, for a decision as early as that
+_PATIENT_LEAD = 0.04  # for a late decision
+_PATIENCE = 30  # frames, until the lead may be as small as that
+
+
+@dataclass
+class Hypothesis:
+    """A possible pose (3) with the mean score of its matches."""
+
+    pose: Floats
+    score: float
+    frames: int = field(default=1)
+
+
+class Hypotheses:
+    """Followed by odometry, scored in each frame, joined when they meet; the best comes first."""
+
+    def __init__(self) -> None:
+        self.known: list[Hypothesis] = []
+
+    def clear(self) -> None:
+        """Forgets all."""
+        self.known = []
+
+    def predict(self, ahead_m: float, left_m: float, turn_rad: float) -> None:
+        """The robot moved, by its odometry."""
+        for one in self.known:
+            way_m = rotation(float(one.pose[2]) + turn_rad / 2) @ (ahead_m, left_m)
+            one.pose = moved(one.pose, way_m, turn_rad)
+
+    def starts(self, others: Floats) -> Floats:
+        """Start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
+        return np.vstack([one.pose for one in self.known] + [others])
+
+    def update(self, poses: Floats, scores: Floats) -> None:
+        """What became of `starts`."""
+        count = len(self.known)
+        for one, pose, score in zip(self.known, poses, scores, strict=False):
+            one.pose = pose
+            one.score = _MEMORY * one.score + (1 - _MEMORY) * float(score)
+            one.frames += 1
+        found = [Hypothesis(pose, float(score)) for pose, score in zip(poses[count:], scores[count:], strict=True)]
+        oldest_first = sorted(self.known, key=lambda one: (-one.frames, -one.score)) + found
+        kept: list[Hypothesis] = []
+        for one in oldest_first:
+            if not any(_same(one.pose, other.pose) for other in kept):
+                kept.append(one)
+        self.known = sorted(kept, key=lambda one: -one.score)[:_MOST]
+
+    def decided(self, good_score: float) -> Hypothesis | None:
+        """The best, if it is good, followed long enough, and far enough ahead of the rest."""
+        if not self.known or self.known[0].score < good_score or self.known[0].frames < _OLD_ENOUGH:
+            return None
+        best = self.known[0]
+        lead = best.score - (self.known[1].score if len(self.known) > 1 else 0.0)
+        return best if lead > (_CLEAR_LEAD if best.frames < _PATIENCE else _PATIENT_LEAD) else None
+
+
+def _same(one: Floats, other: Floats) -> bool:
+    turn_rad = np.remainder(one[2] - other[2] + np.pi, 2 * np.pi) - np.pi
+    return bool(np.hypot(*(one[:2] - other[:2])) < _SAME_M and abs(turn_rad) < _SAME_RAD)

@@ -1,0 +1,103 @@
+"""Fits a pose to the white points that a robot sees, so that they lie on the field's lines.
+
+The error-minimising self-localization of Lauer, Lange and Riedmiller ("Calculating the Perfect Match", RoboCup 2005):
+each point adds the robust error 1 - c²/(c² + e²) of its distance e from the nearest line. Gauss-Newton steps with
+weights take the place of RPROP, and every point counts by the accuracy with which an omnidirectional camera
+measures it along the line's normal.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from procs.localization.line_map import LineMap
+from procs.model.frames import Floats
+
+_DAMPING = np.diag((20.0, 20.0, 20.0))  # holds back directions that no line tells anything about
+_LONGEST_STEP = np.array((0.3, 0.3, 0.15))  # m, m, rad: the planes of the table hold near by only
+_CONVERGED = np.array((1e-4, 1e-4, 1e-4))
+
+
+class LinePoints:
+    """White points (n) in the robot frame, in metres, with their accuracy.
+
+    In an omnidirectional picture one pixel covers ground that grows with the square of the distance along the ray, and
+    with the distance across it.
+    """
+
+    def __init__(self, x_m: Floats, y_m: Floats) -> None:
+        self.x_m = x_m
+        self.y_m = y_m
+        self.range_m = np.hypot(x_m, y_m)
+        self.along_m2 = (0.02 + 0.005 * self.range_m**2) ** 2
+        self.across_m2 = (0.02 + 0.005 * self.range_m) ** 2
+        self.trust = 1.0 / (0.02 + 0.005 * self.range_m**2)
+
+    @classmethod
+    def chosen(cls, x_m: Floats, y_m: Floats, reach_m: float, most: int) -> "LinePoints":
+        """The points within reach; if they are too many, evenly spread ones of them."""
+        near = np.flatnonzero(np.hypot(x_m, y_m) < reach_m)
+        if len(near) > most:
+            near = near[np.linspace(0, len(near) - 1, most).astype(np.intp)]
+        return cls(x_m[near], y_m[near])
+
+    def thinned(self, most: int) -> "LinePoints":
+        """At most that many of the points."""
+        return LinePoints.chosen(self.x_m, self.y_m, np.inf, most)
+
+    def __len__(self) -> int:
+        return len(self.x_m)
+
+
+@dataclass(frozen=True)
+class Matches:
+    """What became of k start poses."""
+
+    poses: Floats
+    """(k, 3): x, y, heading."""
+    information: Floats
+    """(k, 3, 3): curvature of the error at each pose, the inverse of a covariance if all points were independent."""
+    scores: Floats
+    """(k): 1 if every point lies on a line, near 0 if none does."""
+
+
+def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 6, robust_m: float = 0.25) -> Matches:
+    """Moves each of k start poses (k, 3) to the nearest minimum of the robust error.
+
+    `robust_m` is c: a point twice as far from every line hardly counts.
+    """
+    poses = starts.copy()
+    best = _evaluate(lines, points, poses, robust_m)
+    kept = poses.copy()
+    information, gradient, scores = (array.copy() for array in best)
+    step_information, step_gradient = information, gradient
+    for _ in range(iterations):
+        step = np.linalg.solve(step_information + _DAMPING, step_gradient[..., None])[..., 0]
+        poses = poses - np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
+        step_information, step_gradient, new_scores = _evaluate(lines, points, poses, robust_m)
+        better = new_scores >= scores
+        kept[better], information[better], scores[better] = (
+            poses[better],
+            step_information[better],
+            new_scores[better],
+        )
+        if (np.abs(step) < _CONVERGED).all():
+            break
+    return Matches(kept, information, scores)
+
+
+def _evaluate(lines: LineMap, points: LinePoints, poses: Floats, robust_m: float) -> tuple[Floats, Floats, Floats]:
+    """Information (k, 3, 3), gradient (k, 3) and score (k) of poses (k, 3)."""
+    cosine, sine = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
+    x_m = cosine * points.x_m - sine * points.y_m
+    y_m = sine * points.x_m + cosine * points.y_m
+    distance_m, normal_x, normal_y = lines.look_up(x_m + poses[:, 0, None], y_m + poses[:, 1, None])
+    facing = ((normal_x * x_m + normal_y * y_m) / np.maximum(points.range_m, 1e-6)) ** 2
+    variance_m2 = points.across_m2 + facing * (points.along_m2 - points.across_m2)
+    on_line = robust_m**2 / (robust_m**2 + distance_m**2)
+    weight = on_line**2 / variance_m2
+    slopes = np.stack((normal_x, normal_y, normal_y * x_m - normal_x * y_m), axis=1)
+    weighted = slopes * weight[:, None]
+    gradient = (weighted @ distance_m[..., None])[..., 0]
+    scores = on_line @ points.trust / max(float(points.trust.sum()), 1e-9)
+    return weighted @ slopes.transpose(0, 2, 1), gradient, scores

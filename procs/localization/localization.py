@@ -1,0 +1,126 @@
+"""Where the robot is: matches the white points that it sees with the field's lines, and follows with odometry."""
+
+import numpy as np
+from pydantic import Field as Setting
+
+from fwk import Clock, Component, Config, Logger, Reads, Writes
+from lcmtypes.robot import imu_t, odometry_t
+from lcmtypes.soccer import line_points_t, pose_t
+from procs.localization.global_search import global_search
+from procs.localization.line_map import line_map
+from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
+from procs.model.field import Field
+from procs.model.frames import Floats, plausible, rotation, wrap
+
+_FASTEST_M_S = 8.0  # no robot drives faster
+
+
+class LocalizationConfig(Config):
+    """Settings of the self-localization."""
+
+    field: Field = Field()
+    """Measures of the field."""
+    start_x_m: float | None = None
+    """Where the robot begins, if it is told so; world frame. All three or none."""
+    start_y_m: float | None = None
+    """See start_x_m."""
+    start_heading_rad: float | None = None
+    """See start_x_m."""
+    reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
+    """White points further away are not used."""
+    points: int = Setting(default=100, ge=10)
+    """Most white points of a frame that are used."""
+    search_period: int = Setting(default=10, ge=1)
+    """Frames from one look over the whole field to the next while the pose is known."""
+    lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
+    """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""
+    good_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
+    """A place is believed only if the points fit at least that well."""
+
+
+class Localization(Component):
+    """Publishes the pose in each frame; `localized` is false while the place on the field is still searched."""
+
+    stage = "sensor_process"
+
+    line_points: Reads[line_points_t]
+    odometry: Reads[odometry_t]
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+    config: LocalizationConfig
+    clock: Clock
+    log: Logger
+
+    @classmethod
+    def preload(cls, config: LocalizationConfig) -> None:
+        """The tables of the field's lines are the same for all robots."""
+        global_search(line_map(config.field), config.reach_m)
+
+    def init(self) -> None:
+        """Makes the table of the field's lines.
+
+        Raises:
+            ValueError: only a part of the start pose is given.
+        """
+        config = self.config
+        start = (config.start_x_m, config.start_y_m, config.start_heading_rad)
+        given = [value for value in start if value is not None]
+        if given and len(given) < 3:
+            raise ValueError(
+                f"{self.name}: start_x_m, start_y_m and start_heading_rad belong together; give all three or none"
+            )
+        self._last: odometry_t | None = None
+        self._yaw_rate_rad_s = 0.0
+        self._last_us = 0
+        self._apply_settings(np.array(given) if given else None)
+
+    def loop(self) -> None:
+        knew = self._localizer.localized
+        points = self.line_points.value if self.line_points.refreshed else line_points_t()
+        self._localizer.update(self._motion(), self._compass_rad(), np.array(points.x_m), np.array(points.y_m))
+        if knew != self._localizer.localized:
+            x_m, y_m, _ = self._localizer.pose
+            self.log.info(f"localized at ({x_m:.2f}, {y_m:.2f}) m" if not knew else "lost, searching the whole field")
+        pose = self.pose.value
+        pose.x_m, pose.y_m, pose.heading_rad = self._localizer.pose.tolist()
+        pose.covariance = self._localizer.covariance.tolist()
+        pose.localized = self._localizer.localized
+        self.pose.write()
+
+    def config_changed(self) -> None:
+        self._apply_settings(self._localizer.pose if self._localizer.localized else None)
+
+    def _apply_settings(self, start: Floats | None) -> None:
+        config = self.config
+        settings = LocalizerSettings(
+            reach_m=config.reach_m,
+            points=config.points,
+            search_period=config.search_period,
+            lost_score=config.lost_score,
+            good_score=config.good_score,
+        )
+        self._localizer = SelfLocalizer(line_map(config.field), settings, start)
+
+    def _compass_rad(self) -> float | None:
+        imu = self.imu.value
+        sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
+        return imu.heading_rad if sound else None
+
+    def _motion(self) -> Motion:
+        """The way since the last frame by the wheels; the turn by the gyro, which a slipping wheel does not deceive."""
+        now = self.odometry.value
+        sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
+        if not (self.odometry.refreshed and sound):
+            return Motion(0.0, 0.0, 0.0, 0.0)
+        before, passed_s = self._last or now, self.clock.since_s(self._last_us)
+        self._last, self._last_us = now, self.clock.now_us
+        turn_rad = now.heading_rad - before.heading_rad
+        way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
+        if np.hypot(*way_m) > _FASTEST_M_S * max(passed_s, self.clock.period_s):
+            return Motion(0.0, 0.0, 0.0, 0.0)  # the driver began anew: its frame has moved, not the robot
+        if self._compass_rad() is not None:
+            rate_rad_s = self.imu.value.yaw_rate_rad_s
+            if before is not now:
+                turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s
+            self._yaw_rate_rad_s = rate_rad_s
+        return Motion(float(way_m[0]), float(way_m[1]), wrap(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))

@@ -1,0 +1,45 @@
+"""What stands still: the low wall around the field, and the goals with posts and nets."""
+
+import pymunk
+
+from procs.model.field import SIDES, Field, Point
+
+WALL, BALL, ROBOT, HULL = 1, 2, 3, 4
+"""Collision types; a robot's round body meets everything but the ball, its hull with the mouth only the ball."""
+
+_BALL_BIT, _SOLID_BIT = 1, 2
+BALL_FILTER = pymunk.ShapeFilter(categories=_BALL_BIT)
+WALL_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT)
+ROBOT_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT, mask=_SOLID_BIT)
+HULL_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT, mask=_BALL_BIT)
+
+_BOUNCE_WALL, _BOUNCE_POST, _BOUNCE_NET = 0.5, 0.7, 0.05
+_WALL_RADIUS_M = 0.05
+_NET_RADIUS_M = 0.02
+
+
+def build_arena(space: pymunk.Space, field: Field) -> None:
+    """Adds the static shapes of a field to the space. The ball's own bounce is 1, so theirs is the bounce of a pair."""
+    x_m = field.half_length_m + field.border_m + _WALL_RADIUS_M
+    y_m = field.half_width_m + field.border_m + _WALL_RADIUS_M
+    corners = [Point(-x_m, -y_m), Point(x_m, -y_m), Point(x_m, y_m), Point(-x_m, y_m)]
+    for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+        _add_segment(space, start, end, _WALL_RADIUS_M, _BOUNCE_WALL)
+    for side in SIDES:
+        posts = field.goal_posts(side)
+        back_m = side * (field.half_length_m + field.goal_depth_m + _NET_RADIUS_M)
+        for post in posts:
+            circle = pymunk.Circle(space.static_body, field.post_diameter_m / 2, post)
+            _add(space, circle, _BOUNCE_POST)
+            _add_segment(space, post, Point(back_m, post.y_m), _NET_RADIUS_M, _BOUNCE_NET)
+        _add_segment(space, Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m), _NET_RADIUS_M, _BOUNCE_NET)
+
+
+def _add_segment(space: pymunk.Space, start: Point, end: Point, radius_m: float, bounce: float) -> None:
+    _add(space, pymunk.Segment(space.static_body, start, end, radius_m), bounce)
+
+
+def _add(space: pymunk.Space, shape: pymunk.Shape, bounce: float) -> None:
+    shape.collision_type, shape.filter = WALL, WALL_FILTER
+    shape.elasticity, shape.friction = bounce, 0.5
+    space.add(shape)

@@ -1,0 +1,67 @@
+"""Motors, wheels and their grip: turns wheel commands into the forces that move a robot."""
+
+import math
+
+from procs.model.kinematics import SIN_60, Velocity, Wheels, wheels_of
+from procs.simulation.physics.delay import DelayLine
+from procs.simulation.physics.settings import RobotSettings
+
+GRAVITY_M_S2 = 9.81
+
+
+class Drive:
+    """Three motors with their wheels.
+
+    A motor follows its command like a first-order lag up to its speed limit. A wheel's force grows with the speed of
+    its rim over the ground and is limited by the grip, so hard acceleration makes wheels slip and encoders lie.
+    """
+
+    def __init__(self, robot: RobotSettings, delay_s: float = 0.0) -> None:
+        self.wheels_m_s: Wheels = (0.0, 0.0, 0.0)
+        """Rim speeds now."""
+        self._robot = robot
+        self._grip_n = robot.traction * robot.mass_kg * GRAVITY_M_S2 / 3
+        self._line: DelayLine[Wheels] = DelayLine(round(delay_s * 1e6))
+        self._wanted_m_s: Wheels = (0.0, 0.0, 0.0)
+        self._travelled_m: Wheels = (0.0, 0.0, 0.0)
+        self._measured_s = 0.0
+
+    def command(self, wheels_m_s: Wheels, now_us: int) -> None:
+        """Rim speeds wanted; the motors begin to follow after the delay. What is no number stops its wheel."""
+        limit = self._robot.wheel_limit_m_s
+        first, second, third = (min(limit, max(-limit, 0.0 if math.isnan(speed) else speed)) for speed in wheels_m_s)
+        self._line.put((first, second, third), now_us)
+
+    def turn_motors(self, now_us: int, duration_s: float) -> None:
+        """Lets the motors follow their commands for a while."""
+        for wanted in self._line.due(now_us):
+            self._wanted_m_s = wanted
+        share = -math.expm1(-duration_s / self._robot.motor_time_s)
+        catching_up_s = self._robot.motor_time_s * share
+        (a, b, c), (to_a, to_b, to_c) = self.wheels_m_s, self._wanted_m_s
+        self.wheels_m_s = a + (to_a - a) * share, b + (to_b - b) * share, c + (to_c - c) * share
+        way_a, way_b, way_c = self._travelled_m
+        self._travelled_m = (
+            way_a + to_a * duration_s + (a - to_a) * catching_up_s,
+            way_b + to_b * duration_s + (b - to_b) * catching_up_s,
+            way_c + to_c * duration_s + (c - to_c) * catching_up_s,
+        )
+        self._measured_s += duration_s
+
+    def push(self, velocity: Velocity) -> tuple[float, float, float]:
+        """Force in N along x and y of the robot frame and torque in Nm on a body that moves at `velocity`."""
+        distance_m, full_slip_m_s = self._robot.wheel_distance_m, self._robot.full_slip_m_s
+        (rim_1, rim_2, rim_3), (ground_1, ground_2, ground_3) = self.wheels_m_s, wheels_of(velocity, distance_m)
+        first = self._grip_n * math.tanh((rim_1 - ground_1) / full_slip_m_s)
+        second = self._grip_n * math.tanh((rim_2 - ground_2) / full_slip_m_s)
+        third = self._grip_n * math.tanh((rim_3 - ground_3) / full_slip_m_s)
+        return SIN_60 * (third - first), 0.5 * (first + third) - second, distance_m * (first + second + third)
+
+    def measured_m_s(self) -> Wheels:
+        """Mean rim speeds since the last call; the speeds now if no time has passed."""
+        if not self._measured_s:
+            return self.wheels_m_s
+        first, second, third = (way / self._measured_s for way in self._travelled_m)
+        self._travelled_m = (0.0, 0.0, 0.0)
+        self._measured_s = 0.0
+        return first, second, third

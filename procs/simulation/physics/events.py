@@ -1,0 +1,47 @@
+"""What a tick of the world tells the referee: goals, balls out of the field, touches, kicks, collisions."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from procs.model.field import SIDES, Field
+
+
+class Kind(IntEnum):
+    """Kinds of events, in the order in which a tick reports them; the numbers are those of the message."""
+
+    GOAL = 1
+    OUT_SIDE = 2
+    OUT_END = 3
+    TOUCH = 4
+    COLLISION = 5
+    KICK = 6
+
+
+class Event(NamedTuple):
+    """One event. Sorting puts the events of a tick into an order that does not depend on the physics engine."""
+
+    kind: Kind
+    robot: str
+    other: str
+    x_m: float
+    y_m: float
+    speed_m_s: float
+
+
+class LineJudge:
+    """Sees the ball leave the field, once each time."""
+
+    def __init__(self, field: Field, ball_radius_m: float) -> None:
+        self.ball_in_field = True
+        self._field = field
+        self._radius_m = ball_radius_m
+
+    def judge(self, x_m: float, y_m: float) -> Kind | None:
+        """What happened, seeing that the ball is now here: a goal, out, or nothing."""
+        was_in_field = self.ball_in_field
+        self.ball_in_field = self._field.in_field(x_m, y_m, self._radius_m)
+        if self.ball_in_field or not was_in_field:
+            return None
+        if any(self._field.in_goal(x_m, y_m, side, self._radius_m) for side in SIDES):
+            return Kind.GOAL
+        return Kind.OUT_SIDE if abs(y_m) > self._field.half_width_m + self._radius_m else Kind.OUT_END

@@ -1,0 +1,76 @@
+"""The kicker's hardware: takes commands after a delay, fires when it is charged, and charges again."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pymunk
+
+from procs.simulation.physics.delay import DelayLine
+from procs.simulation.physics.mouth import Mouth
+from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.settings import KickerSettings
+
+_RELEASE_US = 100_000  # after a kick the handling wheels stand still, so that they do not brake the ball
+
+
+class KickerCommand(NamedTuple):
+    """What the driver asks for; a new `kick_id` with a speed above 0 is a new kick."""
+
+    kick_id: int
+    speed_m_s: float
+    dribble: bool
+
+
+class Push(NamedTuple):
+    """What a kicker does to the ball in a step."""
+
+    change_m_s: pymunk.Vec2d
+    """Of the ball's velocity, world frame."""
+    kicked: bool
+
+
+class Kicker:
+    """Kicker and ball handling of one robot. Without a ball in the mouth a kick is spent on the air."""
+
+    def __init__(self, mouth: Mouth, kicker: KickerSettings, noise: Noise, rng: np.random.Generator) -> None:
+        self.mouth = mouth
+        self.kick_id = 0
+        """Newest kick that was fired."""
+        self._settings = kicker
+        self._noise = noise
+        self._rng = rng
+        self._line: DelayLine[KickerCommand] = DelayLine(round(noise.kick_delay_s * 1e6))
+        self._dribble = False
+        self._charged_from_us = 0
+        self._handling_from_us = 0
+
+    def command(self, command: KickerCommand, now_us: int) -> None:
+        """Hands over the driver's newest wish."""
+        self._line.put(command, now_us)
+
+    def charged(self, now_us: int) -> bool:
+        """Whether a kick is possible."""
+        return now_us >= self._charged_from_us
+
+    def act(self, now_us: int, duration_s: float) -> Push | None:
+        """Handles the ball or kicks it, for one step; None if it does not touch the ball."""
+        push = None
+        for command in self._line.due(now_us):
+            self._dribble = command.dribble
+            if command.speed_m_s > 0 and command.kick_id != self.kick_id and self.charged(now_us):
+                self.kick_id = command.kick_id
+                self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
+                self._handling_from_us = now_us + _RELEASE_US
+                push = self._fire(command.speed_m_s)
+        if self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
+            push = Push(self.mouth.pull(duration_s), kicked=False)
+        return push
+
+    def _fire(self, speed_m_s: float) -> Push | None:
+        speed_error, direction_error = self._rng.standard_normal(2).tolist()
+        if not self.mouth.holds_ball:
+            return None
+        speed_m_s = min(speed_m_s, self._settings.limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
+        error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
+        return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True)

@@ -1,0 +1,66 @@
+"""A robot as a body of the physics engine: round, with a flat mouth in front, moved by its wheels."""
+
+import math
+
+import pymunk
+
+from procs.model.kinematics import Velocity
+from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
+from procs.simulation.physics.drive import Drive
+from procs.simulation.physics.settings import RobotSettings
+
+_HULL_CORNERS = 16
+_MOUTH_LIP_M = 0.005
+_BOUNCE_MOUTH, _BOUNCE_HULL, _BOUNCE_ROBOT = 0.2, 0.5, 0.3
+
+
+class Robot:
+    """One robot; positions in the world frame."""
+
+    def __init__(self, space: pymunk.Space, name: str, robot: RobotSettings, drive: Drive) -> None:
+        self.name = name
+        self.radius_m = robot.radius_m
+        self.drive = drive
+        half_rad = math.radians(robot.mouth_half_angle_deg)
+        self.mouth_x_m = robot.radius_m * math.cos(half_rad)
+        """From the robot's middle to the plane of the mouth."""
+        self.body = pymunk.Body(robot.mass_kg, robot.mass_kg * robot.radius_m**2 / 2)
+        half_mouth_m = robot.radius_m * math.sin(half_rad)
+        circle = pymunk.Circle(self.body, robot.radius_m)
+        circle.collision_type, circle.elasticity, circle.friction = ROBOT, _BOUNCE_ROBOT, 0.3
+        circle.filter = ROBOT_FILTER
+        hull = pymunk.Poly(self.body, _hull(robot.radius_m, half_rad))
+        hull.collision_type, hull.elasticity, hull.friction, hull.filter = HULL, _BOUNCE_HULL, 0.22, HULL_FILTER
+        lip_x_m = self.mouth_x_m - _MOUTH_LIP_M
+        mouth = pymunk.Segment(self.body, (lip_x_m, -half_mouth_m), (lip_x_m, half_mouth_m), _MOUTH_LIP_M)
+        mouth.collision_type, mouth.elasticity, mouth.friction, mouth.filter = HULL, _BOUNCE_MOUTH, 0.8, HULL_FILTER
+        space.add(self.body, circle, hull, mouth)
+
+    @property
+    def velocity(self) -> Velocity:
+        """Velocity in the robot frame."""
+        forward, left = self.body.velocity.rotated(-self.body.angle)
+        return Velocity(forward, left, self.body.angular_velocity)
+
+    def put(self, x_m: float, y_m: float, heading_rad: float) -> None:
+        """Sets the robot down at rest."""
+        self.body.position, self.body.angle = (x_m, y_m), heading_rad
+        self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
+
+    def move(self, now_us: int, duration_s: float) -> None:
+        """Turns the motors and lets the wheels push during the coming step of the physics engine."""
+        self.drive.turn_motors(now_us, duration_s)
+        cos, sin = math.cos(self.body.angle), math.sin(self.body.angle)
+        vx, vy = self.body.velocity
+        force_x, force_y, torque = self.drive.push(
+            Velocity(cos * vx + sin * vy, cos * vy - sin * vx, self.body.angular_velocity)
+        )
+        self.body.force = (cos * force_x - sin * force_y, sin * force_x + cos * force_y)
+        self.body.torque = torque
+
+
+def _hull(radius_m: float, half_rad: float) -> list[tuple[float, float]]:
+    step_rad = (2 * math.pi - 2 * half_rad) / _HULL_CORNERS
+    angles = [half_rad + corner * step_rad for corner in range(_HULL_CORNERS + 1)]
+    inner_m = radius_m * math.cos(half_rad) - _MOUTH_LIP_M
+    return [(min(radius_m * math.cos(angle), inner_m), radius_m * math.sin(angle)) for angle in angles]

@@ -1,0 +1,48 @@
+"""Where robots stand before the kick-off, and where the ball can be put without standing under a robot."""
+
+import math
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from procs.model.field import Field, Point
+from procs.model.robot import number_of, side_of, team_of
+
+
+class Pose(NamedTuple):
+    """Place and heading in the world frame."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+
+_PLACES = {1: (0.95, 0.0), 2: (0.3, 0.0), 3: (0.45, -0.4), 4: (0.45, 0.4), 5: (0.65, 0.0)}
+"""By number: distance from the halfway line and offset to the left, as shares of half the length and half the width."""
+
+
+def starting_pose(robot: str, field: Field) -> Pose:
+    """A place in the own half, facing the other goal; number 1 keeps the goal, others line up along the touch line."""
+    number = number_of(robot)
+    depth, offset = _PLACES.get(number, (0.9 - 0.1 * (number % 9), -0.85))
+    side = side_of(team_of(robot))
+    heading_rad = math.pi if side > 0 else 0.0
+    return Pose(side * depth * field.half_length_m, -side * offset * field.half_width_m, heading_rad)
+
+
+def free_place(wanted: Point, robots: Iterable[Point], clearance_m: float) -> Point:
+    """A place near the wanted one with at least `clearance_m` to every robot's middle: the wanted one if it is free.
+
+    Each robot in the way pushes the place straight away from itself, a few rounds long; between robots that leave no
+    room the place may stay too close.
+    """
+    middles = list(robots)
+    x_m, y_m = wanted
+    for _ in range(8):
+        near = [robot for robot in middles if math.dist((x_m, y_m), robot) < clearance_m - 1e-9]
+        if not near:
+            break
+        robot = min(near, key=lambda middle: (math.dist((x_m, y_m), middle), middle))
+        distance_m = math.dist((x_m, y_m), robot)
+        away_x, away_y = ((x_m - robot.x_m) / distance_m, (y_m - robot.y_m) / distance_m) if distance_m else (0.0, 1.0)
+        x_m, y_m = robot.x_m + away_x * clearance_m, robot.y_m + away_y * clearance_m
+    return Point(x_m, y_m)

@@ -1,0 +1,116 @@
+"""The world of a match: field, ball and robots, moved by a rigid-body engine in small steps."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import pymunk
+
+from procs.model.field import Field, Point
+from procs.simulation.physics.arena import build_arena
+from procs.simulation.physics.ball_body import Ball
+from procs.simulation.physics.contacts import Contacts
+from procs.simulation.physics.drive import Drive
+from procs.simulation.physics.events import Event, Kind, LineJudge
+from procs.simulation.physics.kick_mechanism import Kicker, Push
+from procs.simulation.physics.mouth import Mouth
+from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.robot_body import Robot
+from procs.simulation.physics.settings import PhysicsSettings
+from procs.simulation.physics.start_places import Pose, free_place, starting_pose
+
+_FREE_M = 0.02  # between robot and ball when the field crew puts it down
+
+
+class World:
+    """Field, ball and robots in the world frame. The same calls with the same `rng` give the same world, bit by bit."""
+
+    def __init__(
+        self,
+        robots: Sequence[str],
+        rng: np.random.Generator,
+        field: Field | None = None,
+        physics: PhysicsSettings | None = None,
+        noise: Noise | None = None,
+        starts: Mapping[str, Pose] | None = None,
+    ) -> None:
+        """`robots` are names like `cyan1`; who is not in `starts` begins at the default place of its number."""
+        self.time_us = 0
+        self.last_touch = ""
+        """Robot that touched the ball last since it was placed."""
+        self._field = field or Field()
+        self._physics = physics or PhysicsSettings()
+        noise = noise or Noise()
+        self._space = pymunk.Space()
+        self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
+        build_arena(self._space, self._field)
+        friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
+        self.ball = Ball(self._space, self._physics.ball, friction_scale)
+        self.robots: dict[str, Robot] = {}
+        self.kickers: dict[str, Kicker] = {}
+        for name in sorted(robots):
+            drive = Drive(self._physics.robot, noise.drive_delay_s)
+            robot = self.robots[name] = Robot(self._space, name, self._physics.robot, drive)
+            robot.put(*((starts or {}).get(name) or starting_pose(name, self._field)))
+            mouth = Mouth(robot, self.ball, self._physics.handling)
+            self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
+        self._contacts = Contacts(self._space, list(self.robots.values()))
+        self._judge = LineJudge(self._field, self.ball.radius_m)
+
+    @property
+    def ball_in_field(self) -> bool:
+        """Whether the ball is on the field; on the line is on the field."""
+        return self._judge.ball_in_field
+
+    def place_ball(self, x_m: float, y_m: float) -> None:
+        """The field crew puts the ball down at rest: inside the border, beside a robot that stands in the way."""
+        x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
+        y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
+        x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
+        middles = [Point(*robot.body.position) for robot in self.robots.values()]
+        clearance_m = self._physics.robot.radius_m + self.ball.radius_m + _FREE_M
+        place = free_place(Point(x_m, y_m), middles, clearance_m)
+        self.ball.put(*place)
+        self.last_touch = ""
+        self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
+
+    def advance(self, duration_us: int) -> list[Event]:
+        """Moves the world on; returns what happened, sorted by kind and robot."""
+        steps = max(1, math.ceil(duration_us / (self._physics.step_s * 1e6)))
+        start_us = self.time_us
+        touched: set[str] = set()
+        events = []
+        for step in range(steps):
+            self.time_us = start_us + duration_us * step // steps
+            events += self._step(duration_us / steps / 1e6, touched)
+        self.time_us = start_us + duration_us
+        events += [self._ball_event(Kind.TOUCH, robot) for robot in touched]
+        return sorted(events + self._contacts.take_collisions())
+
+    def _step(self, duration_s: float, touched: set[str]) -> list[Event]:
+        pushes: dict[str, Push] = {}
+        for name, robot in self.robots.items():
+            robot.move(self.time_us, duration_s)
+            push = self.kickers[name].act(self.time_us, duration_s)
+            if push is not None:
+                pushes[name] = push
+        # All push the ball as it was before the step, so that none of two rivals has the last word.
+        for push in pushes.values():
+            self.ball.body.velocity += push.change_m_s
+        events = [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
+        self.ball.rub(duration_s)
+        self._space.step(duration_s)
+        touching = self._contacts.take_touches() | pushes.keys()
+        if touching:
+            self.last_touch = min(touching, key=self._distance_to_ball)
+            touched |= touching
+        call = self._judge.judge(*self.ball.body.position)
+        if call is not None:
+            events.append(self._ball_event(call, self.last_touch))
+        return events
+
+    def _ball_event(self, kind: Kind, robot: str) -> Event:
+        return Event(kind, robot, "", *self.ball.body.position, self.ball.speed_m_s)
+
+    def _distance_to_ball(self, robot: str) -> tuple[float, str]:
+        return self.robots[robot].body.position.get_distance(self.ball.body.position), robot

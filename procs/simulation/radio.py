@@ -1,0 +1,49 @@
+"""The team's radio: hands each robot's messages to its mates, with loss and delay; one for each team."""
+
+import numpy as np
+from pydantic import Field
+
+from fwk import Clock, Component, Config, ReadsEach, WritesEach
+from lcmtypes.soccer import team_inbox_t, team_message_t
+from procs.simulation.radio_links import RadioLinks, RadioSettings
+
+
+class RadioConfig(Config):
+    """How good the radio is."""
+
+    loss: float = Field(default=0.03, ge=0.0, le=1.0)
+    """Probability that a message does not reach a mate, for each mate on its own; 1 is no radio."""
+    delay_s: float = Field(default=0.0, ge=0.0)
+    """From sending to arrival, besides the tick that the message takes anyway."""
+    delay_jitter_s: float = Field(default=0.02, ge=0.0)
+    """A message takes up to that much longer."""
+
+
+class Radio(Component):
+    """Stands for the air between the robots of a team. The launch file gives the channels: `cyan*/team_message`.
+
+    An inbox is written only in ticks in which something arrives. Nobody gets its own messages.
+    """
+
+    stage = "post_loop"
+
+    messages: ReadsEach[team_message_t]
+    inboxes: WritesEach[team_inbox_t]
+    config: RadioConfig
+    clock: Clock
+    rng: np.random.Generator
+
+    def init(self) -> None:
+        """Tunes in."""
+        self._links: RadioLinks[team_message_t] = RadioLinks(list(self.inboxes), self.rng)
+
+    def loop(self) -> None:
+        """Sends what the robots said in this tick, delivers what has arrived."""
+        settings = RadioSettings(self.config.loss, self.config.delay_s, self.config.delay_jitter_s)
+        for robot, said in self.messages.items():
+            for message in said.fresh:
+                self._links.send(robot, message, self.clock.now_us, settings)
+        for robot, arrived in self._links.receive(self.clock.now_us).items():
+            inbox = self.inboxes[robot]
+            inbox.value.messages = arrived
+            inbox.write()

@@ -1,0 +1,86 @@
+"""The field seen from straight above: a texture with green, white lines and marks, and what lies around it."""
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from procs.model.field import Arc, Field, Point, Segment
+from procs.vision.colours import FLOOR, GREEN, WHITE, Bgr, Picture
+
+METRES_PER_PX = 0.125 / 6  # an even part of the line width, so that most lines are painted exactly
+_FLOOR_M = 1.5  # of floor painted beyond the border; farther away everything has the floor's mean colour
+_PATCHES: tuple[Bgr, ...] = ((124, 120, 112), (96, 88, 84), (88, 104, 136), (142, 136, 130), (118, 98, 88))
+_SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
+_ARC_STEP_RAD = math.radians(3.0)
+
+
+@dataclass(frozen=True)
+class Carpet:
+    """A picture of the ground: column grows with x, row with y; the world's origin lies at `origin_px`."""
+
+    pixels: Picture
+    origin_px: tuple[float, float]
+    metres_per_px: float
+
+
+@lru_cache(maxsize=4)
+def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
+    """Paints the field, its border and some of the floor around it."""
+    half_m = (field.half_length_m + field.border_m + _FLOOR_M, field.half_width_m + field.border_m + _FLOOR_M)
+    width, height = (2 * round(half / metres_per_px) for half in half_m)
+    pixels = np.empty((height, width, 3), np.uint8)
+    _lay_floor(pixels, round(0.5 / metres_per_px))
+    carpet = Carpet(pixels, ((width - 1) / 2, (height - 1) / 2), metres_per_px)
+    x_m, y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
+    _paint(carpet, [Point(-x_m, -y_m), Point(x_m, -y_m), Point(x_m, y_m), Point(-x_m, y_m)], GREEN)
+    line_m = field.line_width_m - metres_per_px  # OpenCV paints what an outline touches: half a pixel more on each side
+    for segment in field.segments():
+        _paint(carpet, _stripe(segment, line_m), WHITE)
+    for arc in field.arcs():
+        _paint(carpet, _band(arc, line_m), WHITE)
+    for mark in field.marks():
+        _paint(carpet, _circle(mark, (field.mark_diameter_m - metres_per_px) / 2), WHITE)
+    return carpet
+
+
+def _lay_floor(pixels: Picture, patch_px: int) -> None:
+    pixels[:] = FLOOR
+    height, width = pixels.shape[:2]
+    for i, top in enumerate(range(0, height, patch_px)):
+        for j, left in enumerate(range(0, width, patch_px)):
+            pixels[top : top + patch_px, left : left + patch_px] = _PATCHES[(3 * i + 7 * j + i * j) % len(_PATCHES)]
+
+
+def _paint(carpet: Carpet, outline_m: Iterable[Point], colour: Bgr) -> None:
+    outline = np.array(list(outline_m)) / carpet.metres_per_px + carpet.origin_px
+    cv2.fillPoly(carpet.pixels, [np.round(outline * (1 << _SHIFT)).astype(np.int32)], colour, shift=_SHIFT)
+
+
+def _stripe(segment: Segment, width_m: float) -> list[Point]:
+    (x0, y0), (x1, y1) = segment
+    length_m = math.hypot(x1 - x0, y1 - y0)
+    ux, uy = ((x1 - x0) / length_m * width_m / 2, (y1 - y0) / length_m * width_m / 2)
+    return [
+        Point(x0 - ux - uy, y0 - uy + ux),
+        Point(x1 + ux - uy, y1 + uy + ux),
+        Point(x1 + ux + uy, y1 + uy - ux),
+        Point(x0 - ux + uy, y0 - uy - ux),
+    ]
+
+
+def _band(arc: Arc, width_m: float) -> list[Point]:
+    angles = np.linspace(arc.start_rad, arc.end_rad, 2 + int((arc.end_rad - arc.start_rad) / _ARC_STEP_RAD))
+    outer, inner = arc.radius_m + width_m / 2, arc.radius_m - width_m / 2
+    return [_polar(arc.centre, outer, a) for a in angles] + [_polar(arc.centre, inner, a) for a in angles[::-1]]
+
+
+def _circle(centre: Point, radius_m: float) -> list[Point]:
+    return [_polar(centre, radius_m, a) for a in np.arange(0.0, 2 * math.pi, math.pi / 8)]
+
+
+def _polar(centre: Point, radius_m: float, angle_rad: float) -> Point:
+    return Point(centre.x_m + radius_m * math.cos(angle_rad), centre.y_m + radius_m * math.sin(angle_rad))

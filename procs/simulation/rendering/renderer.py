@@ -1,0 +1,122 @@
+"""Draws what an omnidirectional camera sees of a robot soccer match."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+
+import cv2
+import numpy as np
+
+from procs.model.algebra import Floats, product
+from procs.model.field import SIDES, Field
+from procs.simulation.rendering.carpet import lay_carpet
+from procs.simulation.rendering.ground_view import MARGIN_PX, GroundView
+from procs.simulation.rendering.shapes import Bodies, markers, pillars
+from procs.vision.colours import BLACK, ORANGE, WHITE, Bgr, Picture
+from procs.vision.mirror import Mirror
+
+_SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a robot stands in the world frame."""
+
+    x_m: float
+    y_m: float
+    heading_rad: float
+
+
+@dataclass(frozen=True)
+class Scene:
+    """All that one picture depends on, world frame."""
+
+    own: Pose
+    others: Sequence[tuple[float, float, Bgr]]
+    """The other robots: x, y in metres and the colour of the team marker."""
+    ball_m: tuple[float, float, float] | None
+    """The ball's middle: x, y, height above the ground; None: no ball."""
+
+
+class Renderer:
+    """Renders scenes: the carpet warped to the robot's view, then everything upright from far to near."""
+
+    def __init__(self, mirror: Mirror, field: Field, bodies: Bodies) -> None:
+        self._mirror = mirror
+        self._bodies = bodies
+        self._ground = GroundView(mirror, lay_carpet(field))
+        self._posts_m = np.array([post for side in SIDES for post in field.goal_posts(side)])
+        self._post_size_m = (field.post_diameter_m / 2, field.goal_height_m)
+        self._seen, self._unseen = _masks(mirror, bodies.robot_radius_m)
+
+    def render(self, scene: Scene, shake_px: tuple[float, float] = (0.0, 0.0)) -> Picture:
+        """The picture, size x size x 3, without noise; equal scenes give equal bytes.
+
+        `shake_px` moves everything seen in the mirror by so many columns and rows, at most six, in steps of a half.
+        """
+        right, down = (round(2 * min(max(shake, -MARGIN_PX), MARGIN_PX)) for shake in shake_px)
+        own = scene.own
+        frame = self._ground.picture(own.x_m, own.y_m, own.heading_rad, right, down)
+        self._draw_upright(frame, scene, np.array((right / 2, down / 2)))
+        cv2.bitwise_and(frame, self._seen, frame)
+        return np.asarray(cv2.bitwise_or(frame, self._unseen, frame), np.uint8)
+
+    def _draw_upright(self, frame: Picture, scene: Scene, shift_px: Floats) -> None:
+        own, bodies = scene.own, self._bodies
+        robots = np.array([robot[:2] for robot in scene.others]).reshape(-1, 2)
+        balls = [] if scene.ball_m is None else [scene.ball_m]
+        balls_m = np.array([ball[:2] for ball in balls]).reshape(-1, 2)
+        at_m = _seen_from(own, np.vstack([self._posts_m, robots, balls_m]))
+        posts_m, robots_m, balls_m = np.split(at_m, (len(self._posts_m), len(self._posts_m) + len(robots)))
+        pillars_px = [
+            *self._in_picture(pillars(posts_m, *self._post_size_m), shift_px),
+            *self._in_picture(pillars(robots_m, bodies.robot_radius_m, bodies.robot_height_m), shift_px),
+        ]
+        markers_px = self._in_picture(markers(robots_m, bodies.robot_radius_m), shift_px)
+        for i in np.argsort(-np.hypot(at_m[:, 0], at_m[:, 1]), kind="stable"):
+            robot = i - len(posts_m)
+            if robot >= len(robots_m):
+                self._draw_ball(frame, (balls_m[0, 0], balls_m[0, 1], balls[0][2]), shift_px)
+            elif robot < 0:
+                cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), WHITE, shift=_SHIFT)
+            else:
+                cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), BLACK, shift=_SHIFT)
+                cv2.fillPoly(frame, [markers_px[robot]], scene.others[robot][2], shift=_SHIFT)
+
+    def _in_picture(self, outlines_m: Floats, shift_px: Floats) -> cv2.typing.MatLike:
+        """Outlines (n, corners, 3) as pixels (n, corners, 2) in OpenCV's fixed-point numbers."""
+        pixels = self._mirror.project(outlines_m.reshape(-1, 3)) + shift_px
+        pixels = pixels.clip(-4096, 4096).reshape(*outlines_m.shape[:2], 2)
+        # OpenCV paints every pixel that an outline touches, half a pixel too much all around.
+        inward = pixels.mean(axis=1, keepdims=True) - pixels
+        pixels += inward * (0.5 / np.maximum(np.linalg.norm(inward, axis=2, keepdims=True), 0.5))
+        return np.round(pixels * (1 << _SHIFT)).astype(np.int32)
+
+    def _draw_ball(self, frame: Picture, centre_m: tuple[float, float, float], shift_px: Floats) -> None:
+        column, row, radius_px = self._mirror.sphere(centre_m, self._bodies.ball_radius_m)
+        column, row = column + shift_px[0], row + shift_px[1]
+        left, top = (max(math.floor(at - radius_px), 0) for at in (column, row))
+        right, bottom = (min(math.ceil(at + radius_px) + 1, self._mirror.size_px) for at in (column, row))
+        if left >= right or top >= bottom:
+            return
+        distance_px = np.hypot(np.arange(left, right) - column, (np.arange(top, bottom) - row)[:, None])
+        cover = np.clip(radius_px + 0.5 - distance_px, 0.0, 1.0)[..., None]
+        window = frame[top:bottom, left:right]
+        window[:] = np.round(window * (1.0 - cover) + np.array(ORANGE) * cover)
+
+
+@lru_cache(maxsize=4)
+def _masks(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, Picture]:
+    """What never changes: the robot's own body in the middle, nothing outside the round mirror; made once a process."""
+    from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
+    radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
+    bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)
+    seen = np.repeat(np.where(bare, 255, 0).astype(np.uint8)[..., None], 3, axis=2)
+    return seen, np.where(seen > 0, 0, BLACK).astype(np.uint8)
+
+
+def _seen_from(own: Pose, points_m: Floats) -> Floats:
+    """Points (n, 2) of the world frame in the robot frame."""
+    cosine, sine = math.cos(own.heading_rad), math.sin(own.heading_rad)
+    return product(points_m - (own.x_m, own.y_m), np.array([[cosine, -sine], [sine, cosine]]))

@@ -1,0 +1,150 @@
+"""The world of the match: moves it by one tick, and stands in for the hardware of every robot."""
+
+import math
+
+import numpy as np
+from pydantic import Field as Setting
+from pydantic import PositiveFloat
+
+from fwk import US_PER_S, Clock, Component, Config, Logger, Reads, ReadsEach, TimeSource, Writes, WritesEach, channel
+from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
+from lcmtypes.soccer import ball_placement_t, ground_truth_t, match_events_t
+from procs.model.field import Field
+from procs.simulation.physics.kick_mechanism import KickerCommand
+from procs.simulation.physics.realism import PRESETS, Realism
+from procs.simulation.physics.reports import event_message, robot_message
+from procs.simulation.physics.sensors import Encoders, Imu
+from procs.simulation.physics.settings import PhysicsSettings
+from procs.simulation.physics.start_places import Pose
+from procs.simulation.physics.world import World
+
+
+class SimulatorConfig(Config):
+    """Settings of the world."""
+
+    field: Field = Field()
+    """Measures of the field."""
+    physics: PhysicsSettings = PhysicsSettings()
+    """Ball, robots, kickers."""
+    realism: Realism = "realistic"
+    """How far actuators and sensors are from ideal: none, friendly, realistic or harsh."""
+    starts: dict[str, tuple[float, float, float]] = {}
+    """Where robots begin: name to x in m, y in m and heading in rad (world frame); others take the default place."""
+    period_s: float = Setting(0.0, ge=0.0)
+    """Logical time of a tick; 0: the system's."""
+    command_timeout_s: PositiveFloat = 0.25
+    """Wheels and ball handling stop when their command is older."""
+
+
+class Simulator(Component):
+    """Owns the true world and the system's time. Its robots are the namespaces with a wheel command."""
+
+    stage = "pre_loop"
+
+    wheel_command: ReadsEach[wheel_command_t] = channel("*/wheel_command")
+    kicker_drive: ReadsEach[kicker_drive_t] = channel("*/kicker_drive")
+    ball_placement: Reads[ball_placement_t] = channel("world/ball_placement")
+    ground_truth: Writes[ground_truth_t]
+    match_events: Writes[match_events_t]
+    wheel_state: WritesEach[wheel_state_t] = channel("*/wheel_state")
+    kicker_sensor: WritesEach[kicker_sensor_t] = channel("*/kicker_sensor")
+    imu: WritesEach[imu_t] = channel("*/imu")
+    config: SimulatorConfig
+    clock: Clock
+    time_source: TimeSource
+    rng: np.random.Generator
+    log: Logger
+
+    def init(self) -> None:
+        """Sets the world up.
+
+        Raises:
+            ValueError: `starts` names a robot that is not there.
+        """
+        config, noise = self.config, PRESETS[self.config.realism]
+        robots = sorted(self.wheel_command)
+        for stranger in sorted(set(config.starts) - set(robots)):
+            raise ValueError(f"{self.name}: starts: no robot '{stranger}'; there are: {', '.join(robots) or 'none'}")
+        starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
+        self._world = World(robots, self.rng, config.field, config.physics, noise, starts)
+        self._encoders = {robot: Encoders(noise, self.rng) for robot in robots}
+        self._imus = {robot: Imu(noise, self.rng) for robot in robots}
+        self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
+        self._before_us = -1
+        self._placement_id = 0
+
+    def loop(self) -> None:
+        now_us = self.clock.now_us
+        passed_us = self._period_us if self._before_us < 0 else max(0, now_us - self._before_us)
+        self._before_us = now_us
+        self.time_source.next_us = now_us + self._period_us
+        self._place_ball()
+        self._command_robots()
+        events = self._world.advance(passed_us)
+        self._sense(passed_us / US_PER_S)
+        self._report_truth()
+        report = self.match_events.value
+        report.ball_in_field = self._world.ball_in_field
+        report.ball_x_m, report.ball_y_m = self._world.ball.body.position
+        report.ball_speed_m_s = self._world.ball.speed_m_s
+        report.last_touch = self._world.last_touch
+        report.events = [event_message(event) for event in events]
+        self.match_events.write()
+
+    def _place_ball(self) -> None:
+        for placement in self.ball_placement.fresh:
+            if placement.placement_id == self._placement_id:
+                continue
+            self._placement_id = placement.placement_id
+            if math.isfinite(placement.x_m) and math.isfinite(placement.y_m):
+                self._world.place_ball(placement.x_m, placement.y_m)
+            else:
+                self.log.warning(
+                    f"ball placement {placement.placement_id} asks for ({placement.x_m}, {placement.y_m}); ignored"
+                )
+
+    def _command_robots(self) -> None:
+        world = self._world
+        for robot, reader in self.wheel_command.items():
+            fresh = self._is_fresh(reader)
+            first, second, third = reader.value.wheel_m_s if fresh else (0.0, 0.0, 0.0)
+            world.robots[robot].drive.command((first, second, third), world.time_us)
+        for robot in world.kickers:
+            if robot not in self.kicker_drive:
+                continue
+            drives = self.kicker_drive[robot]
+            wishes = [KickerCommand(drive.kick_id, drive.kick_m_s, drive.dribble) for drive in drives.fresh]
+            for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:
+                world.kickers[robot].command(wish, world.time_us)
+
+    def _is_fresh(self, reader: Reads[wheel_command_t] | Reads[kicker_drive_t]) -> bool:
+        age_s = self.clock.since_s(reader.header.time_us)
+        return reader.has_value and age_s <= self.config.command_timeout_s
+
+    def _sense(self, passed_s: float) -> None:
+        # Every robot's sensors are read, asked for or not: who listens must not change anybody's random numbers.
+        for name, robot in self._world.robots.items():
+            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s())
+            heading_rad, yaw_rate_rad_s = self._imus[name].read(robot.body.angle, robot.body.angular_velocity, passed_s)
+            if name in self.wheel_state:
+                self.wheel_state[name].value.measured_m_s = wheels_m_s
+                self.wheel_state[name].write()
+            if name in self.imu:
+                imu = self.imu[name].value
+                imu.heading_rad, imu.yaw_rate_rad_s = heading_rad, yaw_rate_rad_s
+                self.imu[name].write()
+            if name in self.kicker_sensor:
+                sensor, kicker = self.kicker_sensor[name].value, self._world.kickers[name]
+                sensor.ball_held = kicker.mouth.holds_ball
+                sensor.charged = kicker.charged(self._world.time_us)
+                sensor.kick_id = kicker.kick_id
+                self.kicker_sensor[name].write()
+
+    def _report_truth(self) -> None:
+        truth, ball = self.ground_truth.value, self._world.ball.body
+        truth.ball_x_m, truth.ball_y_m = ball.position
+        truth.ball_z_m = 0.0
+        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.velocity
+        truth.ball_vz_m_s = 0.0
+        truth.robots = [robot_message(robot) for robot in self._world.robots.values()]
+        self.ground_truth.write()

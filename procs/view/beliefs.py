@@ -1,0 +1,26 @@
+"""Draws what a robot believes: where it is, and where it takes the ball to be and how surely."""
+
+import math
+
+import numpy as np
+
+from lcmtypes.soccer import world_model_t
+from procs.model.robot import team_of
+from procs.view.canvas import Canvas
+from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
+
+_SIGMAS = 2.0
+_LIMIT_M = 3.0
+
+
+def draw_beliefs(canvas: Canvas, robot: str, belief: world_model_t) -> None:
+    """A thin ring where the robot believes to be, and an ellipse of two standard deviations around its ball."""
+    colour = TEAM_COLOURS.get(team_of(robot), UNKNOWN_TEAM)
+    if belief.localized:
+        canvas.ring((belief.x_m, belief.y_m), 0.28, 0.02, colour)
+    covariance = np.array(belief.ball.covariance)[:2, :2]
+    if belief.ball.known and np.isfinite(covariance).all():
+        variances, axes = np.linalg.eigh((covariance + covariance.T) / 2)
+        sizes = [min(_LIMIT_M, _SIGMAS * math.sqrt(max(0.0, variance))) for variance in variances[::-1].tolist()]
+        angle_deg = math.degrees(math.atan2(axes[1, 1], axes[0, 1]))
+        canvas.ellipse((belief.ball.x_m, belief.ball.y_m), (sizes[0], sizes[1]), angle_deg, colour)

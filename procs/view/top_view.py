@@ -1,0 +1,128 @@
+"""The match seen from above: field, robots, ball, score and, if asked, what robots believe."""
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
+from procs.model.field import Field
+from procs.model.robot import number_of, team_of
+from procs.view.beliefs import draw_beliefs
+from procs.view.canvas import Canvas, Colour, Picture, write
+from procs.view.ground import draw_ground
+from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
+from procs.view.scoreboard import GAME_STATE, phase, play_time
+
+BODY: Colour = (38, 34, 32)
+EDGE: Colour = (84, 78, 74)
+SHADOW: Colour = (40, 78, 30)
+BALL: Colour = (30, 196, 250)
+BALL_EDGE: Colour = (20, 90, 130)
+BAR: Colour = (32, 28, 26)
+TEXT: Colour = (245, 245, 245)
+
+TRUTH = "world/ground_truth"
+
+_ROBOT_RADIUS_M = 0.25
+_MOUTH_RAD = math.radians(30)
+_BALL_RADIUS_M = 0.11
+_TAIL_S = 0.12
+
+
+class TopView:
+    """Draws pictures of one size; cyan's goal is on the left."""
+
+    def __init__(self, width_px: int = 1280, field: Field | None = None) -> None:
+        """The height follows from the field; both are even, as video encoders want them."""
+        self._field = field or Field()
+        margin_m = self._field.border_m
+        self._bar_px = round(width_px / 24)
+        scale = width_px / (self._field.length_m + 2 * margin_m)
+        height_px = self._bar_px + (self._field.width_m + 2 * margin_m) * scale
+        self.width_px, self.height_px = 2 * round(width_px / 2), 2 * round(height_px / 2)
+        ground: Picture = np.zeros((self.height_px, self.width_px, 3), np.uint8)
+        middle_px = (self.width_px / 2, (self.height_px + self._bar_px) / 2)
+        self._canvas = Canvas(ground, middle_px, scale)
+        draw_ground(self._canvas, self._field)
+
+    def draw(
+        self,
+        truth: ground_truth_t,
+        state: game_state_t | None = None,
+        beliefs: Mapping[str, world_model_t] | None = None,
+    ) -> Picture:
+        """A picture of the world; `beliefs` are the world models of some robots, by namespace."""
+        canvas = self._canvas.on(self._canvas.picture.copy())
+        for name, belief in sorted((beliefs or {}).items()):
+            draw_beliefs(canvas, name, belief)
+        for robot in truth.robots:
+            self._draw_robot(canvas, robot)
+        self._draw_ball(canvas, truth)
+        self._draw_bar(canvas.picture, state)
+        return canvas.picture
+
+    def _draw_robot(self, canvas: Canvas, robot: true_robot_t) -> None:
+        place = (robot.x_m, robot.y_m)
+        canvas.disc((robot.x_m + 0.04, robot.y_m - 0.05), _ROBOT_RADIUS_M, SHADOW)
+        canvas.polygon(_outline(robot, _ROBOT_RADIUS_M), EDGE)
+        canvas.polygon(_outline(robot, _ROBOT_RADIUS_M - 0.03), BODY)
+        canvas.disc(place, 0.16, TEAM_COLOURS.get(team_of(robot.name), UNKNOWN_TEAM))
+        nose = (robot.x_m + 0.24 * math.cos(robot.heading_rad), robot.y_m + 0.24 * math.sin(robot.heading_rad))
+        base = (robot.x_m + 0.16 * math.cos(robot.heading_rad), robot.y_m + 0.16 * math.sin(robot.heading_rad))
+        canvas.line(base, nose, 0.05, TEXT)
+        number = number_of(robot.name)
+        canvas.text(str(number) if number else "?", place, 0.18, TEXT)
+
+    def _draw_ball(self, canvas: Canvas, truth: ground_truth_t) -> None:
+        tail = (truth.ball_x_m - _TAIL_S * truth.ball_vx_m_s, truth.ball_y_m - _TAIL_S * truth.ball_vy_m_s)
+        place = (truth.ball_x_m, truth.ball_y_m)
+        canvas.line(tail, place, 0.05, BALL)
+        canvas.disc((place[0] + 0.03, place[1] - 0.04), _BALL_RADIUS_M, SHADOW)
+        canvas.disc(place, _BALL_RADIUS_M, BALL_EDGE)
+        canvas.disc(place, _BALL_RADIUS_M - 0.025, BALL)
+
+    def _draw_bar(self, picture: Picture, state: game_state_t | None) -> None:
+        picture[: self._bar_px] = BAR
+        if state is None:
+            return
+        size_px, middle_px, y_px = self._bar_px * 0.42, self.width_px / 2, self._bar_px / 2
+        gap_px = self._bar_px * 1.3
+        write(picture, f"{state.score_cyan} : {state.score_magenta}", (middle_px, y_px), size_px, TEXT)
+        write(picture, "CYAN", (middle_px - gap_px, y_px), size_px, TEAM_COLOURS["cyan"], align=1.0)
+        write(picture, "MAGENTA", (middle_px + gap_px, y_px), size_px, TEAM_COLOURS["magenta"], align=0.0)
+        small_px, edge_px = size_px * 0.7, self._bar_px * 0.5
+        clock = f"half {state.half}   {play_time(state.time_in_half_s)}"
+        write(picture, clock, (edge_px, y_px), small_px, TEXT, align=0.0)
+        write(picture, phase(state), (self.width_px - edge_px, y_px), small_px, TEXT, align=1.0)
+
+
+def picture(newest: Callable[[str], Any]) -> Picture | None:
+    """Draws the newest messages, decoded, of a running or recorded match; None before the world was seen."""
+    truth = newest(TRUTH)
+    return None if truth is None else _view().draw(truth, newest(GAME_STATE))
+
+
+def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
+    """The same with what every robot believes about itself and the ball."""
+    truth = newest(TRUTH)
+    if truth is None:
+        return None
+    models = {robot.name: newest(f"{robot.name}/world_model") for robot in truth.robots}
+    beliefs = {name: model for name, model in models.items() if model is not None}
+    return _view().draw(truth, newest(GAME_STATE), beliefs)
+
+
+@cache
+def _view() -> TopView:
+    return TopView()
+
+
+def _outline(robot: true_robot_t, radius_m: float) -> list[tuple[float, float]]:
+    """A circle whose front is cut off."""
+    steps = 24
+    span_rad = 2 * math.pi - 2 * _MOUTH_RAD
+    angles = [robot.heading_rad + _MOUTH_RAD + span_rad * step / steps for step in range(steps + 1)]
+    return [(robot.x_m + radius_m * math.cos(angle), robot.y_m + radius_m * math.sin(angle)) for angle in angles]

@@ -1,0 +1,123 @@
+"""Finds the ball in an omnidirectional picture: colour, shape, then its place on the ground to a part of a pixel."""
+
+import math
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from procs.model.algebra import Floats, weighted_mean
+from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
+from procs.vision.mirror import Mirror
+from procs.vision.uncertainty import ground_covariance
+
+_STEP_PX = 2  # the first search looks at every second pixel of every second row
+_CANDIDATES = 4
+_LEAST_SOLID = 0.5  # of a blob's area must be of the ball's colour; the rest is its rim
+_MOST_SPREAD = 1.6  # mean square distance of a blob's pixels from its middle, compared with a disc's
+_FAINT = 0.15  # pixels covered by the ball to a smaller part than this count as noise
+
+
+@dataclass(frozen=True)
+class BallSighting:
+    """One ball, robot frame."""
+
+    x_m: float
+    y_m: float
+    covariance_m2: Floats
+    """2 x 2: one standard deviation is what the measured errors are at that distance."""
+    confidence: float
+    """0..1: how well the blob's size fits a ball that lies there."""
+
+
+@dataclass(frozen=True)
+class _Blob:
+    """Something of the ball's colour: centre, area, and mean square distance of its pixels from the centre."""
+
+    column: float
+    row: float
+    area_px: float
+    spread_px2: float
+
+
+@dataclass(frozen=True)
+class BallFinder:
+    """Finds the ball of a known colour and size, lying on the ground."""
+
+    mirror: Mirror
+    colour: ColourRange
+    radius_m: float = 0.11
+    deviation_px: float = 0.3
+    """Standard deviation of the found centre."""
+    least_fit: float = 0.4
+    """Blobs whose area is less than this part of a ball's, or more than a ball's by as much, are none."""
+    farthest_m: float = 8.0
+    """Beyond that nothing is taken for a ball."""
+
+    def find(self, pixels: Picture) -> BallSighting | None:
+        """The likeliest ball in a picture, height x width x 3, or None."""
+        coarse = cv2.resize(pixels, None, fx=1 / _STEP_PX, fy=1 / _STEP_PX, interpolation=cv2.INTER_NEAREST)
+        mask = self.colour.mask(to_hsv(np.asarray(coarse, np.uint8))).view(np.uint8)
+        if not mask.any():
+            return None
+        _, _, boxes, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
+        blobs = boxes[1:]
+        largest = np.argsort(-blobs[:, cv2.CC_STAT_AREA], kind="stable")[:_CANDIDATES]
+        sightings = [self._sighting(self._blob(pixels, blobs[i])) for i in largest]
+        return max((s for s in sightings if s is not None), key=lambda s: s.confidence, default=None)
+
+    def _blob(self, pixels: Picture, box: cv2.typing.MatLike) -> _Blob | None:
+        """Measures a blob of the coarse picture in the full one."""
+        left, top, width, height = (int(edge) * _STEP_PX for edge in box[: cv2.CC_STAT_AREA])
+        left, top, right, bottom = max(left - 2, 0), max(top - 2, 0), left + width + 2, top + height + 2
+        window = pixels[top:bottom, left:right]
+        solid = self.colour.mask(to_hsv(window))
+        cover = _cover(window, solid)
+        area_px = float(cover.sum())
+        if solid.sum() < _LEAST_SOLID * area_px:
+            return None
+        in_column, in_row = cover.sum(axis=0), cover.sum(axis=1)
+        columns = np.arange(left, left + len(in_column), dtype=np.float64)
+        rows = np.arange(top, top + len(in_row), dtype=np.float64)
+        column, row = weighted_mean(columns, in_column), weighted_mean(rows, in_row)
+        spread_px2 = weighted_mean((columns - column) ** 2, in_column) + weighted_mean((rows - row) ** 2, in_row)
+        return _Blob(column, row, area_px, spread_px2)
+
+    def _sighting(self, blob: _Blob | None) -> BallSighting | None:
+        """The ball that a blob would be, unless it has not its size and shape."""
+        place = None if blob is None else self._locate(blob.column, blob.row)
+        if blob is None or place is None or math.hypot(*place[:2]) > self.farthest_m:
+            return None
+        x_m, y_m, expected_px = place
+        fit = blob.area_px / (math.pi * expected_px**2)
+        confidence = min(fit, 1 / fit)
+        if confidence < self.least_fit or blob.spread_px2 > _MOST_SPREAD * expected_px**2 / 2:
+            return None
+        # What is hidden shifts the centre by up to as much of the radius.
+        deviation_px = self.deviation_px + expected_px * max(1.0 - fit - 0.1, 0.0) / 2
+        return BallSighting(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
+
+    def _locate(self, column: float, row: float) -> tuple[float, float, float] | None:
+        """Ball on the ground whose circle has its centre there: x, y in metres, radius in pixels."""
+        wanted = np.array([column, row])
+        looked_at = wanted
+        for _ in range(2):  # the centre of the circle is not quite where the ball's centre appears
+            x_m, y_m = self.mirror.ground(looked_at[None], self.radius_m)[0]
+            if not math.isfinite(x_m):
+                return None
+            *centre, radius_px = self.mirror.sphere((x_m, y_m, self.radius_m), self.radius_m)
+            looked_at = looked_at + wanted - centre
+        x_m, y_m = self.mirror.ground(looked_at[None], self.radius_m)[0]
+        return (float(x_m), float(y_m), radius_px) if math.isfinite(x_m) else None
+
+
+def _cover(window: Picture, solid: Mask) -> Floats:
+    """How far each pixel is covered by the ball, 0..1; `solid` marks those that are of its colour.
+
+    Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange.
+    """
+    warmth = window[..., 2].astype(float) - window[..., 0]
+    full = max(float(np.median(warmth[solid])), 1.0)
+    cover = (warmth / full).clip(0.0, 1.0)
+    cover[cover < _FAINT] = 0.0
+    return cover

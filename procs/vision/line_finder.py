@@ -1,0 +1,45 @@
+"""Finds points on white lines: where a scan line goes from green over white to green again."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from procs.model.algebra import Floats
+from procs.vision.colours import ColourRange, Mask, Picture
+from procs.vision.scan import Scan, runs
+
+_BESIDE = np.array([1, 2, 3])  # samples looked at on both sides of the white ...
+_GREEN_BESIDE = 2  # ... and how many of them must be green: at a real camera's edges one is of neither colour
+
+
+@dataclass(frozen=True)
+class LineFinder:
+    """Finds green-white-green transitions, the line points of Fawkes' and the Tribots' localization."""
+
+    green: ColourRange
+    white: ColourRange
+    widest_m: float = 0.4
+    """A longer way over white is no line crossed but one followed, or something else."""
+
+    narrowest_m: float = 0.05
+    """A shorter one is a speck, unless pixels are too coarse there to tell."""
+
+    def find(self, hsv: Picture, scan: Scan) -> Floats:
+        """Line points (n, 2) in the robot frame, line by line, from a scan (lines, samples, 3) in HSV."""
+        green = self.green.mask(hsv)
+        lines, starts, ends = runs(self.white.mask(hsv))
+        inner, outer = scan.ground_m[lines, starts], scan.ground_m[lines, ends - 1]
+        width_m = np.hypot(*(outer - inner).T)
+        pixel_m = np.hypot(*(inner - scan.ground_m[lines, np.maximum(starts - 1, 0)]).T)
+        line_like = (width_m <= self.widest_m) & (width_m + 2 * pixel_m >= self.narrowest_m)
+        before = _count(green, lines, starts[:, None] - _BESIDE)
+        after = _count(green, lines, ends[:, None] - 1 + _BESIDE)
+        found = line_like & (before >= _GREEN_BESIDE) & (after >= _GREEN_BESIDE)
+        return np.asarray((inner[found] + outer[found]) / 2)
+
+
+def _count(mask: Mask, lines: NDArray[np.intp], samples: NDArray[np.intp]) -> NDArray[np.intp]:
+    inside = (samples >= 0) & (samples < mask.shape[1])
+    green = mask[lines[:, None], samples.clip(0, mask.shape[1] - 1)] & inside
+    return np.asarray(green.sum(axis=1))

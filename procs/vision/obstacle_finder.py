@@ -1,0 +1,100 @@
+"""Finds robots: black that stands on the carpet, seen from its near edge."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from procs.model.algebra import Floats, product
+from procs.vision.colours import ColourRange, Mask, Picture
+from procs.vision.mirror import Mirror
+from procs.vision.scan import Scan
+from procs.vision.uncertainty import ground_covariance
+
+_BODY_SAMPLES = 4  # so many black samples in a row are a body
+_COVERED = 0.75  # of all rays black from their beginning: not robots all around, but a covered camera
+_FEET_SAMPLES = 3  # carpet must be seen so close before it, or the near edge is hidden by something
+
+
+@dataclass(frozen=True)
+class Obstacle:
+    """A robot's middle on the ground, robot frame."""
+
+    x_m: float
+    y_m: float
+    covariance_m2: Floats
+
+
+@dataclass(frozen=True)
+class ObstacleFinder:
+    """Finds round black robots of known radius on the rays of a star scan."""
+
+    mirror: Mirror
+    star: Scan
+    black: ColourRange
+    carpet: tuple[ColourRange, ...]
+    """Colours of the carpet and its lines."""
+    radius_m: float = 0.25
+    deviation_px: tuple[float, float] = (0.5, 0.8)
+    """Standard deviation of the found middle in the picture, along and across the ray."""
+    least_rays: int = 2
+    """Rays that must meet a robot."""
+
+    def find(self, hsv: Picture) -> list[Obstacle]:
+        """All robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
+        edges_m = self._near_edges(hsv)
+        if len(edges_m) < self.least_rays:
+            return []
+        return [self._obstacle(part) for group in self._groups(edges_m) for part in self._robots(group)]
+
+    def _near_edges(self, hsv: Picture) -> Floats:
+        """Points (n, 2) at which rays meet the feet of something black, in the order of the rays."""
+        black = self.black.mask(hsv)
+        standing = np.logical_or.reduce([colour.mask(hsv) for colour in self.carpet])
+        last = black.shape[1] - _BODY_SAMPLES + 1
+        body = np.logical_and.reduce([black[:, i : last + i] for i in range(_BODY_SAMPLES)])
+        rays = np.flatnonzero(body.any(axis=1))
+        starts = body[rays].argmax(axis=1)
+        if (starts == 0).sum() > _COVERED * len(body):
+            return np.empty((0, 2))
+        seen = (starts == 0) | _any_before(standing, rays, starts)
+        rays, starts = rays[seen], starts[seen]
+        return np.asarray((self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2)
+
+    def _groups(self, edges_m: Floats) -> list[Floats]:
+        """Edge points that may belong together, (n, 2) each: neighbours no farther apart than a ball could hide."""
+        gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
+        blur_m = np.array([self.mirror.metres_per_px(math.hypot(*edge))[0] for edge in edges_m])
+        breaks = np.flatnonzero(gaps_m > 1.4 * self.radius_m + blur_m)
+        if len(breaks) == 0:
+            return [edges_m]
+        return np.split(np.roll(edges_m, -breaks[0], axis=0), breaks[1:] - breaks[0])
+
+    def _robots(self, group: Floats) -> Iterator[Floats]:
+        """Divides a group that is too wide for one robot evenly."""
+        if len(group) < self.least_rays:
+            return
+        width_rad = _turn(group[0], group[-1])
+        expected_rad = 2 * math.asin(min(self.radius_m / (float(np.hypot(*group.T).mean()) + self.radius_m), 1.0))
+        most = len(group) // self.least_rays
+        yield from np.array_split(group, min(max(round(width_rad / expected_rad), 1), most))
+
+    def _obstacle(self, edges_m: Floats) -> Obstacle:
+        middle_rad = math.atan2(*edges_m[0, ::-1]) + _turn(edges_m[0], edges_m[-1]) / 2
+        ahead = np.array([math.cos(middle_rad), math.sin(middle_rad)])
+        along_m, across_m = product(edges_m, np.array([[ahead[0], -ahead[1]], [ahead[1], ahead[0]]])).T
+        depth_m = np.sqrt((self.radius_m**2 - across_m**2).clip(0.0))
+        x_m, y_m = float(np.median(along_m + depth_m)) * ahead
+        return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, *self.deviation_px))
+
+
+def _any_before(mask: Mask, rays: NDArray[np.intp], starts: NDArray[np.intp]) -> Mask:
+    samples = (starts[:, None] - np.arange(1, _FEET_SAMPLES + 1)).clip(0)
+    return np.asarray(mask[rays[:, None], samples].any(axis=1))
+
+
+def _turn(first: Floats, last: Floats) -> float:
+    """Counter-clockwise angle from one direction to another, -pi..pi."""
+    return math.remainder(math.atan2(last[1], last[0]) - math.atan2(first[1], first[0]), 2 * math.pi)

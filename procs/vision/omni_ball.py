@@ -1,0 +1,56 @@
+"""Finds the ball in the omnidirectional camera's picture."""
+
+from pydantic import Field as Setting
+
+from fwk import Writes
+from lcmtypes.soccer import ball_percept_t
+from procs.vision.ball_finder import BallFinder, BallSighting
+from procs.vision.colours import ColourRange, Hsv, Picture
+from procs.vision.detector import Detector, DetectorConfig
+
+
+class OmniBallConfig(DetectorConfig):
+    """Settings of the ball detector."""
+
+    ball_low: Hsv = (4, 120, 80)
+    """Least hue (0..179), saturation and value (0..255) of the ball's colour."""
+    ball_high: Hsv = (20, 255, 255)
+    """Greatest hue, saturation and value of the ball's colour."""
+    ball_radius_m: float = Setting(default=0.11, gt=0.0)
+    """Radius of the ball."""
+    deviation_px: float = Setting(default=0.5, gt=0.0)
+    """Standard deviation of the ball's centre in the picture, the shaking of the mirror included."""
+    least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
+    """A blob whose area is less than this part of a ball's is none; a ball more hidden than that is not seen."""
+    farthest_m: float = Setting(default=8.0, gt=0.0)
+    """Beyond that nothing is taken for a ball."""
+
+
+class OmniBall(Detector):
+    """Says where the ball is, or that it sees none."""
+
+    ball_percept: Writes[ball_percept_t]
+    config: OmniBallConfig
+
+    def apply_settings(self) -> None:
+        config = self.config
+        colour = ColourRange(config.ball_low, config.ball_high)
+        mirror = config.mirror.mirror()
+        self._finder = BallFinder(
+            mirror, colour, config.ball_radius_m, config.deviation_px, config.least_fit, config.farthest_m
+        )
+
+    def detect(self, pixels: Picture) -> None:
+        self._write(self._finder.find(pixels))
+
+    def report_nothing(self) -> None:
+        self._write(None)
+
+    def _write(self, ball: BallSighting | None) -> None:
+        percept = self.ball_percept.value = ball_percept_t()
+        if ball is not None:
+            percept.visible = True
+            percept.x_m, percept.y_m = ball.x_m, ball.y_m
+            percept.covariance_m2 = ball.covariance_m2.tolist()
+            percept.confidence = ball.confidence
+        self.ball_percept.write()

@@ -1,0 +1,105 @@
+"""Finds points on the field's lines, and other robots, in the omnidirectional camera's picture."""
+
+import numpy as np
+from pydantic import Field as Setting
+
+from fwk import Writes
+from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
+from procs.model.algebra import Floats
+from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
+from procs.vision.detector import Detector, DetectorConfig
+from procs.vision.line_finder import LineFinder
+from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
+from procs.vision.scan import Scan
+
+
+class OmniFieldConfig(DetectorConfig):
+    """Settings of the detector of lines and obstacles."""
+
+    rays: int = Setting(default=180, ge=16, le=720)
+    """Scan lines around the robot."""
+    nearest_m: float = Setting(default=0.28, gt=0.0)
+    """Where the rays begin: just outside the robot's own body."""
+    farthest_m: float = Setting(default=7.0, gt=0.5)
+    """Where the rays end."""
+    ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
+    """Radii of the circles that meet those lines which run towards the robot."""
+    most_points: int = Setting(default=150, ge=1)
+    """Line points sent at most, picked evenly from those found."""
+    robot_radius_m: float = Setting(default=0.25, gt=0.0)
+    """Radius of the other robots."""
+    deviation_px: tuple[float, float] = (0.6, 1.5)
+    """Standard deviation of a robot's middle in the picture, along and across the ray."""
+    green_low: Hsv = (38, 70, 40)
+    """Least hue (0..179), saturation and value (0..255) of the carpet."""
+    green_high: Hsv = (90, 255, 255)
+    """Greatest hue, saturation and value of the carpet."""
+    white_low: Hsv = (0, 0, 150)
+    """Least hue, saturation and value of the lines."""
+    white_high: Hsv = (179, 60, 255)
+    """Greatest hue, saturation and value of the lines."""
+    black_low: Hsv = (0, 0, 0)
+    """Least hue, saturation and value of the robots' bodies."""
+    black_high: Hsv = (179, 255, 70)
+    """Greatest hue, saturation and value of the robots' bodies."""
+
+
+class OmniField(Detector):
+    """Scans along rays and rings."""
+
+    line_points: Writes[line_points_t]
+    obstacle_percepts: Writes[obstacle_percepts_t]
+    config: OmniFieldConfig
+
+    @classmethod
+    def preload(cls, config: OmniFieldConfig) -> None:
+        """The scan lines are the same for all robots."""
+        _star(config)
+        _rings(config)
+
+    def detect(self, pixels: Picture) -> None:
+        self._write(*self._find(pixels))
+
+    def report_nothing(self) -> None:
+        self._write(np.empty((0, 2)), [])
+
+    def apply_settings(self) -> None:
+        config = self.config
+        mirror = config.mirror.mirror()
+        green = ColourRange(config.green_low, config.green_high)
+        white = ColourRange(config.white_low, config.white_high)
+        black = ColourRange(config.black_low, config.black_high)
+        self._star, self._rings = _star(config), _rings(config)
+        self._lines = LineFinder(green, white)
+        self._obstacles = ObstacleFinder(
+            mirror, self._star, black, (green, white), config.robot_radius_m, config.deviation_px
+        )
+
+    def _find(self, pixels: Picture) -> tuple[Floats, list[Obstacle]]:
+        star, rings = to_hsv(self._star.look_up(pixels)), to_hsv(self._rings.look_up(pixels))
+        points_m = np.vstack([self._lines.find(star, self._star), self._lines.find(rings, self._rings)])
+        if len(points_m) > self.config.most_points:
+            points_m = points_m[np.linspace(0, len(points_m) - 1, self.config.most_points).astype(int)]
+        return points_m, self._obstacles.find(star)
+
+    def _write(self, points_m: Floats, obstacles: list[Obstacle]) -> None:
+        points, percepts = self.line_points.value, self.obstacle_percepts.value
+        points.x_m, points.y_m = points_m.T.tolist()
+        percepts.obstacles = [self._message(obstacle) for obstacle in obstacles]
+        self.line_points.write()
+        self.obstacle_percepts.write()
+
+    def _message(self, obstacle: Obstacle) -> obstacle_t:
+        message = obstacle_t()
+        message.x_m, message.y_m = obstacle.x_m, obstacle.y_m
+        message.radius_m = self.config.robot_radius_m
+        message.covariance_m2 = obstacle.covariance_m2.tolist()
+        return message
+
+
+def _star(config: OmniFieldConfig) -> Scan:
+    return Scan.star(config.mirror.mirror(), config.rays, config.nearest_m, config.farthest_m)
+
+
+def _rings(config: OmniFieldConfig) -> Scan:
+    return Scan.rings(config.mirror.mirror(), config.ring_distances_m)

@@ -1,0 +1,80 @@
+"""Puts what the world model believes into its messages."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from lcmtypes.soccer import ball_estimate_t, obstacle_t, robot_estimate_t, team_message_t, world_model_t
+from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.own_view import OwnView
+from procs.world_model.robot_tracks import RobotTracks
+from procs.world_model.seen import Seen
+from procs.world_model.team import Mate
+
+
+def fill_world_model(
+    message: world_model_t,
+    view: OwnView,
+    ball: BallTracker,
+    mates: Sequence[Mate],
+    opponents: RobotTracks,
+    now_s: float,
+) -> None:
+    """Everything that the robot believes at `now_s`."""
+    message.localized = view.localized
+    message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
+    message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
+    message.ball = _ball(ball)
+    message.mates = [_mate(mate, now_s) for mate in mates]
+    message.mate_roles = [mate.role for mate in mates]
+    message.opponents = [_opponent(opponents, int(track)) for track in opponents.sure]
+
+
+def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:
+    """The robot's own pose and what it sees itself: ball (0 or 1) and obstacles that are none of the team."""
+    message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
+    message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
+    message.localized = view.localized
+    message.ball_visible = len(ball.positions_m) > 0
+    if message.ball_visible:
+        message.ball_x_m, message.ball_y_m = ball.positions_m[0].tolist()
+        message.ball_covariance_m2 = ball.covariances_m2[0].tolist()
+        message.ball_distance_m = float(np.hypot(*(ball.positions_m[0] - view.pose[:2])))
+    message.obstacles = []
+    rows = zip(obstacles.positions_m, obstacles.covariances_m2, obstacles.radii_m, strict=True)
+    for position_m, covariance_m2, radius_m in rows:
+        obstacle = obstacle_t()
+        obstacle.x_m, obstacle.y_m = position_m.tolist()
+        obstacle.covariance_m2 = covariance_m2.tolist()
+        obstacle.radius_m = float(radius_m)
+        message.obstacles.append(obstacle)
+
+
+def _ball(ball: BallTracker) -> ball_estimate_t:
+    estimate = ball_estimate_t()
+    estimate.known = ball.known
+    if ball.known:
+        estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = ball.track.state.tolist()
+        estimate.covariance = ball.track.covariance.tolist()
+        estimate.age_s = ball.age_s
+        estimate.observers = ball.observers
+    return estimate
+
+
+def _mate(mate: Mate, now_s: float) -> robot_estimate_t:
+    estimate = robot_estimate_t()
+    estimate.name = mate.name
+    estimate.x_m, estimate.y_m = mate.position_at(now_s).tolist()
+    estimate.heading_rad = mate.heading_rad
+    estimate.vx_m_s, estimate.vy_m_s = mate.velocity_m_s.tolist()
+    estimate.covariance_m2 = mate.covariance_at(now_s).tolist()
+    estimate.age_s = now_s - mate.told_s
+    return estimate
+
+
+def _opponent(opponents: RobotTracks, track: int) -> robot_estimate_t:
+    estimate = robot_estimate_t()
+    estimate.x_m, estimate.y_m, estimate.vx_m_s, estimate.vy_m_s = opponents.states[track].tolist()
+    estimate.covariance_m2 = opponents.covariances[track, :2, :2].tolist()
+    estimate.age_s = float(opponents.ages_s[track])
+    return estimate

@@ -1,0 +1,23 @@
+"""Short ways to describe a match for tests of the thinking."""
+
+from procs.behaviour.roles import Job
+from procs.behaviour.view import Ball, Robot, View
+from procs.model.field import Field, Point
+
+FIELD = Field()
+
+
+def robot(name: str, x_m: float, y_m: float, heading_rad: float = 0.0, role: str = "") -> Robot:
+    return Robot(name, Point(x_m, y_m), heading_rad, role=role)
+
+
+def ball(x_m: float, y_m: float, vx_m_s: float = 0.0, vy_m_s: float = 0.0) -> Ball:
+    return Ball(known=True, place=Point(x_m, y_m), velocity_m_s=Point(vx_m_s, vy_m_s))
+
+
+def view(own: Robot, where: Ball, mates: tuple[Robot, ...] = (), opponents: tuple[Robot, ...] = ()) -> View:
+    return View(localized=True, own=own, ball=where, mates=mates, opponents=opponents)
+
+
+def job(role: str, x_m: float = 0.0, y_m: float = 0.0) -> Job:
+    return Job(role, Point(x_m, y_m))

@@ -1,0 +1,67 @@
+"""A world model that knows the truth, with noise if asked: for playing before there are eyes."""
+
+import numpy as np
+
+from fwk import Clock, Component, Config, Reads, ReadsEach, Writes, channel
+from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
+from procs.model.robot import team_of
+
+
+class PerfectWorldModelConfig(Config):
+    """How far from the truth."""
+
+    place_sd_m: float = 0.0
+    heading_sd_rad: float = 0.0
+    ball_sd_m: float = 0.0
+    ball_velocity_sd_m_s: float = 0.0
+
+
+class PerfectWorldModel(Component):
+    """Stands in for camera, vision, localization, world model and radio of one robot."""
+
+    stage = "worldstate"
+
+    config: PerfectWorldModelConfig
+    clock: Clock
+    rng: np.random.Generator
+    ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
+    role: ReadsEach[role_t] = channel("*/role")
+    world_model: Writes[world_model_t]
+
+    def loop(self) -> None:
+        robot, truth, config = self.name.rpartition("/")[0], self.ground_truth.value, self.config
+        own = next((each for each in truth.robots if each.name == robot), None)
+        if own is None:
+            return
+        model = world_model_t()
+        noise = self.rng.standard_normal(7).tolist()
+        model.localized = True
+        model.x_m, model.y_m = own.x_m + config.place_sd_m * noise[0], own.y_m + config.place_sd_m * noise[1]
+        model.heading_rad = own.heading_rad + config.heading_sd_rad * noise[2]
+        model.vx_m_s, model.vy_m_s = own.vx_m_s, own.vy_m_s
+        ball = ball_estimate_t()
+        ball.known, ball.observers = True, 1
+        ball.x_m, ball.y_m = truth.ball_x_m + config.ball_sd_m * noise[3], truth.ball_y_m + config.ball_sd_m * noise[4]
+        ball.vx_m_s = truth.ball_vx_m_s + config.ball_velocity_sd_m_s * noise[5]
+        ball.vy_m_s = truth.ball_vy_m_s + config.ball_velocity_sd_m_s * noise[6]
+        model.ball = ball
+        others = [each for each in truth.robots if each.name != robot]
+        model.mates = [_estimate(each) for each in others if team_of(each.name) == team_of(robot)]
+        model.opponents = [_estimate(each) for each in others if team_of(each.name) != team_of(robot)]
+        for opponent in model.opponents:
+            opponent.name = ""
+        model.mate_roles = [self.role[mate.name].value.role for mate in model.mates]
+        self.world_model.value = model
+        self.world_model.write()
+
+
+def _estimate(robot: true_robot_t) -> robot_estimate_t:
+    estimate = robot_estimate_t()
+    estimate.name, estimate.x_m, estimate.y_m, estimate.heading_rad = (
+        robot.name,
+        robot.x_m,
+        robot.y_m,
+        robot.heading_rad,
+    )
+    estimate.vx_m_s, estimate.vy_m_s = robot.vx_m_s, robot.vy_m_s
+    return estimate

@@ -1,0 +1,57 @@
+"""Kicks and meetings against the physics of the simulated ball."""
+
+import math
+
+import pytest
+
+from procs.behaviour import ballistics
+from procs.behaviour.view import Ball
+from procs.model.field import Point
+from procs.simulation.physics.rolling import RollingFriction
+from procs.simulation.physics.settings import BallSettings
+
+
+@pytest.mark.parametrize("distance_m", [3.0, 6.0, 9.0])
+def test_a_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
+    friction, way_m, step_s = RollingFriction(BallSettings()), 0.0, 0.001
+    speed_m_s = ballistics.kick_speed_m_s(distance_m, 2.0)
+    while way_m < distance_m:
+        speed_m_s, _ = friction.advance(speed_m_s, 0.0, step_s)
+        way_m += speed_m_s * step_s
+    assert speed_m_s == pytest.approx(2.0, abs=0.05)
+
+
+def test_a_rolling_ball_is_foreseen() -> None:
+    friction, x_m, speed_m_s = RollingFriction(BallSettings()), 0.0, 2.0
+    friction.roll(2.0, 0.0)
+    for _ in range(2000):
+        speed_m_s, _ = friction.advance(speed_m_s, 0.0, 0.001)
+        x_m += speed_m_s * 0.001
+    ball = Ball(known=True, velocity_m_s=Point(2.0, 0.0))
+    assert ballistics.ball_after(ball, 2.0).x_m == pytest.approx(x_m, abs=0.02)
+    assert ballistics.ball_after(ball, 60.0).x_m == pytest.approx(5.0, abs=0.01)  # v^2 / 2a: it stops
+
+
+def test_ways_and_times_fit() -> None:
+    for distance_m in (0.0, 0.5, 2.5, 8.0):
+        assert ballistics.way_m(ballistics.reach_s(distance_m)) == pytest.approx(distance_m)
+
+
+def test_a_resting_ball_is_met_where_it_lies() -> None:
+    meeting = ballistics.meet(Ball(known=True, place=Point(3.0, 4.0)), Point(0.0, 0.0))
+    assert meeting.place == (3.0, 4.0)
+    assert meeting.time_s == pytest.approx(ballistics.reach_s(5.0 - 0.33))
+
+
+def test_a_passing_ball_is_met_ahead_of_it_in_time() -> None:
+    ball = Ball(known=True, place=Point(-4.0, 1.0), velocity_m_s=Point(2.5, 0.0))
+    meeting = ballistics.meet(ball, Point(0.0, 0.0))
+    assert -1.0 < meeting.place.x_m < 0.5
+    assert ballistics.reach_s(math.dist(meeting.place, (0.0, 0.0)) - 0.33) <= meeting.time_s
+
+
+def test_a_ball_that_outruns_the_robot_is_met_at_the_end() -> None:
+    ball = Ball(known=True, place=Point(5.0, 0.0), velocity_m_s=Point(6.0, 0.0))
+    meeting = ballistics.meet(ball, Point(0.0, 0.0))
+    assert meeting.place == ballistics.ball_after(ball, 4.0)
+    assert meeting.time_s > 4.0

@@ -1,0 +1,98 @@
+"""Robots at play with a perfect world model: kick-off, goals, defence, and the same match twice."""
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import pytest
+
+from fwk import Component
+from fwk.testing import MemorySystem
+from lcmtypes.soccer import game_state_t, match_event_t
+from procs.behaviour.agent import Agent
+from procs.behaviour.navigator import Navigator
+from procs.behaviour.skiller import Skiller
+from procs.drivers.base import Base
+from procs.drivers.kicker import Kicker
+from procs.referee.referee import Referee
+from procs.simulation.simulator import Simulator
+from tests.procs.behaviour.perfect_world import PerfectWorldModel
+
+PARTS: dict[str, type[Component]] = {
+    "base": Base,
+    "kicker": Kicker,
+    "world_model": PerfectWorldModel,
+    "agent": Agent,
+    "skiller": Skiller,
+    "navigator": Navigator,
+}
+NOISE = {"place_sd_m": 0.03, "heading_sd_rad": 0.015, "ball_sd_m": 0.05, "ball_velocity_sd_m_s": 0.2}
+
+
+def match(robots: Sequence[str], seed: int, noise: dict[str, float], **simulator: Any) -> MemorySystem:
+    components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/referee": Referee}
+    components.update({f"{robot}/{name}": part for robot in robots for name, part in PARTS.items()})
+    settings: dict[str, dict[str, Any]] = {f"{robot}/world_model": dict(noise) for robot in robots}
+    return MemorySystem(components, settings={**settings, "world/simulator": simulator}, seed=seed)
+
+
+def team(colour: str, number: int) -> list[str]:
+    return [f"{colour}{index + 1}" for index in range(number)]
+
+
+def play(system: MemorySystem, duration_s: float) -> tuple[list[game_state_t], list[match_event_t]]:
+    states, events = [], []
+    for _ in range(round(duration_s * 20)):
+        system.tick()
+        states.append(system.newest("world/game_state"))
+        events += system.newest("world/match_events").events
+    return states, events
+
+
+def test_one_robot_scores_on_an_empty_goal_soon_after_its_kick_off() -> None:
+    for seed in (1, 2, 3):
+        states, _ = play(match(["cyan2"], seed, NOISE), 16.0)
+        assert states[-1].score_cyan == 1, f"seed {seed}"
+
+
+def test_two_alone_both_score() -> None:
+    states, _ = play(match(["cyan1", "magenta1"], 1, NOISE), 40.0)
+    assert states[-1].score_cyan > 0
+    assert states[-1].score_magenta > 0
+
+
+@pytest.mark.slow
+def test_ten_robots_play_by_the_rules_and_score() -> None:
+    system = match(team("cyan", 5) + team("magenta", 5), 7, NOISE)
+    stopped, _ = play(system, 6.0)
+    assert stopped[-1].stopped
+    truth = system.newest("world/ground_truth")
+    for robot in truth.robots:
+        own_side = -1 if robot.name.startswith("cyan") else 1
+        assert robot.x_m * own_side > 0, f"{robot.name} is in the other half"
+        assert robot.name.startswith("cyan") or math.hypot(robot.x_m, robot.y_m) > 3.0
+    states, events = play(system, 25.0)
+    assert states[-1].score_cyan + states[-1].score_magenta > 0
+    assert len({event.robot for event in events if event.kind == match_event_t.KICK}) >= 3
+
+
+def test_the_keeper_saves_shots_that_it_can_reach() -> None:
+    for y_m in (-0.8, 0.0, 0.8):
+        system = match(["cyan1", "cyan2"], 1, {}, starts={"cyan2": (9.0, 6.0, 0.0)})
+        system.tick(120)  # until the kick-off runs, so that goals count
+        ball = system.runners["world/simulator"].component._world.ball  # type: ignore[attr-defined]
+        ball.put(-4.5, 0.5)
+        ball.body.velocity = (-5.0, 5.0 * (y_m - 0.5) / 6.5)
+        states, _ = play(system, 2.0)
+        assert states[-1].score_magenta == 0, f"shot at {y_m} m"
+
+
+def test_the_same_seed_gives_the_same_match_byte_by_byte() -> None:
+    robots = team("cyan", 2) + team("magenta", 2)
+    first, second = (match(robots, 5, NOISE) for _ in range(2))
+    for system in (first, second):
+        system.tick(160)
+    assert first.sent == second.sent
+    other = match(robots, 6, NOISE)
+    other.tick(20)
+    assert other.sent != first.sent

@@ -1,0 +1,132 @@
+"""Roles and places: the same for every robot of the team, whatever the order of the mates."""
+
+import itertools
+import math
+
+import pytest
+
+from procs.behaviour import formation
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, assign
+from procs.behaviour.view import View
+from procs.model.field import Point
+from procs.referee.restarts import State
+from tests.procs.behaviour.behaviour_parts import FIELD, ball, robot, view
+
+TEAM = (
+    robot("cyan1", -10.5, 0.0),
+    robot("cyan2", -1.0, 0.5),
+    robot("cyan3", -4.0, -2.0),
+    robot("cyan4", -4.0, 2.0),
+    robot("cyan5", 1.0, 4.0),
+)
+
+
+def test_every_robot_computes_the_same_jobs_in_whatever_order_it_knows_its_mates() -> None:
+    jobs = None
+    for own in TEAM:
+        mates = tuple(mate for mate in TEAM if mate is not own)
+        for order in itertools.permutations(mates):
+            found = assign(view(own, ball(0.0, 0.0), order), FIELD)
+            jobs = jobs or found
+            assert found == jobs
+    assert jobs is not None
+    assert {name: job.role for name, job in jobs.items()} == {
+        "cyan1": GOALKEEPER,
+        "cyan2": ATTACKER,
+        "cyan3": DEFENDER,
+        "cyan4": DEFENDER,
+        "cyan5": SUPPORTER,
+    }
+
+
+def test_of_two_robots_at_one_place_all_send_the_same_one_forward() -> None:
+    twins = (robot("cyan3", -4.0, 0.0), robot("cyan4", -4.0, 0.0))
+    orders = [(TEAM[0], TEAM[1], *pair) for pair in (twins, twins[::-1])]
+    first, second = (assign(view(TEAM[4], ball(0.0, 0.0), order), FIELD) for order in orders)
+    assert first == second
+
+
+def test_a_robot_alone_attacks_and_of_two_the_lower_number_keeps_the_goal() -> None:
+    alone = assign(view(TEAM[0], ball(0.0, 0.0)), FIELD)
+    assert alone["cyan1"].role == ATTACKER
+    two = assign(view(TEAM[2], ball(-4.0, -2.0), (TEAM[1],)), FIELD)
+    assert (two["cyan2"].role, two["cyan3"].role) == (GOALKEEPER, ATTACKER)
+
+
+def test_an_attacker_keeps_its_role_against_a_mate_that_is_hardly_faster() -> None:
+    new, old = robot("cyan2", -1.0, 0.0), robot("cyan3", -1.3, 0.0, role=ATTACKER)
+    keeper = TEAM[0]
+    assert assign(view(new, ball(0.0, 0.0), (old, keeper)), FIELD)["cyan3"].role == ATTACKER
+    far = robot("cyan3", -4.0, 0.0, role=ATTACKER)
+    assert assign(view(new, ball(0.0, 0.0), (far, keeper)), FIELD)["cyan2"].role == ATTACKER
+
+
+def test_who_meets_a_rolling_ball_first_attacks() -> None:
+    behind, ahead = robot("cyan2", -1.0, 0.0), robot("cyan3", 4.0, 0.5)
+    jobs = assign(view(behind, ball(0.0, 0.0, 3.0, 0.0), (ahead, TEAM[0])), FIELD)
+    assert jobs["cyan3"].role == ATTACKER
+
+
+def test_who_dribbles_stays_attacker_although_the_ball_rolls_towards_a_mate() -> None:
+    dribbler, ahead = robot("cyan2", 0.0, 0.0, role=ATTACKER), robot("cyan3", 1.5, 0.2)
+    jobs = assign(view(dribbler, ball(0.33, 0.0, 2.0, 0.0), (ahead, TEAM[0])), FIELD)
+    assert jobs["cyan2"].role == ATTACKER
+
+
+def test_the_supporter_changes_its_flank_only_when_the_ball_is_well_on_it() -> None:
+    supporter = robot("cyan5", 3.0, 3.0, role=SUPPORTER)
+    for y_m, flank in ((0.5, 1.0), (2.5, -1.0)):
+        jobs = assign(view(supporter, ball(0.0, y_m), (TEAM[0], TEAM[1])), FIELD)
+        assert jobs["cyan5"].place.y_m * flank > 0
+
+
+def test_a_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
+    lost = View(localized=False, own=TEAM[1], ball=ball(0.0, 0.0), mates=(TEAM[0], TEAM[2]))
+    assert set(assign(lost, FIELD)) == {"cyan1", "cyan3"}
+
+
+def test_six_robots_all_have_jobs() -> None:
+    six = (*TEAM, robot("cyan6", 2.0, 2.0), robot("cyan7", 2.0, -2.0))
+    assert set(assign(view(six[0], ball(0.0, 0.0), six[1:]), FIELD)) == {mate.name for mate in six}
+
+
+@pytest.mark.parametrize("state", [State.KICK_OFF, State.THROW_IN, State.FREE_KICK, State.CORNER_KICK, State.DROP_BALL])
+@pytest.mark.parametrize("whose", Whose)
+@pytest.mark.parametrize("spot", [Point(0.0, 0.0), Point(10.8, 6.8), Point(-10.8, -6.8), Point(-3.0, 6.9)])
+def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot: Point) -> None:
+    if state is State.KICK_OFF and spot != (0.0, 0.0):
+        return
+    game = Game(state, stopped=True, whose=whose, spot=spot)
+    needed_m = 1.0 if state is State.DROP_BALL else 2.0 if whose is Whose.OURS else 3.0
+    wanted = [*formation.places(spot, True, 1.0, FIELD), *formation.places(spot, False, -1.0, FIELD), spot]
+    for place in [formation.allowed(one, game, FIELD) for one in wanted] + [
+        formation.first_opponent_place(game, FIELD)
+    ]:
+        assert math.dist(place, spot) >= needed_m
+        assert FIELD.in_field(*place, 0.0)
+        assert state is not State.KICK_OFF or place.x_m <= -0.25
+
+
+@pytest.mark.parametrize("own", [Point(-2.0, 5.0), Point(-1.0, 1.0), Point(2.0, 0.0)])
+def test_the_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(0.0, 0.0))
+    place = Point(-2.0, -5.0)
+    distances_m = [math.dist(own, game.spot)]
+    for _ in range(400):
+        step = formation.next_step(own, place, game)
+        way_m = math.dist(own, step)
+        share = min(1.0, 0.1 / way_m) if way_m else 1.0
+        own = Point(own.x_m + share * (step.x_m - own.x_m), own.y_m + share * (step.y_m - own.y_m))
+        distances_m.append(math.dist(own, game.spot))
+    assert own == pytest.approx(place)
+    outside = next(index for index, distance_m in enumerate(distances_m) if distance_m > 3.0)
+    assert outside < 40
+    assert min(distances_m[outside:]) > 3.0
+
+
+def test_defenders_stand_between_ball_and_goal_outside_the_penalty_area() -> None:
+    for where in (Point(4.0, 3.0), Point(-6.0, -3.0), Point(-10.0, 0.5)):
+        _, stopper, sweeper, _ = formation.places(where, ours=False, flank=1.0, field=FIELD)
+        assert not FIELD.in_penalty_area(*stopper, -1.0)
+        assert not FIELD.in_penalty_area(*sweeper, -1.0)

@@ -1,0 +1,185 @@
+"""The skills: scenes and the steps that follow."""
+
+import math
+
+import pytest
+
+from procs.behaviour.skills.book import SKILLS, Machine
+from procs.behaviour.skills.getting import GetBall, Intercept
+from procs.behaviour.skills.keeping import KeepGoal
+from procs.behaviour.skills.moving import Goto, Mark
+from procs.behaviour.skills.playing import Dribble, Pass, Shoot
+from procs.behaviour.skills.skill import Drive, Scene, Status, Step
+from procs.behaviour.view import Ball, View
+from procs.model.field import Point
+from tests.procs.behaviour.behaviour_parts import ball, robot, view
+
+OWN = robot("cyan2", 0.0, 0.0)
+FAR_BALL = ball(5.0, 0.0)
+
+
+def scene(seen: View, x_m: float = 8.0, y_m: float = 0.0, heading_rad: float = 0.0, **more: float) -> Scene:
+    return Scene(seen, Point(x_m, y_m), heading_rad, **more)  # type: ignore[arg-type]
+
+
+def drive(step: Step) -> Drive:
+    assert step.drive is not None
+    return step.drive
+
+
+def test_goto_drives_there_around_the_ball_and_stays() -> None:
+    going = Goto().step(scene(view(OWN, FAR_BALL), 3.0, 1.0, 0.5, speed_m_s=1.0))
+    assert going.drive == Drive(Point(3.0, 1.0), 0.5, 1.0, avoid_ball=True)
+    assert going.status is Status.RUNNING
+    there = Goto().step(scene(view(robot("cyan2", 3.0, 1.05, 0.52), FAR_BALL), 3.0, 1.0, 0.5))
+    assert there.status is Status.FINAL
+    assert there.drive is not None
+
+
+def test_mark_stands_between_opponent_and_own_goal_facing_the_ball() -> None:
+    place = drive(Mark().step(scene(view(OWN, FAR_BALL), -5.0, 4.0)))
+    assert -6.0 < place.place.x_m < -5.0
+    assert 3.0 < place.place.y_m < 4.0
+    assert abs(place.heading_rad) < math.pi / 2
+
+
+def test_get_ball_drives_mouth_first_and_switches_the_handling_on_nearby() -> None:
+    far = GetBall().step(scene(view(OWN, ball(4.0, 3.0))))
+    assert drive(far).heading_rad == pytest.approx(math.atan2(3.0, 4.0))
+    assert 0.2 < math.dist(drive(far).place, (4.0, 3.0)) < 0.33
+    assert not far.dribble
+    assert GetBall().step(scene(view(OWN, ball(0.7, 0.0)))).dribble
+
+
+def test_get_ball_is_final_when_the_ball_stays_in_the_mouth() -> None:
+    skill, held = GetBall(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    assert skill.step(held).status is Status.RUNNING
+    assert skill.step(held._replace(holds_ball=False)).status is Status.RUNNING
+    assert [skill.step(held).status for _ in range(2)] == [Status.RUNNING, Status.FINAL]
+
+
+def test_get_ball_fails_without_a_ball() -> None:
+    step = GetBall().step(scene(view(OWN, Ball(known=False))))
+    assert (step.status, step.drive) == (Status.FAILED, None)
+    assert "ball" in step.reason
+
+
+def test_a_set_pieces_ball_is_taken_from_behind() -> None:
+    beside = view(robot("cyan2", 0.0, 1.0), ball(0.0, 0.0))
+    staging = drive(GetBall().step(scene(beside, set_piece=True)))
+    assert staging.place.x_m < -0.5
+    assert staging.avoid_ball
+    behind = view(robot("cyan2", -0.7, 0.0), ball(0.0, 0.0))
+    assert not drive(GetBall().step(scene(behind, set_piece=True))).avoid_ball
+
+
+def test_an_opponents_ball_is_attacked_from_the_side_of_the_own_goal() -> None:
+    seen = view(robot("cyan2", 1.0, 2.0), ball(0.0, 0.0), (), (robot("", 0.33, 0.0),))
+    tackle = drive(GetBall().step(scene(seen)))
+    assert tackle.place.x_m < -0.2
+    assert tackle.heading_rad == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_rolling_ball_is_faced_where_it_comes_from() -> None:
+    seen = view(robot("cyan2", 0.0, 0.0), ball(3.0, 1.0, 0.0, -2.0))
+    assert drive(GetBall().step(scene(seen))).heading_rad == pytest.approx(math.atan2(1.0, 3.0))
+
+
+def test_intercept_waits_on_the_balls_way_facing_it() -> None:
+    wait = drive(Intercept().step(scene(view(robot("cyan2", -1.0, 0.6), ball(4.0, 0.0, -3.0, 0.0)))))
+    assert wait.place == pytest.approx((-1.0, 0.0))
+    assert wait.heading_rad == pytest.approx(math.atan2(-0.6, 5.0))
+
+
+def test_dribble_drives_mouth_first_and_fails_when_the_ball_is_gone() -> None:
+    skill, held = Dribble(), scene(view(OWN, ball(0.33, 0.0)), 4.0, 4.0, holds_ball=True)
+    step = skill.step(held)
+    assert step.dribble
+    assert drive(step).heading_rad == pytest.approx(math.pi / 4)
+    lost = [skill.step(held._replace(holds_ball=False)).status for _ in range(8)]
+    assert lost[:5] == [Status.RUNNING] * 5
+    assert lost[-1] is Status.FAILED
+
+
+def test_shoot_turns_first_and_kicks_when_it_points_at_the_target() -> None:
+    skill = Shoot()
+    aside = scene(view(OWN._replace(heading_rad=0.5), ball(0.3, 0.1)), holds_ball=True, kicks_asked=4, kicks_done=4)
+    turning = skill.step(aside)
+    assert turning.kick_m_s == 0.0
+    assert drive(turning).heading_rad == pytest.approx(0.0)
+    aimed = aside._replace(view=view(OWN, ball(0.33, 0.0)))
+    steps = [skill.step(aimed) for _ in range(2)]
+    assert steps[-1].kick_m_s > 8.0
+    assert skill.step(aimed._replace(kicks_asked=5)).status is Status.RUNNING
+    assert skill.step(aimed._replace(kicks_asked=5, kicks_done=5, holds_ball=False)).status is Status.FINAL
+
+
+def test_shoot_waits_for_the_charge() -> None:
+    held = scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    assert Shoot().step(held).kick_m_s > 0
+    assert Shoot().step(held._replace(charged=False)).kick_m_s == 0.0
+
+
+def test_a_kick_allows_for_the_robots_own_motion() -> None:
+    moving = OWN._replace(velocity_m_s=Point(0.0, 1.0))
+    turn = drive(Shoot().step(scene(view(moving, ball(0.33, 0.0)), holds_ball=True)))
+    assert -0.2 < turn.heading_rad < -0.05
+
+
+def test_a_kick_that_the_kicker_does_not_carry_out_is_asked_again() -> None:
+    skill, held = Shoot(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    assert skill.step(held).kick_m_s > 0
+    later = [skill.step(held._replace(kicks_asked=1)).kick_m_s for _ in range(8)]
+    assert later[0] == 0.0
+    assert max(later) > 0
+
+
+def test_a_pass_is_softer_the_nearer_the_mate_is() -> None:
+    near, far = (Pass().step(scene(view(OWN, ball(0.33, 0.0)), x_m, holds_ball=True)).kick_m_s for x_m in (3.0, 8.0))
+    assert 2.5 < near < far < 7.0
+
+
+def test_aiming_without_end_fails() -> None:
+    skill, held = Shoot(), scene(view(OWN._replace(heading_rad=2.0), ball(0.0, 0.33)), holds_ball=True)
+    assert [skill.step(held).status for _ in range(70)][-1] is Status.FAILED
+
+
+@pytest.mark.parametrize(("vy_m_s", "crossing_m"), [(0.0, 0.5), (-1.0, -1.05), (-4.0, None)])
+def test_the_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, crossing_m: float | None) -> None:
+    keeper = robot("cyan1", -10.5, 0.0)
+    place = drive(KeepGoal().step(scene(view(keeper, ball(-5.0, 0.5, -3.0, vy_m_s))))).place
+    assert -11.0 < place.x_m < -10.3
+    if crossing_m is not None:
+        assert place.y_m == pytest.approx(crossing_m)
+    else:
+        assert place.y_m > -0.2  # goes wide
+
+
+def test_the_keeper_covers_the_side_of_the_ball_but_stays_between_the_posts() -> None:
+    keeper = robot("cyan1", -10.5, 0.0)
+    left, right = (drive(KeepGoal().step(scene(view(keeper, ball(-9.0, y_m))))).place.y_m for y_m in (5.0, -5.0))
+    assert 0.3 < left < 1.0
+    assert right == pytest.approx(-left)
+    assert drive(KeepGoal().step(scene(view(keeper, Ball(known=False))))).place.y_m == 0.0
+
+
+def test_the_machine_moves_the_target_of_a_running_skill_and_begins_an_ended_one_anew() -> None:
+    machine, seen = Machine(), view(OWN, Ball(known=False))
+    assert machine.step(1, "get_ball", scene(seen)).status is Status.FAILED
+    assert machine.step(1, "get_ball", scene(view(OWN, FAR_BALL))).status is Status.FAILED
+    assert machine.step(2, "get_ball", scene(view(OWN, FAR_BALL))).status is Status.RUNNING
+    assert drive(machine.step(3, "goto", scene(seen, 1.0))).place.x_m == 1.0
+    assert drive(machine.step(4, "goto", scene(seen, 2.0))).place.x_m == 2.0
+
+
+def test_an_ended_skill_stops_the_robot_and_keeps_the_ball() -> None:
+    machine, held = Machine(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    steps = [machine.step(1, "get_ball", held) for _ in range(4)]
+    assert [(step.status, step.drive, step.dribble) for step in steps[2:]] == [(Status.FINAL, None, True)] * 2
+
+
+def test_a_skill_that_does_not_exist_fails_and_says_which_do() -> None:
+    step = Machine().step(1, "juggle", scene(view(OWN, FAR_BALL)))
+    assert step.status is Status.FAILED
+    assert "juggle" in step.reason
+    assert all(name in step.reason for name in SKILLS)

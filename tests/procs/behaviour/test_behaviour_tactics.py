@@ -1,0 +1,164 @@
+"""What robots decide: situations and the orders that follow."""
+
+import math
+
+import pytest
+
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER
+from procs.behaviour.tactics import Order, Tactics
+from procs.behaviour.view import Ball, Robot, View
+from procs.model.field import Point
+from procs.referee.restarts import State
+from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
+
+PLAY = Game(State.PLAY, stopped=False)
+KEEPER = robot("", 10.5, 0.0)
+
+
+def decide(seen: View, game: Game = PLAY, role: str = ATTACKER, holds_ball: bool = False, ticks: int = 1) -> Order:
+    tactics = Tactics(FIELD)
+    for _ in range(ticks):
+        order = tactics.decide(seen, game, job(role, -3.0, 1.0), holds_ball, 0.05)
+    return order
+
+
+def with_ball(x_m: float, y_m: float, *opponents: Robot, mates: tuple[Robot, ...] = ()) -> View:
+    return view(robot("cyan2", x_m - 0.33, y_m), ball(x_m, y_m), mates, (KEEPER, *opponents))
+
+
+@pytest.mark.parametrize("state", [State.FROZEN, State.HALF_TIME])
+@pytest.mark.parametrize("role", [GOALKEEPER, ATTACKER, DEFENDER])
+def test_in_a_pause_everybody_stands_still(state: State, role: str) -> None:
+    seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))
+    assert decide(seen, Game(state, stopped=True), role).skill == "stop"
+
+
+def test_a_robot_that_is_lost_stands_still() -> None:
+    seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))._replace(localized=False)
+    assert decide(seen).skill == "stop"
+
+
+def test_the_attacker_gets_a_free_ball() -> None:
+    order = decide(view(robot("cyan2", -2.0, 0.0), ball(1.0, 0.0)))
+    assert (order.skill, order.place) == ("get_ball", (1.0, 0.0))
+
+
+def test_the_attacker_intercepts_a_ball_that_comes_its_way() -> None:
+    assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -3.0, 0.0))).skill == "intercept"
+    assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, 3.0, 0.0))).skill == "get_ball"
+
+
+def test_with_the_ball_before_an_open_goal_it_shoots_beside_the_keeper() -> None:
+    order = decide(with_ball(7.0, 0.0), holds_ball=True)
+    assert order.skill == "shoot"
+    assert order.place.x_m == 11.0
+    assert abs(order.place.y_m) > 0.4
+
+
+def test_far_from_the_goal_it_dribbles_towards_it() -> None:
+    order = decide(with_ball(-3.0, 4.0), holds_ball=True)
+    assert order.skill == "dribble"
+    assert order.place.x_m > -1.0
+    assert abs(order.place.y_m) < 4.0
+
+
+def test_from_the_own_half_it_does_not_shoot() -> None:
+    assert decide(with_ball(-0.5, 0.0), holds_ball=True).skill == "dribble"
+
+
+def test_under_pressure_it_passes_to_a_free_mate_ahead() -> None:
+    mate = robot("cyan3", 3.0, 3.0, role=SUPPORTER)
+    pressed = with_ball(-2.0, 0.0, robot("", -1.2, -0.2), mates=(mate,))
+    assert decide(pressed, holds_ball=True).skill == "pass"
+    assert decide(with_ball(-2.0, 0.0, mates=(mate,)), holds_ball=True).skill == "dribble"
+
+
+def test_who_keeps_the_ball_too_long_clears_it() -> None:
+    assert decide(with_ball(-2.0, 0.0), holds_ball=True, ticks=140)[:1] == ("shoot",)
+
+
+def test_a_shot_once_begun_keeps_its_target() -> None:
+    tactics, seen = Tactics(FIELD), with_ball(7.0, 0.0)
+    first = tactics.decide(seen, PLAY, job(ATTACKER), True, 0.05)
+    moved = seen._replace(opponents=(robot("", 10.5, 0.1 if first.place.y_m > 0 else -0.1),))
+    assert tactics.decide(moved, PLAY, job(ATTACKER), True, 0.05).place == first.place
+
+
+def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 1.0))
+    order = decide(view(robot("cyan2", -2.0, 0.0), ball(2.0, 1.0)), game)
+    assert order.skill == "goto"
+    assert order.place.x_m < 2.0
+    assert math.dist(order.place, game.spot) < 1.0
+
+
+def test_the_taker_of_a_kick_off_stays_in_its_half_even_if_it_will_pass_back() -> None:
+    game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS)
+    mates = (robot("cyan3", -3.0, 3.0, role=SUPPORTER),)
+    order = decide(view(robot("cyan2", -2.0, 0.0), ball(0.0, 0.0), mates), game)
+    assert order.place.x_m < -0.25
+
+
+def test_the_set_piece_is_played_to_a_mate() -> None:
+    game = Game(State.THROW_IN, stopped=False, whose=Whose.OURS, spot=Point(0.0, 6.9))
+    mates = (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    seen = view(robot("cyan2", 0.0, 6.9, -math.pi / 2), ball(0.0, 6.6), mates)
+    assert decide(seen, game).skill == "get_ball"
+    order = decide(seen, game, holds_ball=True)
+    assert (order.skill, order.place) == ("pass", (0.0, 3.0))
+
+
+@pytest.mark.parametrize("stopped", [True, False])
+def test_at_a_set_piece_of_the_others_everybody_keeps_away(stopped: bool) -> None:
+    game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
+    for role in (ATTACKER, SUPPORTER, DEFENDER):
+        order = decide(view(robot("cyan2", -3.0, 0.0), ball(-3.0, 1.0)), game, role)
+        assert order.skill == "goto"
+        assert math.dist(order.place, game.spot) >= 3.0
+
+
+def test_the_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
+    keeper = robot("cyan1", -10.5, 0.0, role=GOALKEEPER)
+    far = robot("", 0.0, 0.0)
+    assert decide(view(keeper, ball(-5.0, 0.0), (), (far,)), role=GOALKEEPER).skill == "keep_goal"
+    assert decide(view(keeper, ball(-9.5, 0.0), (), (far,)), role=GOALKEEPER).skill == "get_ball"
+    assert decide(view(keeper, ball(-9.5, 0.0, -4.0, 0.0), (), (far,)), role=GOALKEEPER).skill == "keep_goal"
+    near = robot("", -9.0, 0.0)
+    assert decide(view(keeper, ball(-9.5, 0.0), (), (near,)), role=GOALKEEPER).skill == "keep_goal"
+    assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "shoot"
+
+
+def test_the_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
+    keeper = robot("cyan1", -10.0, 0.0, role=GOALKEEPER)
+    assert decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.0), (keeper,))).skill == "goto"
+
+
+def test_a_defender_marks_a_free_opponent_nearby() -> None:
+    opponents = (robot("", 2.0, 0.0), robot("", -4.0, 2.0))
+    order = decide(view(robot("cyan3", -5.0, 2.0), ball(1.8, 0.0), (), opponents), role=DEFENDER)
+    assert (order.skill, order.place) == ("mark", (-4.0, 2.0))
+
+
+def test_a_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
+    opponents = (robot("", 2.0, 0.0), robot("", -4.0, 2.0))
+    nearer = robot("cyan4", -4.8, 2.0, role=DEFENDER)
+    order = decide(view(robot("cyan3", -5.0, 2.0), ball(1.8, 0.0), (nearer,), opponents), role=DEFENDER)
+    assert order.skill == "goto"
+
+
+def test_before_the_own_goal_a_pressed_robot_clears_the_ball() -> None:
+    beside = robot("", -6.0, 1.0)
+    assert decide(with_ball(-6.0, 0.0, beside), holds_ball=True).skill == "shoot"
+    assert decide(with_ball(-6.0, 0.0), holds_ball=True).skill == "dribble"
+
+
+def test_a_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
+    seen = view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -2.0, 0.0), (), (robot("", 3.33, 0.0),))
+    assert decide(seen).skill == "get_ball"
+
+
+def test_without_a_ball_to_be_seen_the_formation_is_taken() -> None:
+    seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
+    order = decide(seen)
+    assert (order.skill, order.place) == ("goto", (-3.0, 1.0))

@@ -1,0 +1,126 @@
+"""The wheels' driver: commands in, wheel speeds out, odometry from what the wheels say."""
+
+import math
+from typing import Any
+
+import pytest
+
+from fwk.testing import Bench
+from lcmtypes.robot import motor_command_t, wheel_state_t
+from procs.drivers.base import Base
+from procs.model.kinematics import Velocity, velocity_of, wheels_of
+
+
+def bench(**settings: Any) -> Bench:
+    return Bench(Base, **settings)
+
+
+def commanded(base: Bench) -> Velocity:
+    first, second, third = base.port("wheel_command").sent[-1].wheel_m_s
+    return velocity_of((first, second, third), 0.2)
+
+
+def roll(base: Bench, velocity: Velocity, ticks: int) -> None:
+    port = base.port("wheel_state")
+    for _ in range(ticks):
+        state = wheel_state_t()
+        state.header.time_us = base.time_us + 50_000
+        state.measured_m_s = list(wheels_of(velocity, 0.2))
+        port.put(state)
+        base.iterate(stage="sensor_acquire")
+
+
+def drive(base: Bench, ticks: int, **command: Any) -> Velocity:
+    for _ in range(ticks):
+        message = motor_command_t()
+        message.header.time_us = base.time_us
+        base.port("motor_command").put(message, **command)
+        base.iterate(stage="act_exec")
+    return commanded(base)
+
+
+def test_it_speeds_up_within_its_limits() -> None:
+    base = bench(acceleration_m_s2=2.0)
+    assert drive(base, 1, vx_m_s=1.0, enabled=True).vx_m_s == pytest.approx(0.1)
+    assert drive(base, 20, vx_m_s=1.0, enabled=True) == pytest.approx((1.0, 0.0, 0.0))
+
+
+def test_no_wheel_is_told_to_turn_faster_than_it_can() -> None:
+    base = bench(wheel_limit_m_s=2.0)
+    drive(base, 60, vx_m_s=3.0, vy_m_s=1.0, omega_rad_s=4.0, enabled=True)
+    assert max(map(abs, base.port("wheel_command").sent[-1].wheel_m_s)) == pytest.approx(2.0)
+
+
+def test_disabled_motors_brake() -> None:
+    base = bench()
+    drive(base, 40, vx_m_s=1.0, enabled=True)
+    assert drive(base, 10, vx_m_s=1.0, enabled=False) == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_silence_brakes_and_is_said_once() -> None:
+    base = bench(command_timeout_s=0.2)
+    drive(base, 40, vx_m_s=1.0, enabled=True)
+    base.iterate(3, stage="act_exec")
+    assert commanded(base).vx_m_s == pytest.approx(1.0)
+    base.iterate(10, stage="act_exec")
+    assert commanded(base) == pytest.approx((0.0, 0.0, 0.0))
+    assert [line.text for line in base.logged] == ["no motor command for 0.25 s: braking"]
+
+
+def test_a_command_that_is_no_number_brakes() -> None:
+    base = bench()
+    drive(base, 40, vx_m_s=1.0, enabled=True)
+    assert drive(base, 10, vx_m_s=math.nan, enabled=True) == pytest.approx((0.0, 0.0, 0.0))
+
+
+def test_odometry_drives_a_quarter_circle() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, math.pi / 2), 20)
+    odometry = base.port("odometry").sent[-1]
+    assert (odometry.x_m, odometry.y_m) == pytest.approx((2 / math.pi, 2 / math.pi))
+    assert (odometry.heading_rad, odometry.path_length_m) == pytest.approx((math.pi / 2, 1.0))
+    assert (odometry.vx_m_s, odometry.omega_rad_s) == pytest.approx((1.0, math.pi / 2))
+
+
+def test_a_measurement_that_comes_late_counts_all_the_same() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    state = wheel_state_t()
+    state.header.time_us = base.time_us + 50_000
+    state.measured_m_s = list(wheels_of(Velocity(1.0, 0.0, 0.0), 0.2))
+    base.port("wheel_state").put(state)
+    base.iterate(stage="act_exec")
+    base.iterate(stage="sensor_acquire")
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
+
+
+def test_a_lost_measurement_is_bridged() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    base.iterate(2, stage="sensor_acquire")
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("speed_m_s", [math.nan, math.inf, 1e300])
+def test_impossible_wheel_speeds_are_refused_aloud(speed_m_s: float) -> None:
+    base = bench()
+    base.port("wheel_state").put(measured_m_s=[0.0, speed_m_s, 0.0])
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
+    assert base.logged[0].text == f"wheels say 0.0, {speed_m_s}, 0.0 m/s, which cannot be; ignored"
+
+
+def test_after_a_long_silence_only_the_last_period_counts() -> None:
+    base = bench()
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    base.iterate(100, stage="sensor_acquire")
+    roll(base, Velocity(1.0, 0.0, 0.0), 1)
+    assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
+
+
+def test_it_leaves_the_wheels_stopped() -> None:
+    base = bench()
+    assert drive(base, 20, vx_m_s=1.0, enabled=True).vx_m_s == pytest.approx(1.0)
+    base.finalize()
+    assert tuple(base.port("wheel_command").sent[-1].wheel_m_s) == (0.0, 0.0, 0.0)

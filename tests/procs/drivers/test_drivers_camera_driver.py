@@ -1,0 +1,219 @@
+"""The camera's driver: pictures of files by tick, streams that come and go, devices that are not there."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fwk.clock import monotonic_us, sleep_s
+from fwk.testing import Bench, MemorySystem
+from procs.drivers.camera_driver import CameraDriver, CameraDriverConfig
+from procs.drivers.recorded_pictures import SourceError
+from procs.vision.colours import Picture
+from procs.vision.omni_ball import OmniBall
+from procs.vision.omni_field import OmniField
+from tests.procs.vision.picture_parts import Stream, shades, simulated, write_folder, write_video
+
+TIMEOUT_US = 60_000_000
+
+
+def bench(source: Path | str, **settings: Any) -> Bench:
+    return Bench(CameraDriver, name="cyan1/camera", source=str(source), **settings)
+
+
+def seen(camera: Bench) -> Picture | None:
+    """The picture that the next iteration gives out."""
+    before = len(camera.port("image").sent)
+    camera.iterate()
+    sent = camera.port("image").sent[before:]
+    if not sent:
+        return None
+    (frame,) = sent
+    flat = camera.component.image._ring.get(frame.frame, frame.height_px * frame.width_px * frame.channels)
+    return np.asarray(flat.reshape(frame.height_px, frame.width_px, frame.channels))
+
+
+def shades_of(camera: Bench, ticks: int) -> list[int | None]:
+    """Of the pictures of so many ticks: which of `shades` each is."""
+    pictures = [seen(camera) for _ in range(ticks)]
+    return [None if each is None else round(float(each.mean()) / 8) for each in pictures]
+
+
+@pytest.fixture(params=["folder", "film.mp4", "film.avi"])
+def film(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    """Twelve pictures, each lighter than the one before."""
+    path = tmp_path / request.param
+    return write_video(path, shades(12)) if path.suffix else write_folder(path, shades(12))
+
+
+def test_picture_k_comes_in_tick_k(film: Path) -> None:
+    assert shades_of(bench(film), 12) == list(range(12))
+
+
+def test_it_ends_and_says_so_once(film: Path) -> None:
+    camera = bench(film)
+    assert shades_of(camera, 15)[10:] == [10, 11, None, None, None]
+    assert [line.text for line in camera.logged] == [f"{film} has ended after 12 pictures; no more frames"]
+
+
+def test_it_begins_again_if_asked_to(film: Path) -> None:
+    assert shades_of(bench(film, at_end="loop"), 27)[10:] == [10, 11, *range(12), 0, 1, 2]
+
+
+def test_it_fails_at_the_end_if_asked_to(film: Path) -> None:
+    camera = bench(film, at_end="fail")
+    camera.iterate(12)
+    with pytest.raises(SourceError, match="has ended after 12 pictures"):
+        camera.iterate()
+
+
+@pytest.mark.parametrize(("at_end", "expected"), [("stop", 7), ("loop", 7)])
+def test_started_late_it_gives_the_picture_of_its_tick(film: Path, at_end: str, expected: int) -> None:
+    camera = bench(film, at_end=at_end)
+    camera.tick = 7
+    assert shades_of(camera, 1) == [expected]
+    looping = bench(film, at_end="loop")
+    looping.tick = 31
+    assert shades_of(looping, 2) == [7, 8]
+
+
+def test_every_third_tick(film: Path) -> None:
+    assert shades_of(bench(film, every_ticks=3), 7) == [0, None, None, 1, None, None, 2]
+
+
+def test_size_and_channels_as_wanted(film: Path) -> None:
+    camera = bench(film, width_px=32, height_px=24, grey=True)
+    camera.iterate(3)
+    frame = camera.port("image").sent[-1]
+    assert (frame.width_px, frame.height_px, frame.channels, frame.encoding) == (32, 24, 1, "gray8")
+
+
+def test_another_source_while_it_runs_begins_where_the_tick_is(film: Path, tmp_path: Path) -> None:
+    camera = bench(film)
+    assert shades_of(camera, 3) == [0, 1, 2]
+    write_folder(tmp_path / "other", shades(20)[10:])
+    camera.component.config.source = str(tmp_path / "other")
+    camera.component.config_changed()
+    assert shades_of(camera, 2) == [13, 14]
+    camera.component.config.source = str(tmp_path / "none")
+    camera.component.config_changed()
+    assert shades_of(camera, 2) == [None, None]
+    assert "no frames until other settings come" in camera.logged[-1].text
+
+
+@pytest.mark.parametrize(
+    ("source", "error"),
+    [
+        ("/dev/video99", r"'/dev/video99': No such file or directory; video devices of this machine: .+"),
+        ("99", r"'/dev/video99': No such file or directory"),
+        ("/dev/nothing.mp4", r"'/dev/nothing.mp4': No such file or directory"),
+        ("/dev/null", r"'/dev/null': it gives no pictures; does another program use it, or is it no camera\?"),
+        ("http://127.0.0.1:9/x.mjpeg", r"no pictures come from there; does the camera run"),
+        ("{folder}", r"no pictures in this folder; they end in \.bmp, "),
+        ("{folder}/text.mp4", r"no video that can be read"),
+    ],
+)
+def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path, source: str, error: str) -> None:
+    (tmp_path / "text.mp4").write_text("no film" * 100)
+    with pytest.raises(SourceError, match=error):
+        bench(source.format(folder=tmp_path))
+
+
+def test_a_device_may_be_named_by_its_number() -> None:
+    with pytest.raises(SourceError, match="'/dev/video99'"):
+        Bench(CameraDriver, name="cyan1/camera", source=99)
+
+
+def test_a_device_that_the_user_may_not_read_is_refused_with_the_group(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.access", lambda *_: False)  # root may read everything
+    with pytest.raises(SourceError, match="most systems want you in the group 'video'"):
+        bench("/dev/null")
+
+
+def test_half_a_size_is_refused(film: Path) -> None:
+    with pytest.raises(SourceError, match="cyan1/camera: width_px and height_px belong together"):
+        bench(film, width_px=640)
+
+
+def test_a_damaged_picture_is_named(tmp_path: Path) -> None:
+    folder = write_folder(tmp_path / "film", shades(3))
+    (folder / "frame1.png").write_text("nothing")
+    camera = bench(folder)
+    camera.iterate()
+    with pytest.raises(SourceError, match=r"frame1\.png': no picture that can be read"):
+        camera.iterate()
+
+
+@pytest.fixture
+def streams() -> Iterator[Callable[..., Stream]]:
+    """Makes network cameras."""
+    made: list[Stream] = []
+
+    def start(shade: int, port: int = 0) -> Stream:
+        made.append(Stream(np.full((48, 64, 3), shade, np.uint8), port))
+        return made[-1]
+
+    yield start
+    for stream in made:
+        stream.end()
+
+
+def until(camera: Bench, happened: Callable[[], bool]) -> None:
+    """Iterates until something has happened."""
+    deadline_us = monotonic_us() + TIMEOUT_US
+    while not happened():
+        assert monotonic_us() < deadline_us, [line.text for line in camera.logged]
+        camera.iterate()
+        sleep_s(0.005)
+
+
+def test_a_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., Stream]) -> None:
+    stream = streams(100)
+    camera = bench(stream.url, retry_s=0.05, longest_retry_s=0.1)
+    frames, logged = camera.port("image").sent, camera.logged
+    until(camera, lambda: len(frames) >= 3)
+    stream.end()
+    until(camera, lambda: len(logged) >= 2)
+    before = len(frames)
+    assert f"{stream.url} lost: it gives no more pictures" in logged[0].text
+    assert f"{stream.url} not back: '{stream.url}': no pictures come from there" in logged[1].text
+    streams(200, stream.port)
+    until(camera, lambda: len(frames) >= before + 3)
+    assert [line.text for line in logged[2:]] == [f"{stream.url} back"]  # failures are told once, not at each attempt
+    picture = None
+    while picture is None:
+        picture = seen(camera)
+    assert round(float(picture.mean())) == pytest.approx(200, abs=2)
+    camera.component.finalize()
+
+
+def test_the_detectors_see_in_a_folder_what_they_saw_of_the_camera(tmp_path: Path) -> None:
+    pictures, live = simulated(6)
+    folder = write_folder(tmp_path / "film", pictures)
+    replayed = MemorySystem(
+        {"cyan1/camera": CameraDriver, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField},
+        settings={"cyan1/camera": {"source": str(folder)}},
+    )
+    replayed.tick(8)
+    for channel in ("cyan1/ball_percept", "cyan1/line_points", "cyan1/obstacle_percepts"):
+        assert replayed.sent[channel] == live.sent[channel]
+
+
+@pytest.mark.parametrize(
+    ("source", "reason"),
+    [
+        ("/dev/video0", "is a device"),
+        (2, "is a device"),
+        ("rtsp://10.0.0.7/", "is a stream"),
+        ("film-that-is-gone.mp4", "is not there any more"),
+        (__file__, ""),
+    ],
+)
+def test_it_says_what_a_replay_cannot_read_again(source: str | int, reason: str) -> None:
+    said = CameraDriver.unrepeatable(CameraDriverConfig.model_validate({"source": source}))
+    assert reason in said
+    assert bool(said) == bool(reason)

@@ -1,0 +1,72 @@
+"""The tree of a robot's frames, and a component that gets its transforms from it."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fwk import Component, TransformError, Writes
+from fwk.testing import Bench, MemorySystem
+from lcmtypes.robot import transforms_t
+from lcmtypes.soccer import ball_percept_t, pose_t
+from procs.localization.frame_tree import FrameTree
+from procs.world_model.ball_spot import BallSpot
+
+
+class Senses(Component):
+    """Drives one metre a tick along x and sees the ball two metres ahead."""
+
+    stage = "sensor_process"
+    pose: Writes[pose_t]
+    ball_percept: Writes[ball_percept_t]
+
+    def loop(self) -> None:
+        self.pose.value.x_m += 1.0
+        self.pose.value.localized = True
+        self.ball_percept.value.visible, self.ball_percept.value.x_m = True, 2.0
+        self.pose.write()
+        self.ball_percept.write()
+
+
+def edges(bench: Bench) -> dict[tuple[str, str], Any]:
+    message: transforms_t = bench.port("transforms").sent[-1]
+    return {(each.parent, each.child): each for each in message.transforms}
+
+
+def test_the_tree_has_what_is_mounted_and_where_the_robot_stands_once_it_knows() -> None:
+    bench = Bench(FrameTree, mounted={"camera": {"z_m": 0.5, "yaw_rad": math.pi}})
+    bench.iterate()
+    assert list(edges(bench)) == [("base", "camera")]
+    camera = edges(bench)["base", "camera"]
+    assert (camera.fixed, camera.z_m, camera.qw, camera.qz) == (True, 0.5, pytest.approx(0.0), pytest.approx(1.0))
+    bench.port("pose").put(x_m=1.0, y_m=2.0, heading_rad=math.pi / 2, localized=True)
+    bench.iterate()
+    base = edges(bench)["world", "base"]
+    assert (base.fixed, base.x_m, base.y_m, base.qz) == (False, 1.0, 2.0, pytest.approx(math.sin(math.pi / 4)))
+
+
+def test_frames_that_do_not_fit_keep_it_from_starting() -> None:
+    with pytest.raises(TransformError, match=r"in a ring: a in b in a"):
+        Bench(FrameTree, mounted={"b": {"parent": "a"}, "a": {"parent": "b"}})
+
+
+def test_who_asks_for_transforms_looks_up_the_time_of_what_it_saw() -> None:
+    system = MemorySystem({"r/senses": Senses, "r/spot": BallSpot, "r/tree": FrameTree})
+    spot = system.runners["r/spot"].component
+    system.tick(5)
+    sent = [system.newest("r/ball_spot")]
+    assert [(each.visible, each.x_m, each.y_m) for each in sent] == [(True, 7.0, 0.0)]
+    tf = spot.tf  # type: ignore[attr-defined]
+    assert tf.frames == ["base", "camera", "kicker", "world"]
+    assert tf.lookup("world", "camera", 125_000).apply(np.zeros(3)) == pytest.approx((2.5, 0.0, 0.75))
+    assert not system.logged
+
+
+def test_without_a_pose_the_spot_says_why_it_is_unknown_once() -> None:
+    bench = Bench(BallSpot)
+    for _ in range(3):
+        bench.port("ball_percept").put(visible=True, x_m=1.0)
+        bench.iterate()
+    assert [each.visible for each in bench.port("ball_spot").sent] == [False] * 3
+    assert [line.text for line in bench.logged] == ["no spot of the ball: no frame 'world'; there is none"]

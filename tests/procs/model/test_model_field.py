@@ -1,0 +1,60 @@
+"""The field's geometry against the measures of the rule book's drawing."""
+
+import math
+
+import pytest
+from pydantic import ValidationError
+
+from procs.model.field import SIDES, Field, Point
+
+FIELD = Field()
+
+
+def test_lines_lie_inside_the_measures_and_are_symmetric() -> None:
+    ends = {point for segment in FIELD.segments() for point in segment}
+    assert max(point.x_m for point in ends) == pytest.approx(11.0 - 0.0625)
+    assert max(point.y_m for point in ends) == pytest.approx(7.0 - 0.0625)
+    assert {Point(-x, y) for x, y in ends} == ends == {Point(x, -y) for x, y in ends}
+
+
+def test_there_are_seventeen_straight_lines_five_arcs_and_nine_marks() -> None:
+    assert (len(FIELD.segments()), len(FIELD.arcs()), len(FIELD.marks())) == (17, 5, 9)
+    assert len(set(FIELD.marks())) == 9
+
+
+def test_corner_arcs_bend_into_the_field() -> None:
+    for arc in FIELD.arcs()[1:]:
+        middle_rad = (arc.start_rad + arc.end_rad) / 2
+        x_m = arc.centre.x_m + arc.radius_m * math.cos(middle_rad)
+        y_m = arc.centre.y_m + arc.radius_m * math.sin(middle_rad)
+        assert FIELD.in_field(x_m, y_m, -0.4)
+
+
+def test_the_front_line_of_the_penalty_area_ends_where_the_area_ends() -> None:
+    fronts = [s for s in FIELD.segments() if s.start.x_m == s.end.x_m == pytest.approx(11.0 - 2.25 + 0.0625)]
+    assert [(s.start.y_m, s.end.y_m) for s in fronts] == [pytest.approx((-3.45 + 0.0625, 3.45 - 0.0625))]
+
+
+@pytest.mark.parametrize("side", SIDES)
+def test_areas_and_goals(side: float) -> None:
+    assert FIELD.in_penalty_area(side * 8.8, 3.4, side)
+    assert not FIELD.in_penalty_area(side * 8.7, 0.0, side)
+    assert FIELD.in_penalty_area(side * 8.7, 0.0, side, 0.1)
+    assert not FIELD.in_penalty_area(side * 8.8, 0.0, -side)
+    assert FIELD.in_goal_area(side * 10.3, 1.9, side)
+    assert not FIELD.in_goal_area(side * 10.2, 0.0, side)
+    assert FIELD.in_goal(side * 11.12, 0.0, side, 0.11)
+    assert not FIELD.in_goal(side * 11.1, 0.0, side, 0.11)
+    assert not FIELD.in_goal(side * 11.3, 1.21, side)
+    assert FIELD.penalty_mark(side) in FIELD.marks()
+
+
+def test_posts_leave_the_goal_width_free() -> None:
+    left, right = FIELD.goal_posts(1.0)
+    assert right.y_m - left.y_m - FIELD.post_diameter_m == pytest.approx(2.4)
+    assert left.x_m == pytest.approx(10.9375)
+
+
+def test_unknown_measures_are_refused() -> None:
+    with pytest.raises(ValidationError, match="lenght_m"):
+        Field.model_validate({"lenght_m": 18.0})

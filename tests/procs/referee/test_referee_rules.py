@@ -1,0 +1,159 @@
+"""The referee's rules as scripts: what the linesmen report, and what is called."""
+
+import pytest
+
+from procs.model.field import Point
+from procs.referee.restarts import State, Team
+from procs.referee.rules import Referee, Rules, Sight
+from procs.simulation.physics.events import Event, Kind
+
+TICK_S = 0.05
+CENTRE = Point(0.0, 0.0)
+
+
+def wait(referee: Referee, duration_s: float, ball: Point = CENTRE) -> None:
+    for _ in range(round(duration_s / TICK_S)):
+        referee.step(TICK_S, Sight(ball))
+
+
+def in_play(**rules: float) -> Referee:
+    referee = Referee(Rules(**rules))
+    wait(referee, referee.rules.kick_off_stoppage_s + 0.1)
+    referee.step(TICK_S, Sight(Point(0.5, 0.0)))
+    assert (referee.state, referee.stopped) == (State.PLAY, False)
+    return referee
+
+
+def event(kind: Kind, robot: str, x_m: float, y_m: float, other: str = "", speed_m_s: float = 5.0) -> Event:
+    return Event(kind, robot, other, x_m, y_m, speed_m_s)
+
+
+def report(referee: Referee, *events: Event) -> None:
+    referee.step(TICK_S, Sight(Point(events[-1].x_m, events[-1].y_m), events))
+
+
+def test_a_match_begins_with_cyans_kick_off_and_the_ball_on_the_centre_mark() -> None:
+    referee = Referee(Rules())
+    assert (referee.state, referee.team, referee.stopped) == (State.KICK_OFF, Team.CYAN, True)
+    assert (referee.spot, referee.placements) == (CENTRE, 1)
+
+
+def test_a_set_piece_runs_after_the_stoppage_and_is_play_when_the_ball_has_moved() -> None:
+    referee = Referee(Rules(kick_off_stoppage_s=2.0))
+    wait(referee, 1.95)
+    assert referee.stopped
+    wait(referee, 0.1)
+    assert (referee.state, referee.stopped) == (State.KICK_OFF, False)
+    states = []
+    for x_m in (0.15, 0.25):
+        referee.step(TICK_S, Sight(Point(x_m, 0.0)))
+        states.append((referee.state, referee.team))
+    assert states == [(State.KICK_OFF, Team.CYAN), (State.PLAY, Team.NONE)]
+
+
+def test_a_set_piece_that_nobody_takes_is_play_after_its_time() -> None:
+    referee = Referee(Rules(kick_off_stoppage_s=1.0, set_piece_s=3.0))
+    states = []
+    for duration_s in (3.9, 0.2):
+        wait(referee, duration_s)
+        states.append(referee.state)
+    assert states == [State.KICK_OFF, State.PLAY]
+
+
+@pytest.mark.parametrize(
+    ("happened", "state", "team", "spot"),
+    [
+        (event(Kind.OUT_SIDE, "cyan2", 3.0, 7.2), State.THROW_IN, Team.MAGENTA, (3.0, 6.9)),
+        (event(Kind.OUT_SIDE, "magenta4", -3.0, -7.2), State.THROW_IN, Team.CYAN, (-3.0, -6.9)),
+        (event(Kind.OUT_SIDE, "magenta4", 10.9, 7.2), State.THROW_IN, Team.CYAN, (10.25, 6.9)),
+        (event(Kind.OUT_END, "cyan2", 11.2, 3.0), State.GOAL_KICK, Team.MAGENTA, (7.4, 3.5)),
+        (event(Kind.OUT_END, "magenta2", 11.2, -3.0), State.CORNER_KICK, Team.CYAN, (10.8, -6.8)),
+        (event(Kind.OUT_END, "magenta2", -11.2, -3.0), State.GOAL_KICK, Team.CYAN, (-7.4, -3.5)),
+        (event(Kind.OUT_END, "cyan1", -11.2, 3.0), State.CORNER_KICK, Team.MAGENTA, (-10.8, 6.8)),
+        (event(Kind.OUT_SIDE, "", 1.0, 7.2), State.DROP_BALL, Team.NONE, (0.0, 3.5)),
+        (event(Kind.OUT_END, "", 11.2, -6.0), State.DROP_BALL, Team.NONE, (7.4, -3.5)),
+        (event(Kind.COLLISION, "cyan3", 2.0, 1.0, "magenta3"), State.FREE_KICK, Team.MAGENTA, (2.0, 1.0)),
+        (event(Kind.COLLISION, "cyan3", -10.5, 6.9, "magenta3"), State.FREE_KICK, Team.MAGENTA, (-7.4, 6.5)),
+    ],
+)
+def test_calls(happened: Event, state: State, team: Team, spot: tuple[float, float]) -> None:
+    referee = in_play()
+    report(referee, happened)
+    assert (referee.state, referee.team, referee.stopped) == (state, team, True)
+    assert referee.spot == pytest.approx(spot)
+    assert referee.placements == 2
+
+
+@pytest.mark.parametrize(
+    "harmless",
+    [
+        event(Kind.COLLISION, "cyan3", 2.0, 1.0, "magenta3", speed_m_s=1.0),
+        event(Kind.COLLISION, "cyan3", 2.0, 1.0, "cyan4"),
+        event(Kind.TOUCH, "cyan3", 2.0, 1.0),
+        event(Kind.KICK, "cyan3", 2.0, 1.0),
+    ],
+)
+def test_play_goes_on_after(harmless: Event) -> None:
+    referee = in_play()
+    report(referee, harmless)
+    assert referee.state is State.PLAY
+
+
+@pytest.mark.parametrize(
+    ("touched_at_m", "by", "goal_at_m", "score", "state", "team"),
+    [
+        (6.0, "cyan2", 11.2, (1, 0), State.KICK_OFF, Team.MAGENTA),
+        (-6.0, "magenta2", -11.2, (0, 1), State.KICK_OFF, Team.CYAN),
+        (-0.5, "cyan2", 11.2, (0, 0), State.GOAL_KICK, Team.MAGENTA),  # from the own half
+        (-9.0, "cyan2", -11.2, (0, 1), State.KICK_OFF, Team.CYAN),  # own goal
+        (2.0, "cyan2", -11.2, (0, 1), State.KICK_OFF, Team.CYAN),  # own goal from afar
+    ],
+)
+def test_goals(
+    touched_at_m: float, by: str, goal_at_m: float, score: tuple[int, int], state: State, team: Team
+) -> None:
+    referee = in_play()
+    report(referee, event(Kind.TOUCH, by, touched_at_m, 0.0))
+    report(referee, event(Kind.GOAL, by, goal_at_m, 0.2))
+    assert (referee.score[Team.CYAN], referee.score[Team.MAGENTA]) == score
+    assert (referee.state, referee.team) == (state, team)
+
+
+def test_a_goal_counts_once_and_not_while_the_game_is_stopped() -> None:
+    referee = in_play()
+    report(referee, event(Kind.TOUCH, "cyan2", 6.0, 0.0), event(Kind.GOAL, "cyan2", 11.2, 0.0))
+    report(referee, event(Kind.GOAL, "cyan2", 11.3, 0.0))
+    assert referee.score[Team.CYAN] == 1
+
+
+def test_a_ball_that_does_not_get_away_is_dropped_at_the_nearest_mark() -> None:
+    referee = in_play(deadlock_s=5.0)
+    wait(referee, 1.0, Point(6.0, -3.0))
+    wait(referee, 3.9, Point(6.2, -3.0))
+    assert referee.state is State.PLAY
+    wait(referee, 0.5, Point(6.2, -3.0))
+    assert (referee.state, referee.team) == (State.DROP_BALL, Team.NONE)
+    assert referee.spot == pytest.approx((7.4, -3.5))
+
+
+def test_a_ball_that_is_pushed_away_during_a_stoppage_is_put_back() -> None:
+    referee = in_play()
+    report(referee, event(Kind.OUT_SIDE, "cyan2", 3.0, 7.2))
+    wait(referee, 0.6, Point(3.0, 6.9))
+    assert referee.placements == 2
+    wait(referee, 0.1, Point(3.0, 5.9))
+    assert referee.placements == 3
+    assert referee.spot == pytest.approx((3.0, 6.9))
+
+
+def test_after_half_time_magenta_kicks_off_and_after_the_second_half_all_is_over() -> None:
+    referee = in_play(half_s=20.0, half_time_s=2.0)
+    wait(referee, 15.0)
+    assert (referee.state, referee.half) == (State.HALF_TIME, 1)
+    wait(referee, 2.0)
+    assert (referee.state, referee.team, referee.half) == (State.KICK_OFF, Team.MAGENTA, 2)
+    assert referee.placements >= 2
+    wait(referee, 20.0)
+    assert referee.over
+    report(referee, event(Kind.GOAL, "cyan2", 11.2, 0.0))
+    assert (referee.state, referee.score[Team.CYAN]) == (State.FROZEN, 0)

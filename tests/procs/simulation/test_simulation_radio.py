@@ -1,0 +1,121 @@
+"""The radio: who gets what, when, how much is lost, and the same again with the same seed."""
+
+import numpy as np
+import pytest
+
+from fwk.testing import Bench
+from lcmtypes.soccer import team_message_t
+from procs.simulation.radio import Radio
+
+TEAM = ("cyan1", "cyan2", "cyan3", "cyan4", "cyan5")
+
+
+def radio(seed: int = 1, **settings: float) -> Bench:
+    return Bench(
+        Radio,
+        "team_cyan/radio",
+        seed,
+        namespaces=TEAM,
+        **{"loss": 0.0, "delay_s": 0.0, "delay_jitter_s": 0.0, **settings},
+    )
+
+
+def say(bench: Bench, robot: str) -> None:
+    """The robot says which tick it is."""
+    message = team_message_t()
+    message.robot = robot
+    message.header.tick = bench.tick + 1
+    message.header.time_us = bench.time_us + 50_000
+    bench.port("messages", robot).put(message)
+
+
+def test_every_mate_hears_it_and_the_sender_does_not() -> None:
+    bench = radio()
+    say(bench, "cyan2")
+    say(bench, "cyan4")
+    bench.iterate()
+    heard = {robot: [m.robot for sent in bench.port("inboxes", robot).sent for m in sent.messages] for robot in TEAM}
+    assert heard == {
+        "cyan1": ["cyan2", "cyan4"],
+        "cyan2": ["cyan4"],
+        "cyan3": ["cyan2", "cyan4"],
+        "cyan4": ["cyan2"],
+        "cyan5": ["cyan2", "cyan4"],
+    }
+
+
+def test_silence_writes_nothing() -> None:
+    bench = radio()
+    say(bench, "cyan1")
+    bench.iterate(5)
+    assert [len(bench.port("inboxes", robot).sent) for robot in TEAM] == [0, 1, 1, 1, 1]
+
+
+def test_a_message_arrives_as_it_was_sent() -> None:
+    bench = radio(delay_s=0.1)
+    bench.iterate(3)
+    say(bench, "cyan1")
+    bench.iterate(5)
+    (inbox,) = bench.port("inboxes", "cyan5").sent
+    assert (inbox.n, inbox.messages[0].header.tick, inbox.messages[0].header.time_us) == (1, 4, 200_000)
+    assert inbox.header.tick == 6
+
+
+@pytest.mark.parametrize("loss", [0.0, 0.03, 0.3, 1.0])
+def test_that_share_is_lost_on_each_link_on_its_own(loss: float) -> None:
+    bench = radio(loss=loss)
+    ticks = 400
+    for _ in range(ticks):
+        for robot in TEAM:
+            say(bench, robot)
+        bench.iterate()
+    heard = np.zeros((5, 5))
+    for listener, robot in enumerate(TEAM):
+        for sent in bench.port("inboxes", robot).sent:
+            for message in sent.messages:
+                heard[TEAM.index(message.robot), listener] += 1
+    links = heard[~np.eye(5, dtype=bool)] / ticks
+    deviation = np.sqrt(loss * (1 - loss) / ticks)
+    assert np.abs(links - (1 - loss)).max() <= 4 * deviation
+    assert abs(links.mean() - (1 - loss)) <= 4 * deviation / np.sqrt(20)
+    assert len(set(links.tolist())) > 1 or loss in (0.0, 1.0), "links are independent"
+
+
+def test_delay_lies_between_the_least_and_the_jitter_on_top() -> None:
+    bench = radio(delay_s=0.08, delay_jitter_s=0.2)
+    for _ in range(300):
+        say(bench, "cyan1")
+        bench.iterate()
+    delays_s = [
+        (sent.header.time_us - message.header.time_us) / 1e6
+        for sent in bench.port("inboxes", "cyan2").sent
+        for message in sent.messages
+    ]
+    assert min(delays_s) == pytest.approx(0.1), "the first tick after 0.08 s"
+    assert max(delays_s) == pytest.approx(0.3)
+    assert np.mean(delays_s) == pytest.approx(0.08 + 0.1 + 0.025, abs=0.02)
+
+
+def test_same_seed_same_radio_other_seed_another() -> None:
+    def run(seed: int) -> list[bytes]:
+        bench = radio(seed, loss=0.3, delay_jitter_s=0.2)
+        for _ in range(50):
+            for robot in TEAM:
+                say(bench, robot)
+            bench.iterate()
+        return [sent.encode() for robot in TEAM for sent in bench.port("inboxes", robot).sent]
+
+    assert run(1) == run(1)
+    assert run(1) != run(2)
+
+
+def test_a_change_of_one_setting_does_not_reshuffle_the_luck_of_the_others() -> None:
+    def lost(delay_s: float) -> list[int]:
+        bench = radio(loss=0.3, delay_s=delay_s)
+        for _ in range(40):
+            say(bench, "cyan1")
+            bench.iterate()
+        bench.iterate(10)
+        return [m.header.tick for sent in bench.port("inboxes", "cyan2").sent for m in sent.messages]
+
+    assert lost(0.0) == lost(0.2)

@@ -1,0 +1,78 @@
+"""The score in words."""
+
+from typing import Any
+
+import pytest
+
+from lcmtypes.soccer import game_event_t, game_state_t
+from procs.view.scoreboard import STATES, headline, play_time, summary
+
+
+def state(**fields: Any) -> game_state_t:
+    made = game_state_t()
+    made.half, made.state = 1, game_state_t.PLAY
+    for name, value in fields.items():
+        setattr(made, name, value)
+    return made
+
+
+def test_the_headline_of_a_match() -> None:
+    now = state(score_cyan=2, score_magenta=1, time_in_half_s=192.9)
+    newest = {"world/game_state": now}.get
+    assert headline(newest) == "CYAN 2 : 1 MAGENTA   half 1  03:12   play"
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"state": game_state_t.THROW_IN, "state_team": game_state_t.TEAM_MAGENTA}, "throw-in magenta"),
+        ({"state": game_state_t.KICK_OFF, "state_team": 1, "stopped": True}, "kick-off cyan, taking positions"),
+        ({"state": game_state_t.DROP_BALL}, "dropped ball"),
+        ({"state": game_state_t.HALF_TIME, "stopped": True}, "half time"),
+        ({"state": 77}, "state 77"),
+    ],
+)
+def test_what_is_going_on(fields: dict[str, Any], words: str) -> None:
+    assert headline(lambda _: state(**fields)).endswith(f"   {words}")
+
+
+def test_every_state_has_a_name() -> None:
+    states = {value for name, value in vars(game_state_t).items() if name.isupper() and not name.startswith("TEAM")}
+    assert set(STATES) == states
+
+
+def test_without_a_referee_there_is_nothing_to_say() -> None:
+    assert headline(lambda _: None) == ""
+    assert summary(lambda _: None) == []
+
+
+@pytest.mark.parametrize(
+    ("cyan", "magenta", "words"), [(1, 0, "cyan leads"), (0, 3, "magenta leads"), (2, 2, "a draw")]
+)
+def test_the_summary_names_who_leads(cyan: int, magenta: int, words: str) -> None:
+    now = state(score_cyan=cyan, score_magenta=magenta, half=2, time_in_half_s=900.0)
+    assert summary(lambda _: now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
+
+
+def test_after_the_final_whistle_somebody_has_won() -> None:
+    now = state(score_cyan=2, score_magenta=1, half=2, state=game_state_t.FROZEN, time_in_half_s=900.0)
+    assert summary(lambda _: now)[1] == "cyan wins after 15:00 of half 2"
+
+
+def test_long_halves_keep_counting_minutes() -> None:
+    assert play_time(6000.0) == "100:00"
+
+
+def test_the_summary_tells_the_goals_and_counts_the_whistles() -> None:
+    state = game_state_t()
+    state.half, state.score_magenta = 1, 1
+    for goal, kind, team, time_s in [
+        (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 0.0),
+        (True, game_state_t.PLAY, game_state_t.TEAM_MAGENTA, 19.4),
+        (False, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, 19.4),
+        (False, game_state_t.CORNER_KICK, game_state_t.TEAM_CYAN, 40.0),
+    ]:
+        event = game_event_t()
+        event.goal, event.state, event.team, event.half, event.time_in_half_s = goal, kind, team, 1, time_s
+        state.history.append(event)
+    assert summary(lambda _: state)[2:] == ["goals: 00:19 magenta", "whistles: kick-off 2, corner kick 1"]

@@ -1,0 +1,105 @@
+"""The picture from above: things are where they should be and have the right colours."""
+
+import numpy as np
+import pytest
+
+from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
+from procs.view.canvas import Picture
+from procs.view.ground import GRASS, WHITE
+from procs.view.palette import TEAM_COLOURS
+from procs.view.top_view import BALL, BAR, TopView, picture, picture_with_beliefs
+
+VIEW = TopView(960)
+PX_PER_M = 960 / 24
+
+
+def truth(*robots: tuple[str, float, float, float]) -> ground_truth_t:
+    made = ground_truth_t()
+    made.ball_x_m, made.ball_y_m = 3.0, 2.0
+    for name, x_m, y_m, heading_rad in robots:
+        robot = true_robot_t()
+        robot.name, robot.x_m, robot.y_m, robot.heading_rad = name, x_m, y_m, heading_rad
+        made.robots.append(robot)
+    return made
+
+
+def colour_at(drawn: Picture, x_m: float, y_m: float) -> tuple[int, ...]:
+    bar_px = VIEW.height_px - 16 * PX_PER_M
+    row, column = round(bar_px + (8.0 - y_m) * PX_PER_M), round((12.0 + x_m) * PX_PER_M)
+    return tuple(drawn[row, column].tolist())
+
+
+def test_the_size_follows_from_the_width_and_is_even() -> None:
+    assert VIEW.draw(truth()).shape == (VIEW.height_px, 960, 3)
+    for width_px in (333, 640, 1281):
+        assert all(size % 2 == 0 for size in TopView(width_px).draw(truth()).shape[:2])
+
+
+def test_lines_are_white_and_grass_is_green() -> None:
+    drawn = VIEW.draw(truth())
+    for place in ((0.0, 3.0), (0.0, 6.93), (10.93, 5.0), (8.81, 2.0), (1.37, 1.37), (-7.4, 0.0)):
+        assert colour_at(drawn, *place) == pytest.approx(WHITE, abs=12)
+    assert colour_at(drawn, 5.0, 5.0) in GRASS
+
+
+def test_robots_wear_their_teams_colours_and_the_ball_is_in_its_place() -> None:
+    drawn = VIEW.draw(truth(("cyan1", -5.0, 1.0, 0.0), ("magenta2", 4.0, -3.0, 0.0)))
+    assert colour_at(drawn, -5.0, 0.88) == pytest.approx(TEAM_COLOURS["cyan"], abs=12)
+    assert colour_at(drawn, 4.0, -3.12) == pytest.approx(TEAM_COLOURS["magenta"], abs=12)
+    assert colour_at(drawn, 3.0, 2.0) == pytest.approx(BALL, abs=12)
+
+
+def test_the_heading_shows() -> None:
+    left, up = VIEW.draw(truth(("cyan1", 0.0, 0.0, 0.0))), VIEW.draw(truth(("cyan1", 0.0, 0.0, np.pi / 2)))
+    assert sum(colour_at(left, 0.21, 0.0)) > sum(colour_at(up, 0.21, 0.0)) + 200
+    assert sum(colour_at(up, 0.0, 0.21)) > sum(colour_at(left, 0.0, 0.21)) + 200
+
+
+def test_the_bar_shows_the_score() -> None:
+    def bar(**fields: int) -> Picture:
+        state = game_state_t()
+        for name, value in fields.items():
+            setattr(state, name, value)
+        return VIEW.draw(truth(), state)[:40]
+
+    assert (VIEW.draw(truth())[:40] == BAR).all()
+    assert (bar() != bar(score_cyan=1)).any()
+    assert (bar(score_cyan=1) == bar(score_cyan=1)).all()
+
+
+def test_beliefs_are_drawn_where_the_robot_believes_the_ball_to_be() -> None:
+    belief = world_model_t()
+    belief.ball.known, belief.ball.x_m, belief.ball.y_m = True, -6.0, -4.0
+    belief.ball.covariance = [[0.25, 0, 0, 0], [0, 0.01, 0, 0], [0] * 4, [0] * 4]
+    without, drawn = VIEW.draw(truth()), VIEW.draw(truth(), beliefs={"magenta1": belief})
+    rows, columns = np.nonzero((without != drawn).any(axis=2))
+    assert np.ptp(columns) / PX_PER_M == pytest.approx(2.0, abs=0.1)
+    assert np.ptp(rows) / PX_PER_M == pytest.approx(0.4, abs=0.1)
+    assert columns.mean() / PX_PER_M - 12.0 == pytest.approx(-6.0, abs=0.05)
+
+
+def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
+    belief = world_model_t()
+    belief.localized, belief.ball.known = True, True
+    belief.x_m, belief.ball.x_m = 1e9, float("nan")
+    belief.ball.covariance = [[float("inf")] * 4] * 4
+    wild = truth(("cyan1", float("nan"), 0.0, 0.0), ("goalie", 1e12, 0.0, 0.0))
+    wild.ball_x_m = float("inf")
+    assert VIEW.draw(wild, beliefs={"cyan1": belief}).shape == (VIEW.height_px, 960, 3)
+
+
+def test_a_picture_of_the_newest_messages() -> None:
+    belief = world_model_t()
+    belief.localized, belief.x_m, belief.y_m = True, 5.0, 5.0
+    messages = {"world/ground_truth": truth(("cyan1", 0.0, 0.0, 0.0)), "cyan1/world_model": belief}
+    plain, believed = picture(messages.get), picture_with_beliefs(messages.get)
+    assert plain is not None
+    assert believed is not None
+    _, columns = np.nonzero((plain != believed).any(axis=2))
+    assert columns.mean() / plain.shape[1] == pytest.approx((12.0 + 5.0) / 24.0, abs=0.002)
+    assert np.ptp(columns) < 40
+
+
+def test_before_the_world_was_seen_there_is_no_picture() -> None:
+    assert picture(lambda _: None) is None
+    assert picture_with_beliefs(lambda _: None) is None

@@ -1,0 +1,182 @@
+"""The ball detector against rendered truth: errors by distance, recall, false balls, hidden balls."""
+
+import math
+from functools import cache
+
+import numpy as np
+import pytest
+
+from procs.model.algebra import Floats
+from procs.model.field import Field
+from procs.simulation.rendering.renderer import Pose, Renderer, Scene
+from procs.simulation.rendering.sensor_noise import SensorNoise
+from procs.simulation.rendering.shapes import Bodies
+from procs.vision.ball_finder import BallFinder
+from procs.vision.colours import BLACK, CYAN, GREEN, MAGENTA, ORANGE, WHITE, Bgr, ColourRange, Picture
+from procs.vision.mirror import Mirror
+from procs.vision.omni_ball import OmniBallConfig
+
+DEFAULTS = OmniBallConfig()
+MIRROR = DEFAULTS.mirror.mirror()
+FINDER = BallFinder(MIRROR, ColourRange(DEFAULTS.ball_low, DEFAULTS.ball_high), deviation_px=DEFAULTS.deviation_px)
+SHAKE_PX = 0.5
+
+
+@cache
+def renderer() -> Renderer:
+    return Renderer(MIRROR, Field(), Bodies())
+
+
+@cache
+def noise() -> SensorNoise:
+    return SensorNoise(MIRROR.size_px, 5.0, 1.0, 0.0, seed=3)
+
+
+def picture(scene: Scene, rng: np.random.Generator, shake_px: float = 0.0) -> Picture:
+    right, down = shake_px * rng.standard_normal(2)
+    frame = renderer().render(scene, (float(right), float(down)))
+    return noise().apply(frame, rng)
+
+
+def sightings(distance_m: float, shake_px: float, count: int = 40) -> tuple[Floats, Floats, int]:
+    """Errors (n, 2) along and across the ray, squared errors in units of the covariance, count of missed balls."""
+    rng = np.random.default_rng(round(distance_m * 100))
+    errors, normed, missed = [], [], 0
+    for _ in range(count):
+        own = Pose(rng.uniform(-3.0, 3.0), rng.uniform(-3.0, 3.0), rng.uniform(-math.pi, math.pi))
+        angle = rng.uniform(-math.pi, math.pi)
+        ray = np.array([math.cos(angle), math.sin(angle)])
+        world = own.heading_rad + angle
+        ball_m = (own.x_m + distance_m * math.cos(world), own.y_m + distance_m * math.sin(world), 0.11)
+        ball = FINDER.find(picture(Scene(own, [], ball_m), rng, shake_px))
+        if ball is None:
+            missed += 1
+            continue
+        error = np.array([ball.x_m, ball.y_m]) - distance_m * ray
+        errors.append((error @ ray, error @ (-ray[1], ray[0])))
+        normed.append(error @ np.linalg.solve(ball.covariance_m2, error))
+    return np.array(errors), np.array(normed), missed
+
+
+@pytest.mark.parametrize(
+    ("distance_m", "most_m"), [(0.5, 0.003), (1.0, 0.003), (2.0, 0.003), (3.0, 0.006), (4.0, 0.01), (6.0, 0.06)]
+)
+def test_still_ball_is_found_to_a_small_part_of_a_pixel(distance_m: float, most_m: float) -> None:
+    errors, _, missed = sightings(distance_m, shake_px=0.0)
+    assert missed == 0
+    assert math.sqrt((errors**2).sum(axis=1).mean()) < most_m
+
+
+@pytest.mark.parametrize("distance_m", [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+def test_covariance_says_how_large_the_errors_are_when_the_mirror_shakes(distance_m: float) -> None:
+    errors, normed, missed = sightings(distance_m, SHAKE_PX)
+    assert missed <= 1
+    assert abs(errors.mean(axis=0)[0]) < errors[:, 0].std()
+    assert 1.0 < normed.mean() < 3.5  # two degrees of freedom: 2 if it were exact
+
+
+def test_error_grows_with_distance_no_faster_than_cambada_assumes() -> None:
+    """CAMBADA's filter takes 0.01 d² - 0.01 d + 0.039 m for the standard deviation of a single sighting."""
+    deviations = [math.sqrt((sightings(d, SHAKE_PX)[0] ** 2).sum(axis=1).mean()) for d in (1.0, 2.0, 4.0, 6.0)]
+    assert deviations == sorted(deviations)
+    for distance_m, deviation_m in zip((1.0, 2.0, 4.0, 6.0), deviations, strict=True):
+        assert deviation_m < 0.01 * distance_m**2 - 0.01 * distance_m + 0.039
+
+
+def crowd(rng: np.random.Generator, own: Pose) -> list[tuple[float, float, Bgr]]:
+    robots: list[tuple[float, float, Bgr]] = []
+    while len(robots) < 9:
+        x_m, y_m = float(rng.uniform(-11.0, 11.0)), float(rng.uniform(-7.0, 7.0))
+        if all(math.hypot(x_m - x, y_m - y) > 0.52 for x, y in [(own.x_m, own.y_m), *((r[0], r[1]) for r in robots)]):
+            robots.append((x_m, y_m, MAGENTA if len(robots) % 2 else CYAN))
+    return robots
+
+
+def test_no_ball_is_seen_among_lines_robots_goals_and_surroundings() -> None:
+    rng = np.random.default_rng(5)
+    for _ in range(150):
+        own = Pose(rng.uniform(-11.0, 11.0), rng.uniform(-7.0, 7.0), rng.uniform(-math.pi, math.pi))
+        assert FINDER.find(picture(Scene(own, crowd(rng, own), None), rng)) is None
+
+
+def test_in_a_crowd_nearly_every_ball_is_found_and_the_found_one_is_the_ball() -> None:
+    rng = np.random.default_rng(6)
+    found = balls = 0
+    for _ in range(150):
+        own = Pose(rng.uniform(-11.0, 11.0), rng.uniform(-7.0, 7.0), rng.uniform(-math.pi, math.pi))
+        robots, distance_m, angle = crowd(rng, own), rng.uniform(0.4, 5.0), rng.uniform(-math.pi, math.pi)
+        x_m, y_m = own.x_m + distance_m * math.cos(angle), own.y_m + distance_m * math.sin(angle)
+        if any(math.hypot(x_m - robot[0], y_m - robot[1]) < 0.36 for robot in robots):
+            continue
+        balls += 1
+        ball = FINDER.find(picture(Scene(own, robots, (x_m, y_m, 0.11)), rng))
+        if ball is not None:
+            found += 1
+            seen = angle - own.heading_rad
+            error_m = math.hypot(ball.x_m - distance_m * math.cos(seen), ball.y_m - distance_m * math.sin(seen))
+            assert error_m < 0.05 + 0.1 * distance_m  # half hidden balls are off by a part of their size
+    assert found / balls >= 0.9
+
+
+def test_a_ball_behind_a_robot_is_not_seen() -> None:
+    own = Pose(-3.0, 2.0, 0.0)
+    assert FINDER.find(renderer().render(Scene(own, [(-2.0, 2.0, CYAN)], (-1.2, 2.0, 0.11)))) is None
+
+
+def test_a_half_hidden_ball_is_less_certain() -> None:
+    own, ball_m = Pose(-3.0, 2.0, 0.0), (0.0, 2.0, 0.11)
+    whole = FINDER.find(renderer().render(Scene(own, [], ball_m)))
+    half = FINDER.find(renderer().render(Scene(own, [(-1.5, 2.26, CYAN)], ball_m)))
+    assert whole is not None
+    assert half is not None
+    assert half.confidence < 0.8 < whole.confidence
+    assert half.covariance_m2[0, 0] > 2 * whole.covariance_m2[0, 0]
+
+
+def test_a_ball_in_the_air_is_no_confident_ball_on_the_ground() -> None:
+    """It is larger than a ball lying that far away would be."""
+    ball = FINDER.find(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.0, 0.45))))
+    assert ball is None or ball.confidence < 0.6
+
+
+@pytest.mark.parametrize("brightness", [0.6, 1.0, 1.3])
+def test_brightness_does_not_matter(brightness: float) -> None:
+    rng = np.random.default_rng(8)
+    frame = renderer().render(Scene(Pose(-3.0, 2.0, 0.4), [(1.0, 2.0, CYAN)], (-1.0, 1.0, 0.11)))
+    ball = FINDER.find(SensorNoise(MIRROR.size_px, 5.0, brightness, 0.0, seed=3).apply(frame, rng))
+    assert ball is not None
+    assert math.hypot(ball.x_m, ball.y_m) == pytest.approx(math.hypot(2.0, 1.0), abs=0.01)
+
+
+@pytest.mark.parametrize("colour", [BLACK, WHITE, ORANGE, CYAN, MAGENTA])
+def test_a_picture_of_one_colour_shows_no_ball(colour: Bgr) -> None:
+    assert FINDER.find(np.full((400, 400, 3), colour, np.uint8)) is None
+
+
+def test_pure_noise_shows_no_ball() -> None:
+    rng = np.random.default_rng(9)
+    for _ in range(20):
+        assert FINDER.find(rng.integers(0, 256, (400, 400, 3), dtype=np.uint8)) is None
+        grey = rng.integers(0, 256, (400, 400, 1), dtype=np.uint8)
+        assert FINDER.find(np.repeat(grey, 3, axis=2)) is None
+
+
+def test_a_stripe_with_a_balls_area_is_no_ball() -> None:
+    _, row, radius_px = MIRROR.sphere((2.0, 0.0, 0.11), 0.11)
+    top, centre = round(row), round(MIRROR.centre_px)
+    half_px = round(math.pi * radius_px**2 / 8)
+    frame = np.full((400, 400, 3), GREEN, np.uint8)
+    frame[top - 2 : top + 2, centre - half_px : centre + half_px] = ORANGE
+    assert FINDER.find(frame) is None
+    frame[:] = GREEN
+    side_px = round(math.sqrt(math.pi) * radius_px / 2)
+    frame[top - side_px : top + side_px, centre - side_px : centre + side_px] = ORANGE
+    assert FINDER.find(frame) is not None  # so it was the shape
+
+
+def test_an_odd_picture_size_works_as_well() -> None:
+    mirror = Mirror(size_px=331)
+    frame = Renderer(mirror, Field(), Bodies()).render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.5, 0.11)))
+    ball = BallFinder(mirror, FINDER.colour).find(frame)
+    assert ball is not None
+    assert (ball.x_m, ball.y_m) == pytest.approx((2.0, 0.5), abs=0.01)

@@ -1,0 +1,166 @@
+"""Camera and detectors as components: what they publish, also without a frame, and the same bytes every time."""
+
+import hashlib
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fwk.testing import Bench
+from lcmtypes.robot import frame_t
+from lcmtypes.soccer import ground_truth_t
+from procs.simulation.camera import Camera
+from procs.vision.omni_ball import OmniBall
+from procs.vision.omni_field import OmniField
+from tests.procs.vision.picture_parts import frame_of, robot, system
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_from_truth_to_percepts() -> None:
+    run = system(shake_px=0.0)
+    for tick in range(1, 6):
+        run.tick()
+        ball, lines = run.newest("cyan1/ball_percept"), run.newest("cyan1/line_points")
+        (obstacle,) = run.newest("cyan1/obstacle_percepts").obstacles
+        dx_m, dy_m = 1.0 + 0.05 * tick, 1.0  # of the ball of this very tick
+        assert ball.visible
+        assert ball.x_m == pytest.approx(math.cos(0.5) * dx_m + math.sin(0.5) * dy_m, abs=0.01)
+        assert ball.y_m == pytest.approx(math.cos(0.5) * dy_m - math.sin(0.5) * dx_m, abs=0.01)
+        assert ball.confidence > 0.9
+        assert (obstacle.x_m, obstacle.y_m) == pytest.approx((2 * math.cos(0.5), -2 * math.sin(0.5)), abs=0.06)
+        assert obstacle.radius_m == 0.25
+        assert obstacle.covariance_m2[0][0] > 0.0
+        assert 40 <= lines.n <= 150
+        assert ball.header.tick == lines.header.tick == tick
+
+
+def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
+    run = system(every_ticks=2)
+    run.tick(6)
+    assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
+
+
+def test_a_lost_frame_gives_empty_percepts() -> None:
+    ball, field = Bench(OmniBall), Bench(OmniField)
+    for bench in (ball, field):
+        bench.port("image").put(frame=7, width_px=400, height_px=400, channels=3)  # announced, not in the ring
+        bench.iterate()
+    assert [percept.visible for percept in ball.port("ball_percept").sent] == [False]
+    assert [points.n for points in field.port("line_points").sent] == [0]
+    assert [percepts.n for percepts in field.port("obstacle_percepts").sent] == [0]
+
+
+def test_percepts_of_an_earlier_frame_are_not_kept() -> None:
+    frame = frame_of(system())
+    ball, field = Bench(OmniBall), Bench(OmniField)
+    for bench in (ball, field):
+        bench.show("image", frame)
+        bench.iterate()
+        bench.show("image", np.zeros((400, 400, 3), np.uint8))
+        bench.iterate()
+    first, second = ball.port("ball_percept").sent
+    assert first.visible
+    assert (second.visible, second.x_m, second.y_m, second.confidence) == (False, 0.0, 0.0, 0.0)
+    assert [points.n > 0 for points in field.port("line_points").sent] == [True, False]
+    assert [percepts.n > 0 for percepts in field.port("obstacle_percepts").sent] == [True, False]
+
+
+def test_without_a_new_frame_nothing_is_said() -> None:
+    bench = Bench(OmniBall)
+    bench.iterate(3)
+    assert bench.port("ball_percept").sent == []
+
+
+def test_a_frame_of_another_size_is_refused_with_both_sizes() -> None:
+    for component in (OmniBall, OmniField):
+        bench = Bench(component, name="cyan1/detector")
+        bench.show("image", np.zeros((480, 640, 3), np.uint8))
+        with pytest.raises(ValueError, match=r"cyan1/detector: the frame is 480 x 640 x 3, .*400 x 400 x 3"):
+            bench.iterate()
+
+
+def test_a_camera_without_its_robot_says_so_once_and_goes_on() -> None:
+    bench = Bench(Camera, name="cyan4/camera")
+    truth = ground_truth_t()
+    truth.robots = [robot("cyan1", 0.0, 0.0, 0.0)]
+    for _ in range(3):
+        bench.port("ground_truth").put(truth)
+        bench.iterate()
+    assert bench.port("image").sent == []
+    assert [line.text for line in bench.logged] == ["no pictures: robot 'cyan4' is not on the field; there is cyan1"]
+    truth.robots.append(robot("cyan4", 1.0, 0.0, 0.0))
+    bench.port("ground_truth").put(truth)
+    bench.iterate()
+    assert [frame.frame for frame in bench.port("image").sent] == [1]
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e300, 1e4])
+def test_impossible_truth_is_not_drawn(value: float) -> None:
+    bench = Bench(Camera, name="cyan1/camera")
+    truth = ground_truth_t()
+    truth.robots = [robot("cyan1", 0.0, 0.0, 0.0), robot("cyan2", value, 0.0, 0.0)]
+    truth.ball_x_m = value
+    bench.port("ground_truth").put(truth)
+    bench.iterate()
+    assert len(bench.port("image").sent) == 1
+    truth.robots[0].heading_rad = value
+    bench.port("ground_truth").put(truth)
+    bench.iterate()
+    assert len(bench.port("image").sent) == 1  # as if the robot were not there
+
+
+def test_settings_changed_between_iterations_are_used() -> None:
+    bench = Bench(OmniBall)
+    frame = frame_of(system())
+    bench.show("image", frame)
+    bench.iterate()
+    bench.runner.configure({"ball_low": (90, 120, 80), "ball_high": (100, 255, 255)})
+    bench.show("image", frame)
+    bench.iterate()
+    assert [percept.visible for percept in bench.port("ball_percept").sent] == [True, False]
+
+
+def test_driving_shakes_the_picture_more_than_standing() -> None:
+    def spread_px(vx_m_s: float) -> float:
+        bench = Bench(Camera, name="cyan1/camera", shake_px=0.2, shake_px_per_m_s=0.3)
+        own = robot("cyan1", -3.0, 2.0, 0.0)
+        own.vx_m_s = vx_m_s
+        return float(np.std([bench.component._shake_px(own) for _ in range(500)]))
+
+    assert spread_px(0.0) == pytest.approx(0.2, rel=0.1)
+    assert spread_px(2.0) == pytest.approx(0.8, rel=0.1)
+
+
+def digest(seed: int) -> str:
+    """Of every frame and every message of a few ticks."""
+    run, seen = system(seed), hashlib.sha256()
+    for _ in range(5):
+        run.tick()
+        seen.update(frame_of(run).tobytes())
+    for channel in sorted(run.sent):
+        for data in run.sent[channel]:
+            seen.update(data)
+    return seen.hexdigest()
+
+
+def test_fresh_processes_give_the_same_bytes() -> None:
+    """Whatever the order of sets, and whichever kernels the linear algebra library would take."""
+    code = "import runpy, sys; print(runpy.run_path(sys.argv[1])['digest'](1))"
+    digests = [
+        subprocess.run(
+            [sys.executable, "-c", code, __file__],
+            cwd=ROOT,
+            env={**variables, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=True,
+            timeout=60,
+        ).stdout.strip()
+        for variables in ({"PYTHONHASHSEED": "1"}, {"PYTHONHASHSEED": "2", "OPENBLAS_CORETYPE": "Nehalem"})
+    ]
+    assert digests == [digest(1)] * 2
+    assert digest(2) != digest(1)

@@ -1,0 +1,232 @@
+"""The ball tracker on made-up sightings: at rest, rolling, kicked, seen by many; honesty; rules of precedence."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from procs.model.frames import rotation
+from procs.world_model.ball_tracker import BallTracker, Sighting
+
+Floats = NDArray[np.float64]
+PERIOD_S = 0.05
+ROLLING_M_S2 = 0.4
+
+
+class Eye:
+    """A robot that stands somewhere and sees the ball as an omnidirectional camera does."""
+
+    def __init__(self, name: str, place_m: tuple[float, float], seed: int, recognised: float = 0.95) -> None:
+        self.name = name
+        self.place_m = np.array(place_m)
+        self.rng = np.random.default_rng(seed)
+        self.recognised = recognised
+        self.last: Floats | None = None
+
+    def look(self, ball_m: Floats, own: bool = False, age_s: float = 0.0) -> Sighting | None:
+        """A noisy sighting with its true covariance; sometimes none."""
+        ray = ball_m - self.place_m
+        distance_m = float(np.hypot(*ray))
+        turn = rotation(math.atan2(ray[1], ray[0]))
+        deviations_m = np.array((0.01 + 0.005 * distance_m**2, 0.01 + 0.003 * distance_m))
+        noise_m = deviations_m * self.rng.standard_normal(2)
+        seen = self.rng.random() < self.recognised
+        self.last = ball_m + turn @ noise_m
+        covariance_m2 = turn @ np.diag(deviations_m**2) @ turn.T
+        return Sighting(self.name, own, self.last, covariance_m2, age_s) if seen else None
+
+
+def rolling(start_m: tuple[float, float], velocity_m_s: tuple[float, float], frames: int) -> Iterator[Floats]:
+    """True states (4) of a ball that rolls freely."""
+    position, velocity = np.array(start_m), np.array(velocity_m_s)
+    for _ in range(frames):
+        speed = float(np.hypot(*velocity))
+        slower = velocity * max(0.0, 1 - ROLLING_M_S2 * PERIOD_S / max(speed, 1e-9))
+        position = position + (velocity + slower) / 2 * PERIOD_S
+        velocity = slower
+        yield np.concatenate((position, velocity))
+
+
+def follow(eyes: list[Eye], states: Iterator[Floats]) -> Floats:
+    """Errors (frames, 4) of a tracker that gets what all see: the first eye is its own, others at 10 Hz."""
+    tracker = BallTracker()
+    errors = []
+    for frame, state in enumerate(states):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        for number, eye in enumerate(eyes):
+            sighting = eye.look(state[:2], own=number == 0)
+            if sighting is not None and (number == 0 or frame % 2 == 0):
+                tracker.see(sighting)
+        errors.append(tracker.track.state - state if tracker.known else np.full(4, np.nan))
+    return np.array(errors)
+
+
+def rms(errors: Floats) -> float:
+    return float(np.sqrt(np.nanmean(np.sum(errors**2, axis=1))))
+
+
+def test_ball_at_rest_is_known_to_5_cm_and_10_cm_per_second_from_4_m() -> None:
+    errors = np.concatenate([follow([Eye("a", (0, 0), seed)], rolling((4, 0), (0, 0), 100))[30:] for seed in range(10)])
+    assert rms(errors[:, :2]) < 0.05
+    assert rms(errors[:, 2:]) < 0.10
+
+
+def test_rolling_ball_is_known_to_10_cm_and_30_cm_per_second_within_4_m() -> None:
+    errors = np.concatenate(
+        [follow([Eye("a", (0, 0), seed)], rolling((-3.5, 1), (2.5, 0.3), 50))[10:] for seed in range(20)]
+    )
+    assert rms(errors[:, :2]) < 0.10
+    assert rms(errors[:, 2:]) < 0.30
+
+
+def test_kicked_ball_has_the_right_velocity_after_150_ms() -> None:
+    speeds = []
+    for seed in range(30):
+        eye = Eye("a", (0, 0), seed, recognised=1.0)
+        tracker = BallTracker()
+        for state in [*rolling((1, 0.5), (0, 0), 20), *rolling((1, 0.5), (8, 0), 3)]:
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            sighting = eye.look(state[:2], own=True)
+            assert sighting is not None
+            tracker.see(sighting)
+        speeds.append(tracker.track.state[2:] - state[2:])
+    assert np.median(np.hypot(*np.array(speeds).T)) < 0.8, "10 % of 8 m/s"
+
+
+def test_own_kick_is_believed_with_the_first_sighting() -> None:
+    tracker = BallTracker()
+    for _ in range(10):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.hold("a", np.array((0.33, 0.0, 0.0, 0.0)))
+    tracker.kick(0.0)
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    assert tracker.see(Sighting("a", True, np.array((0.73, 0.0)), np.eye(2) * 0.02**2))
+    assert tracker.track.state[2] == pytest.approx(8.0, rel=0.25)
+
+
+def test_fused_ball_is_better_than_the_best_single_robot_and_half_the_error_of_the_median_one() -> None:
+    places = [(-2.0, 0.5), (3.0, -2.0), (-4.0, 4.0), (5.0, 4.0)]
+
+    def eyes(seed: int) -> list[Eye]:
+        return [Eye(f"r{number}", place, 100 * seed + number) for number, place in enumerate(places)]
+
+    def course() -> Iterator[Floats]:
+        return rolling((-1.0, 2.0), (1.0, -0.5), 60)
+
+    fused = rms(np.concatenate([follow(eyes(seed), course())[15:, :2] for seed in range(10)]))
+    single = [
+        rms(np.concatenate([follow([eyes(seed)[number]], course())[15:, :2] for seed in range(10)]))
+        for number in range(4)
+    ]
+    assert fused <= min(single)
+    assert fused <= 0.5 * np.median(single)
+    averages = []
+    for seed in range(10):
+        watchers = eyes(seed)
+        for state in course():
+            seen = [one.position_m for eye in watchers if (one := eye.look(state[:2]))]
+            averages.append(np.mean(seen, axis=0) - state[:2])
+    assert fused <= 0.8 * rms(np.array(averages)), "a plain average of what everybody sees"
+
+
+def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> float:
+    """Mean normalised error squared at the end of runs whose truth follows the filter's own idea of motion."""
+    values = []
+    for seed in range(runs):
+        rng = np.random.default_rng(1000 + seed)
+        eyes = [Eye(f"r{number}", place, 7 * seed + number) for number, place in enumerate(eyes_at)]
+        tracker = BallTracker()
+        state = np.array((*rng.uniform(-1, 1, 2), *rng.uniform(-3.0, 3.0, 2)))
+        for _ in range(frames):
+            speed = float(np.hypot(*state[2:]))
+            push = (0.25 + 0.4 * speed) * rng.standard_normal(2)
+            slower = state[2:] * max(0.0, 1 - ROLLING_M_S2 * PERIOD_S / speed)
+            state[:2] += (state[2:] + slower) / 2 * PERIOD_S + push * PERIOD_S**2 / 2
+            state[2:] = slower + push * PERIOD_S
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            for number, eye in enumerate(eyes):
+                if (sighting := eye.look(state[:2], own=number == 0)) is not None:
+                    tracker.see(sighting)
+        error = tracker.track.state - state
+        values.append(float(error @ np.linalg.solve(tracker.track.covariance, error)))
+    return float(np.mean(values))
+
+
+@pytest.mark.parametrize("eyes_at", [[(-2.0, 0.0)], [(-2.0, 0.0), (3.0, 2.0), (0.0, -4.0)]])
+def test_the_covariance_is_honest(eyes_at: list[tuple[float, float]]) -> None:
+    runs = 60
+    deviation = math.sqrt(2 * 4 / runs)
+    assert 4 - 3 * deviation < nees(eyes_at, runs) < 4 + 3 * deviation
+
+
+def test_a_phantom_seen_once_changes_nothing() -> None:
+    tracker = BallTracker()
+    for frame in range(20):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        place = (5.0, 5.0) if frame == 15 else (1.0, 1.0)
+        fits = tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
+        assert fits == (frame != 15)
+    assert tracker.track.state[:2] == pytest.approx((1.0, 1.0), abs=0.02)
+
+
+def test_a_ball_that_was_put_elsewhere_is_found_with_the_second_sighting() -> None:
+    tracker = BallTracker()
+    for frame in range(12):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        place = (1.0, 1.0) if frame < 10 else (-3.0, 0.0)
+        tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
+    assert tracker.track.state[:2] == pytest.approx((-3.0, 0.0), abs=0.05)
+
+
+def test_own_sight_wins_over_a_mate_of_the_same_accuracy_and_the_mate_counts_when_it_is_gone() -> None:
+    tracker = BallTracker()
+    own, other = np.array((1.0, 1.0)), np.array((2.5, 1.0))
+    for _ in range(10):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(Sighting("me", True, own, np.eye(2) * 0.03**2))
+        tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))
+        assert tracker.track.state[:2] == pytest.approx(own, abs=0.02)
+    for _ in range(10):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(Sighting("mate", False, other, np.eye(2) * 0.03**2))
+    assert tracker.track.state[:2] == pytest.approx(other, abs=0.1)
+
+
+def test_an_old_sighting_tells_where_the_ball_was() -> None:
+    history = list(rolling((-4.0, 0.0), (3.0, 0.0), 60))
+    errors = []
+    for seed in range(10):
+        eye = Eye("mate", (0.0, -2.0), seed, recognised=1.0)
+        tracker = BallTracker()
+        for now, then in zip(history[3:], history, strict=False):
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            sighting = eye.look(then[:2], age_s=3 * PERIOD_S)
+            assert sighting is not None
+            tracker.see(sighting)
+            errors.append(tracker.track.state[0] - now[0])
+    assert abs(np.mean(errors)) < 0.05, "0.4 m behind without the age"
+
+
+def test_the_ball_is_forgotten_after_the_timeout() -> None:
+    tracker = BallTracker()
+    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.see(Sighting("a", True, np.zeros(2), np.eye(2) * 0.01))
+    for _ in range(39):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    assert tracker.known
+    assert tracker.age_s == pytest.approx(1.95)
+    assert tracker.observers == 0
+    for _ in range(3):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    assert not tracker.known
+
+
+def test_a_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
+    tracker = BallTracker()
+    for frame in range(5):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.hold("me", np.array((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0)))
+        assert not tracker.see(Sighting("mate", False, np.array((3.0, 3.0)), np.eye(2) * 0.01**2))
+    assert tracker.track.state == pytest.approx((0.53, 0.0, 1.0, 0.0), abs=0.06)

@@ -1,0 +1,325 @@
+"""World models of a team on the bench, joined by a radio: frames, sources, what is told on, opponents, honesty."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from fwk.testing import Bench
+from lcmtypes.soccer import obstacle_t, team_message_t
+from procs.model.frames import rotation
+from procs.simulation.radio import Radio
+from procs.world_model.seen import Seen
+from procs.world_model.world_model import WorldModel
+
+Floats = NDArray[np.float64]
+PERIOD_S = 0.05
+POSE_DEVIATIONS = np.array((0.015, 0.015, 0.004))
+POSE_MEMORY = 0.8  # the pose's error from frame to frame, as a localization's is
+
+
+class Robot:
+    """A robot with a true pose, a pose that is a little wrong, and a camera; its world model is on the bench."""
+
+    def __init__(self, name: str, pose: tuple[float, float, float], seed: int, **settings: Any) -> None:
+        self.name = name
+        self.pose = np.array(pose)
+        self.rng = np.random.default_rng(seed)
+        self.pose_error = POSE_DEVIATIONS * self.rng.standard_normal(3)
+        self.bench = Bench(WorldModel, f"{name}/world_model", **settings)
+        self.role = "supporter"
+        self.localized = True
+
+    def deviations_m(self, distance_m: float) -> Floats:
+        """Along and across the ray."""
+        return np.array((0.01 + 0.005 * distance_m**2, 0.01 + 0.003 * distance_m))
+
+    def in_frame(self, point_m: Floats) -> tuple[Floats, Floats]:
+        """A noisy sighting in the robot frame, and its covariance."""
+        seen_m = rotation(-self.pose[2]) @ (point_m - self.pose[:2])
+        deviations_m = self.deviations_m(float(np.hypot(*seen_m)))
+        turn = rotation(math.atan2(seen_m[1], seen_m[0]))
+        return seen_m + turn @ (deviations_m * self.rng.standard_normal(2)), turn @ np.diag(deviations_m**2) @ turn.T
+
+    def sense(self, ball_m: Floats | None, others_m: list[Floats], held: bool = False) -> None:
+        """Puts a frame on the bench: what the camera sees of ball and robots, the pose, the rest."""
+        fresh = POSE_DEVIATIONS * self.rng.standard_normal(3)
+        self.pose_error = POSE_MEMORY * self.pose_error + math.sqrt(1 - POSE_MEMORY**2) * fresh
+        x_m, y_m, heading_rad = (self.pose + self.pose_error).tolist()
+        covariance = np.diag(POSE_DEVIATIONS**2).tolist()
+        port = self.bench.port
+        port("pose").put(x_m=x_m, y_m=y_m, heading_rad=heading_rad, covariance=covariance, localized=self.localized)
+        port("odometry").put()
+        port("kicker_state").put(ball_held=held)
+        port("role").put(role=self.role, intention="testing")
+        if ball_m is None:
+            port("ball_percept").put(visible=False)
+        else:
+            (bx_m, by_m), spread = self.in_frame(ball_m)
+            port("ball_percept").put(
+                visible=True, x_m=float(bx_m), y_m=float(by_m), covariance_m2=spread.tolist(), confidence=0.9
+            )
+        obstacles = []
+        for other_m in others_m:
+            obstacle = obstacle_t()
+            (ox_m, oy_m), spread = self.in_frame(other_m)
+            obstacle.x_m, obstacle.y_m, obstacle.radius_m = float(ox_m), float(oy_m), 0.25
+            obstacle.covariance_m2 = spread.tolist()
+            obstacles.append(obstacle)
+        port("obstacle_percepts").put(obstacles=obstacles)
+
+    @property
+    def world(self) -> Any:
+        return self.bench.port("world_model").sent[-1]
+
+
+class TeamOnBench:
+    """Robots joined by a radio."""
+
+    def __init__(self, robots: list[Robot], **radio: float) -> None:
+        self.robots = robots
+        names = tuple(robot.name for robot in robots)
+        settings: dict[str, Any] = {"loss": 0.0, "delay_jitter_s": 0.0, **radio}
+        self.radio = Bench(Radio, "team_cyan/radio", namespaces=names, **settings)
+
+    def tick(self, ball_m: Floats | None, blind: tuple[str, ...] = (), others_m: tuple[Floats, ...] = ()) -> None:
+        """Everybody looks, thinks, tells; `blind` ones do not see the ball. They see each other and all the others."""
+        for robot in self.robots:
+            around = [other.pose[:2] for other in self.robots if other is not robot] + list(others_m)
+            robot.sense(None if robot.name in blind else ball_m, around)
+            robot.bench.iterate()
+            for message in robot.bench.port("team_message").sent:
+                self.radio.port("messages", robot.name).put(message)
+            robot.bench.port("team_message").sent.clear()
+        self.radio.iterate()
+        for robot in self.robots:
+            inbox = self.radio.port("inboxes", robot.name).sent
+            for message in inbox:
+                robot.bench.port("team_inbox").put(message)
+            inbox.clear()
+
+
+def team(seed: int = 0, **radio: float) -> TeamOnBench:
+    poses = [(-2.0, 0.5, 0.3), (3.0, -2.0, 2.5), (-4.0, 4.0, -1.0), (5.0, 4.0, -2.5)]
+    robots = [Robot(f"cyan{n + 1}", pose, 100 * seed + n, mate_timeout_s=2.0) for n, pose in enumerate(poses)]
+    return TeamOnBench(robots, **radio)
+
+
+def test_ball_and_opponent_are_where_the_camera_sees_them_from_the_robots_pose() -> None:
+    robot = Robot("cyan1", (2.0, 1.0, math.pi / 2), seed=1)
+    for _ in range(20):
+        robot.sense(np.array((2.0, 3.0)), [np.array((0.0, 1.0))])
+        robot.bench.iterate()
+    world = robot.world
+    assert world.localized
+    assert world.ball.known
+    assert (world.ball.x_m, world.ball.y_m) == pytest.approx((2.0, 3.0), abs=0.06)
+    assert world.ball.observers == 1
+    assert len(world.opponents) == 1
+    assert (world.opponents[0].x_m, world.opponents[0].y_m) == pytest.approx((0.0, 1.0), abs=0.08)
+
+
+def test_a_robot_tells_its_own_sight_only_ten_times_a_second() -> None:
+    pair = team()
+    told: list[team_message_t] = []
+    for _ in range(20):
+        robot = pair.robots[1]
+        pair.tick(np.array((0.0, 0.0)), blind=("cyan2",))
+        told += [m for r in pair.robots[:1] for i in r.bench.port("team_inbox").waiting for m in decoded(r, i)]
+    assert pair.robots[1].world.ball.known, "told by the mates"
+    of_second = [message for message in told if message.robot == robot.name]
+    assert len(of_second) == 10
+    assert not any(message.ball_visible for message in of_second)
+    of_third = [message for message in told if message.robot == "cyan3"]
+    assert all(message.ball_visible for message in of_third)
+    assert (of_third[-1].ball_x_m, of_third[-1].ball_y_m) == pytest.approx((0.0, 0.0), abs=0.6)
+    assert {message.role for message in told} == {"supporter"}
+
+
+def decoded(robot: Robot, data: bytes) -> list[team_message_t]:
+    port = robot.bench.port("team_inbox")
+    return list(port.message_type.decode(data).messages)
+
+
+def test_mates_with_roles_and_no_mate_nor_oneself_among_the_opponents() -> None:
+    four = team()
+    four.robots[3].role = "goalkeeper"
+    opponents = (np.array((0.0, -3.0)), np.array((-2.0, 1.05)))
+    for _ in range(40):
+        four.tick(None, others_m=opponents)
+    for robot in four.robots:
+        mates = [other for other in four.robots if other is not robot]
+        world = robot.world
+        assert [mate.name for mate in world.mates] == [mate.name for mate in mates]
+        assert world.mate_roles == [mate.role for mate in mates]
+        for told, mate in zip(world.mates, mates, strict=True):
+            assert (told.x_m, told.y_m) == pytest.approx(mate.pose[:2].tolist(), abs=0.08)
+        places = np.array([(one.x_m, one.y_m) for one in world.opponents])
+        assert len(places) == 2, "one of them touches a mate"
+        for opponent in opponents:
+            assert np.hypot(*(places - opponent).T).min() < 0.25
+
+
+def test_an_opponent_that_only_a_mate_sees_is_known() -> None:
+    pair = team()
+    hidden = np.array((6.0, -3.0))
+    for _ in range(20):
+        pair.tick(None, others_m=(hidden,))
+    assert np.hypot(*(pair.robots[0].pose[:2] - hidden)) > 8, "too far to be seen well enough"
+    assert any(math.hypot(one.x_m - 6.0, one.y_m + 3.0) < 0.3 for one in pair.robots[0].world.opponents)
+
+
+def test_a_robot_that_does_not_know_its_place_listens_but_tells_no_sight() -> None:
+    pair = team()
+    lost = pair.robots[0]
+    lost.localized = False
+    lost.pose_error = np.array((5.0, 5.0, 1.0))
+    for _ in range(20):
+        pair.tick(np.array((1.0, 1.0)))
+    assert not lost.world.localized
+    assert (lost.world.ball.x_m, lost.world.ball.y_m) == pytest.approx((1.0, 1.0), abs=0.1)
+    other = pair.robots[1].world
+    assert "cyan1" not in [mate.name for mate in other.mates]
+    assert other.ball.observers == 3
+
+
+def test_a_held_ball_is_in_the_mouth_and_told() -> None:
+    robot = Robot("cyan1", (1.0, -1.0, -math.pi / 2), seed=1)
+    for _ in range(4):
+        robot.sense(None, [], held=True)
+        robot.bench.iterate()
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((1.0, -1.33), abs=0.05)
+    assert robot.bench.port("team_message").sent[-1].ball_held
+
+
+def test_silence_is_survived_and_everything_is_forgotten_in_time() -> None:
+    four = team()
+    for _ in range(20):
+        four.tick(np.array((1.0, 1.0)), others_m=(np.array((0.0, -3.0)),))
+    robot = four.robots[0]
+    assert robot.world.ball.known
+    robot.bench.iterate(110)
+    assert not robot.world.localized
+    assert not robot.world.ball.known
+    assert robot.world.opponents == []
+    assert robot.world.mates == []
+
+
+def ball_errors(loss: float, blind: bool, seeds: int = 6) -> tuple[float, list[float]]:
+    """Root mean square of the ball's error: with radio (all robots together), and of each robot alone."""
+
+    def run(seed: int, loss: float) -> Floats:
+        four = team(seed, loss=loss)
+        errors = []
+        ball_m, velocity_m_s = np.array((-1.0, 2.0)), np.array((1.2, -0.8))
+        for frame in range(60):
+            velocity_m_s = velocity_m_s * max(0.0, 1 - 0.4 * PERIOD_S / float(np.hypot(*velocity_m_s)))
+            ball_m = ball_m + velocity_m_s * PERIOD_S
+            four.tick(ball_m, blind=("cyan4",) if blind else ())
+            if frame >= 15:
+                errors.append(
+                    [
+                        math.hypot(r.world.ball.x_m - ball_m[0], r.world.ball.y_m - ball_m[1])
+                        if r.world.ball.known
+                        else math.nan
+                        for r in four.robots
+                    ]
+                )
+        return np.array(errors)
+
+    fused = np.concatenate([run(seed, loss) for seed in range(seeds)])
+    alone = np.concatenate([run(seed, 1.0) for seed in range(seeds)])
+    return float(np.sqrt(np.nanmean(fused**2))), np.sqrt(np.nanmean(alone**2, axis=0)).tolist()
+
+
+@pytest.mark.slow
+def test_the_teams_ball_is_half_as_wrong_as_the_median_robots_and_no_worse_than_the_best_ones() -> None:
+    fused, alone = ball_errors(loss=0.03, blind=False)
+    assert fused <= 0.5 * np.median(alone)
+    assert fused <= 1.1 * min(alone)
+
+
+def test_without_any_radio_each_robot_relies_on_itself() -> None:
+    fused, alone = ball_errors(loss=1.0, blind=False, seeds=1)
+    assert fused == pytest.approx(np.sqrt(np.mean(np.square(alone))))
+
+
+def ball_nees(robots: int, runs: int = 20) -> float:
+    """Mean normalised squared error of the position (2 for an honest covariance) of a ball at rest."""
+    values = []
+    for seed in range(runs):
+        four = team(1000 + seed)
+        four.robots = four.robots[:robots]
+        ball_m = np.array((0.5, 0.5))
+        for _ in range(40):
+            four.tick(ball_m)
+        for robot in four.robots:
+            ball = robot.world.ball
+            error = np.array((ball.x_m, ball.y_m)) - ball_m
+            values.append(float(error @ np.linalg.solve(np.array(ball.covariance)[:2, :2], error)))
+    return float(np.mean(values))
+
+
+@pytest.mark.parametrize("robots", [1, 4])
+@pytest.mark.slow
+def test_the_balls_covariance_covers_the_error_of_the_own_pose(robots: int) -> None:
+    assert 0.5 < ball_nees(robots) < 3.5
+
+
+def test_same_messages_give_the_same_world() -> None:
+    def run() -> list[bytes]:
+        four = team(loss=0.1, delay_jitter_s=0.1)
+        for _ in range(30):
+            four.tick(np.array((1.0, 1.0)), others_m=(np.array((0.0, -3.0)),))
+        return [sent.encode() for robot in four.robots for sent in robot.bench.port("world_model").sent]
+
+    assert run() == run()
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -1e300])
+def test_values_that_cannot_be_are_survived(value: float) -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(10):
+        robot.sense(np.array((2.0, 0.0)), [np.array((0.0, 2.0))])
+        robot.bench.iterate()
+    obstacle = obstacle_t()
+    obstacle.x_m = obstacle.radius_m = value
+    said = team_message_t()
+    said.robot, said.localized, said.ball_visible, said.obstacles = "cyan2", True, True, [obstacle]
+    said.x_m = value
+    told = team_message_t()
+    told.robot, told.localized, told.ball_visible, told.obstacles = "cyan3", True, True, [obstacle]
+    told.ball_x_m = value
+    for broken in ({"x_m": value}, {"covariance": [[value] * 3] * 3}, {}):
+        robot.bench.port("pose").put(**{"localized": True, **broken})
+        robot.bench.port("odometry").put(vx_m_s=value, omega_rad_s=value)
+        robot.bench.port("ball_percept").put(visible=True, x_m=value, covariance_m2=[[value, 0.0], [0.0, -1.0]])
+        robot.bench.port("obstacle_percepts").put(obstacles=[obstacle])
+        robot.bench.port("kicker_state").put(ball_held=False, kicks=5)
+        robot.bench.port("team_inbox").put(messages=[said, told])
+        robot.bench.iterate()
+    for _ in range(5):
+        robot.sense(np.array((2.0, 0.0)), [np.array((0.0, 2.0))])
+        robot.bench.iterate()
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((2.0, 0.0), abs=0.1)
+    assert len(robot.world.opponents) == 1
+    assert [mate.name for mate in robot.world.mates] == ["cyan3"]
+
+
+def test_a_sighting_without_any_error_is_no_end_of_the_filter() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(10):
+        robot.bench.port("pose").put(localized=True)
+        robot.bench.port("ball_percept").put(visible=True, x_m=2.0)
+        robot.bench.port("obstacle_percepts").put(obstacles=[obstacle_t(), obstacle_t()])
+        robot.bench.iterate()
+    assert robot.world.ball.x_m == pytest.approx(2.0, abs=1e-3)
+
+
+def test_sightings_with_impossible_covariances_are_left_out() -> None:
+    spreads = np.array([np.eye(2), -np.eye(2), [[1.0, 2.0], [2.0, 1.0]], np.zeros((2, 2))])
+    seen = Seen.of(np.array([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]]), spreads, np.zeros(4))
+    assert seen.positions_m[:, 0].tolist() == [1.0, 4.0]
+    assert (np.linalg.eigvalsh(seen.covariances_m2) > 0).all()

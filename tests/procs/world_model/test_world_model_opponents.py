@@ -1,0 +1,118 @@
+"""Tracks of other robots: accuracy, association, ghosts, and the team subtracted from what is seen."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from procs.world_model.robot_tracks import RobotTracks, without_known
+from procs.world_model.team import Mate, Team
+
+Floats = NDArray[np.float64]
+PERIOD_S = 0.05
+
+
+def spreads(count: int, deviation_m: float) -> Floats:
+    return np.tile(np.eye(2) * deviation_m**2, (count, 1, 1))
+
+
+def test_crossing_robots_keep_their_tracks_and_noise_is_halved() -> None:
+    rng = np.random.default_rng(1)
+    tracks = RobotTracks()
+    positions = np.array([[-2.0, 0.0], [2.0, 0.6], [0.0, 4.0]])
+    velocities = np.array([[1.0, 0.0], [-1.0, 0.0], [0.0, 0.0]])
+    errors: list[float] = []
+    raw: list[float] = []
+    for _ in range(80):
+        positions = positions + velocities * PERIOD_S
+        seen = positions + 0.12 * rng.standard_normal(positions.shape)
+        order = rng.permutation(3)
+        recognised = order[rng.random(3) < 0.8]
+        tracks.predict(PERIOD_S, 1.0)
+        tracks.see(seen[recognised], spreads(len(recognised), 0.12))
+        apart = np.hypot(*(tracks.states[None, tracks.sure, :2] - positions[:, None]).transpose(2, 0, 1))
+        errors += apart.min(axis=1).tolist() if apart.size else []
+        raw += np.hypot(*(seen - positions).T).tolist()
+    assert len(tracks.sure) == 3
+    assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.12
+    assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.75 * np.sqrt(np.mean(np.square(raw)))
+
+
+def test_a_ghost_seen_once_is_never_told() -> None:
+    tracks = RobotTracks()
+    tracks.predict(PERIOD_S, 1.0)
+    tracks.see(np.array([[1.0, 1.0]]), spreads(1, 0.1))
+    for _ in range(10):
+        assert len(tracks.sure) == 0
+        tracks.predict(PERIOD_S, 1.0)
+    assert len(tracks.states) == 0
+
+
+def test_a_robot_that_is_gone_is_forgotten_after_the_timeout() -> None:
+    tracks = RobotTracks()
+    for _ in range(5):
+        tracks.predict(PERIOD_S, 1.0)
+        tracks.see(np.array([[1.0, 1.0]]), spreads(1, 0.1))
+    for _ in range(19):
+        tracks.predict(PERIOD_S, 1.0)
+    assert len(tracks.sure) == 1
+    tracks.predict(PERIOD_S, 1.0)
+    tracks.predict(PERIOD_S, 1.0)
+    assert len(tracks.sure) == 0
+
+
+def test_two_robots_that_see_one_opponent_see_one() -> None:
+    tracks = RobotTracks()
+    for _ in range(10):
+        tracks.predict(PERIOD_S, 1.0)
+        tracks.see(np.array([[1.0, 1.0]]), spreads(1, 0.1))
+        tracks.see(np.array([[1.15, 1.05]]), spreads(1, 0.1))
+    assert len(tracks.states) == 1
+    assert tracks.states[0, :2] == pytest.approx((1.08, 1.02), abs=0.1)
+
+
+def test_track_covariance_is_not_too_small() -> None:
+    rng = np.random.default_rng(2)
+    values = []
+    for _ in range(40):
+        tracks = RobotTracks()
+        state = np.array((0.0, 0.0, *rng.uniform(-1, 1, 2)))
+        for _ in range(40):
+            push = 2.5 * rng.standard_normal(2)
+            state[:2] += state[2:] * PERIOD_S + push * PERIOD_S**2 / 2
+            state[2:] += push * PERIOD_S
+            tracks.predict(PERIOD_S, 1.0)
+            tracks.see(state[None, :2] + 0.1 * rng.standard_normal((1, 2)), spreads(1, 0.1))
+        error = tracks.states[0] - state
+        values.append(float(error @ np.linalg.solve(tracks.covariances[0], error)))
+    assert 2.5 < np.mean(values) < 5.5, "4 for an honest covariance"
+
+
+def test_a_mate_takes_away_one_obstacle_so_that_the_opponent_beside_it_stays() -> None:
+    seen = np.array([[1.0, 0.0], [1.4, 0.0], [4.0, 4.0]])
+    sharp = spreads(3, 0.05)
+    remain = without_known(seen, sharp, np.array([[1.05, 0.0]]), spreads(1, 0.05), 0.5)
+    assert remain.tolist() == [False, True, True]
+    assert without_known(seen, sharp, np.zeros((0, 2)), sharp[:0], 0.5).all()
+    assert without_known(np.zeros((0, 2)), sharp[:0], seen, sharp, 0.5).tolist() == []
+
+
+def test_a_poorly_seen_mate_is_that_mate_from_further_away() -> None:
+    seen, mate = np.array([[2.0, 0.0]]), np.array([[1.0, 0.0]])
+    assert without_known(seen, spreads(1, 0.05), mate, spreads(1, 0.05), 0.5).all()
+    assert not without_known(seen, spreads(1, 0.4), mate, spreads(1, 0.05), 0.5).any()
+
+
+def test_team_keeps_the_newest_word_of_each_mate_until_the_timeout() -> None:
+    def word(name: str, told_s: float, x_m: float, localized: bool = True) -> Mate:
+        return Mate(name, "defender", told_s, np.array((x_m, 0.0)), 0.0, np.array((1.0, 0.0)), localized)
+
+    team = Team()
+    assert team.tell(word("cyan2", 1.0, 2.0))
+    assert not team.tell(word("cyan2", 0.9, 7.0)), "overtaken by a newer one"
+    team.tell(word("cyan1", 1.0, 0.0))
+    team.tell(word("cyan3", 1.0, 0.0, localized=False))
+    mates = team.localized(1.2, 5.0)
+    assert [mate.name for mate in mates] == ["cyan1", "cyan2"]
+    assert mates[1].position_at(1.2) == pytest.approx((2.2, 0.0))
+    assert mates[1].covariance_at(1.2)[0, 0] > mates[1].covariance_at(1.0)[0, 0]
+    assert team.localized(6.1, 5.0) == []
