@@ -91,7 +91,7 @@ def _modules(roots: Iterable[str]) -> list[str]:
     return [
         ".".join((root.name, *file.relative_to(root).with_suffix("").parts))
         for root, file in files
-        if not file.name.startswith("test_")
+        if not file.name.startswith("test_") and "/." not in str(file)
     ]
 
 
