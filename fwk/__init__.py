@@ -9,7 +9,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 from pydantic import Field  # noqa: E402 - after the limits
 
-from fwk.clock import US_PER_S, Clock, TimeSource  # noqa: E402
+from fwk.clock import Clock, TimeSource  # noqa: E402
 from fwk.component.aspect import Aspect  # noqa: E402
 from fwk.component.blackboard import Blackboard, NotOpen  # noqa: E402
 from fwk.component.channels import Reads, ReadsEach, Writes, WritesEach, channel  # noqa: E402
@@ -30,7 +30,6 @@ from fwk.component.transforms import message_of as transform_message  # noqa: E4
 from fwk.model.channel_table import BlackboardEvent  # noqa: E402
 
 __all__ = [
-    "US_PER_S",
     "Aspect",
     "Blackboard",
     "BlackboardEvent",

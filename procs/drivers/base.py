@@ -2,11 +2,12 @@
 
 from pydantic import PositiveFloat
 
-from fwk import US_PER_S, Clock, Component, Config, Logger, Reads, Writes
+from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_state_t
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
 from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.model.units import US_PER_S
 
 _PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, not even when they are pushed
 _LONGEST_GAP_S = 0.5  # a measurement after a longer silence says nothing about the time before

@@ -6,10 +6,11 @@ import numpy as np
 from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
-from fwk import US_PER_S, Clock, Component, Config, Logger, Reads, ReadsEach, TimeSource, Writes, WritesEach, channel
+from fwk import Clock, Component, Config, Logger, Reads, ReadsEach, TimeSource, Writes, WritesEach, channel
 from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
 from lcmtypes.soccer import ball_placement_t, ground_truth_t, match_events_t
 from procs.model.field import Field
+from procs.model.units import US_PER_S
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import PRESETS, Realism
 from procs.simulation.physics.reports import event_message, robot_message
