@@ -4,6 +4,7 @@ import itertools
 import secrets
 import select
 import socket
+from typing import Any
 
 from fwk.clock import US_PER_S, sleep_s
 from fwk.lcm import wire
@@ -57,9 +58,9 @@ def own_socket(port: int) -> socket.socket:
 class Sender:
     """Sends LCM messages from a port of its own, by which receivers know who it is; hears what is sent to that port."""
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, made: Any = None) -> None:
         self.port = port
-        self.socket = own_socket(port)
+        self.socket = made or own_socket(port)
         # Not from 0: whoever sends from this port next must not seem to go on with a message that this one left undone.
         self._number = itertools.count(secrets.randbits(32))
         self._assembler = wire.Assembler()

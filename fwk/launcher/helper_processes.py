@@ -56,6 +56,10 @@ class HelperProcesses:
             die_with_parent(parent)
             run_forked(partial(_watch, plan))
 
+    def fileno(self) -> int:
+        """Returns the descriptor that is readable when the gateway has ended."""
+        return self.control.fileno()
+
     def gateway_end(self) -> str:
         """How the gateway ended, when its end of `control` was closed before ours."""
         pid, self._gateway = self._gateway, 0

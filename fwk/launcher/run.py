@@ -2,13 +2,17 @@
 
 import secrets
 
+from fwk.bus.network import UdpNetwork
 from fwk.bus.port_lock import PortLock, PortsInUse
 from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
+from fwk.control.address import supervisor_address
+from fwk.control.server import Answer, Server
 from fwk.host.debugger import DebuggerMissing, DebugRequest, check
 from fwk.host.process import raise_file_limit
 from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
+from fwk.launcher.signals import Signals
 from fwk.lcm import envelope, messages
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
@@ -16,7 +20,7 @@ from fwk.model.ports import Ports
 from fwk.supervisor.loop import WINDOW
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.processes.zygote import Zygote
-from fwk.supervisor.supervisor import Supervisor
+from fwk.supervisor.supervisor import Machine, Supervisor
 
 __all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "ProfilerMissing", "RunOptions", "run"]
 
@@ -38,9 +42,11 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     rings = _rings(plan, options)
     zygote = Zygote(plan, number, rings, debug, profile)
     children = HelperProcesses(plan, number, options, rings)
-    supervisor = Supervisor(plan, options, number, zygote, rings, debug)
-    reason, failed = supervisor.work(children)
-    status, failures = supervisor.stop()
+    network = UdpNetwork()
+    machine = Machine(zygote, Signals(), lambda answer: _control_server(plan, answer), rings, debug)
+    supervisor = Supervisor(plan, options, number, network, machine)
+    reason, failed = network.run(supervisor.work(children))
+    status, failures = network.run(supervisor.stop())
     if failures and not failed:
         reason, failed = f"failed: {'; '.join(failures)}", True
     newest = _decoded(plan, children.stop())
@@ -58,6 +64,10 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         newest,
         children.lost,
     )
+
+
+def _control_server(plan: Plan, answer: Answer) -> Server:
+    return Server(supervisor_address(plan.bus_port), answer)
 
 
 def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:

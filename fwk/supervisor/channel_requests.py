@@ -7,7 +7,7 @@ from fwk.engine.channel_grants import Openings
 from fwk.engine.visibility import Ledger
 from fwk.model.channel_table import Fact, text_of
 from fwk.model.plan import Plan
-from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.processes.host_process import Change, HostEntry
 from fwk.supervisor.processes.hosts import Hosts
 from fwk.supervisor.requests import Wishes
 from lcmtypes.core import done_t
@@ -16,9 +16,7 @@ from lcmtypes.core import done_t
 class Opening:
     """Of a run in which components may open channels; `change` makes a decision part of the tick that is to begin."""
 
-    def __init__(
-        self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str, bool], None], log: Logger
-    ) -> None:
+    def __init__(self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str], Change], log: Logger) -> None:
         self._plan = plan
         self._hosts = hosts
         self._ledger = ledger
@@ -51,17 +49,20 @@ class Opening:
         for component in self._plan.hosts[entry.index].components:
             self._openings.left(component)
 
-    def decide(self) -> None:
-        """At the boundary between two ticks."""
+    def decide(self) -> Change | None:
+        """Decides at a boundary; returns the change if channels are written by it that never were before."""
         facts, _ = self._openings.decide(self._busy)
+        announced = None
         if facts:
             written = {fact.opening.channel for fact in facts if fact.kind == "write" and fact.opening}
-            self._change(text_of(map(self._numbered, facts)), not written <= self._written)
+            change = self._change(text_of(map(self._numbered, facts)))
+            announced = None if written <= self._written else change
             self._written |= written
             self._ledger.opened(self._openings.instances)
         for fact in facts:
             if fact.kind == "refuse":
                 self._log.warning(f"{self._plan.components[fact.component].name}: {fact.reason}; refused")
+        return announced
 
     def _numbered(self, fact: Fact) -> Fact:
         """A writer goes on where the channel is."""

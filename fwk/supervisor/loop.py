@@ -4,14 +4,15 @@ import json
 from collections.abc import Callable
 
 from fwk.bus import sync
+from fwk.bus.network import Steps
 from fwk.bus.sockets import Sender
-from fwk.clock import monotonic_us
 from fwk.component.log import Logger
 from fwk.engine.visibility import Ledger
 from fwk.model.plan import NOBODY, Plan
 from fwk.model.ports import Ports
 from fwk.supervisor.channel_requests import Opening
 from fwk.supervisor.continuous import Continuous
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.loss_report import Missed
 from fwk.supervisor.processes.host_process import Change, HostEntry
@@ -20,7 +21,7 @@ from fwk.supervisor.requests import Wishes
 from fwk.supervisor.retransmission_timeout import Patience
 from fwk.supervisor.run_clock import Pace
 from fwk.supervisor.schedule import Turns
-from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.sync_receiver import SyncReceiver
 from fwk.supervisor.tick_log import Records, void_messages
 from fwk.supervisor.tick_sender import Telling
 from lcmtypes.core import done_t, tick_event_t
@@ -45,7 +46,8 @@ class MainLoop:
         run: int,
         hosts: Hosts,
         ledger: Ledger,
-        mailbox: Mailbox,
+        events: EventLoop,
+        receiver: SyncReceiver,
         sender: Sender,
         pace: Pace,
         log: Logger,
@@ -66,7 +68,7 @@ class MainLoop:
         self._plan = plan
         self._hosts = hosts
         self._ledger = ledger
-        self._mailbox = mailbox
+        self._events = events
         self._sender = sender
         self.pace = pace
         self._log = log
@@ -89,7 +91,7 @@ class MainLoop:
         self._outstanding: set[int] = set()
         self._again = False  # somebody joined the stage that runs: tell it at once
         self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
-        self.records = Records(self._ports, run, sender, mailbox)
+        self.records = Records(self._ports, run, sender, events)
         self._telling = Telling(run, self._ports, ledger, sender)
         self._missed = Missed(plan, self.records)
         continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
@@ -100,7 +102,7 @@ class MainLoop:
             hosts.blackboard = self.opening.snapshot
         self.newest_change = 0
         """Number of the newest change of settings, or of the blackboard."""
-        mailbox.on_done = self._on_done
+        receiver.on_done = self._on_done
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
         hosts.on_stopped = self._on_stopped
@@ -115,7 +117,7 @@ class MainLoop:
         """Names of the hosts that the running stage waits for longer than usual, or the gateway."""
         if self.records.stalled:
             return ["gateway"]
-        if monotonic_us() < self._began_us + WAITS_US:
+        if self._events.now_us() < self._began_us + WAITS_US:
             return []
         return [self._hosts.table[index].name for index in sorted(self._outstanding)]
 
@@ -123,13 +125,12 @@ class MainLoop:
         """At a tick boundary: new settings of a component, which its next iteration has."""
         self._tell(component, settings, [self._hosts.table[self._plan.components[component].host]])
 
-    def _change_blackboard(self, facts: str, new: bool) -> None:
-        """At a tick boundary: what is open from the next tick on, and whether channels are written that never were."""
+    def _change_blackboard(self, facts: str) -> Change:
+        """At a tick boundary: what is open from the next tick on."""
         concerned = [self._hosts.table[host] for host in {each.host for each in self._plan.components if each.opens}]
         change = self._tell(NOBODY, facts, concerned)
-        if new:
-            self.records.announce(change, 0 if self._lockstep else ANNOUNCE_US, self._interrupted)
         self.records.event(tick_event_t.OPENED, 0, self.newest_change)
+        return change
 
     def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> Change:
         self.newest_change += 1
@@ -140,15 +141,15 @@ class MainLoop:
                 entry.changes.append(change)
         return change
 
-    def run_tick(self) -> None:
+    def run_tick(self) -> Steps[None]:
         """Waits until the next tick may begin, then runs all its stages; while paused, does what is asked meanwhile."""
-        self._wait()
-        self.records.wait_for(self.tick + 1 - self._window, self._interrupted)
+        yield from self._wait()
+        yield from self.records.wait_for(self.tick + 1 - self._window, self._interrupted)
         if self._interrupted():
             return
         stands = self.stands = self.pace.stands
         if stands:
-            self._mailbox.pump(STANDS_US)
+            yield from self._events.wait(self._events.now_us() + STANDS_US)
         if self._hosts.unsettled:
             self._hosts.maintain()
         self.on_boundary(self.tick + 1)
@@ -156,16 +157,16 @@ class MainLoop:
         if stands:
             return
         if self._hosts.leaving and self._lockstep:
-            self._see_off()
+            yield from self._see_off()
         self._telling.remind(self._hosts.table)
         if self.turns.asked:
             self._decide()
         if self.opening and self.opening.asked:
-            self.opening.decide()
+            yield from self._decide_channels(self.opening)
         self.tick += 1
         if self._came_in:
             self._take_in()
-        now_us = monotonic_us()
+        now_us = self._events.now_us()
         time_us = self.pace.advance(now_us)
         self.times.tick_begins(now_us)
         if self._continuous:
@@ -173,14 +174,21 @@ class MainLoop:
         for place, stage, members in self.turns.now:
             if not self._interrupted():
                 self._place = place
-                self._run_stage(stage, members, time_us)
-        self.times.tick_ended(self.tick, monotonic_us(), self._plan.loop_time_us or self.pace.loop_time_us)
+                yield from self._run_stage(stage, members, time_us)
+        self.times.tick_ended(self.tick, self._events.now_us(), self._plan.loop_time_us or self.pace.loop_time_us)
         self.records.publish(self.tick, time_us, void_messages(self._ledger, self._step - 4 * len(self.turns.now)))
 
-    def finish(self) -> None:
+    def finish(self) -> Steps[None]:
         """Waits until the gateway has everything; for one that is far behind not for ever if the run is interrupted."""
-        until_us = monotonic_us() + FINISH_US
-        self.records.wait_for(self.tick, lambda: self._interrupted() and monotonic_us() >= until_us)
+        until_us = self._events.now_us() + FINISH_US
+        yield from self.records.wait_for(self.tick, lambda: self._interrupted() and self._events.now_us() >= until_us)
+
+    def _decide_channels(self, opening: Opening) -> Steps[None]:
+        """At the boundary: which channels are open from the next tick on; the gateway listens to new ones first."""
+        announced = opening.decide()
+        if announced:
+            longest_us = 0 if self._lockstep else ANNOUNCE_US
+            yield from self.records.announce(announced, longest_us, self._interrupted)
 
     def _decide(self) -> None:
         """At the boundary: who has the main loop from the next tick on."""
@@ -201,7 +209,7 @@ class MainLoop:
                 self.records.mark(channel, number)
             self.records.event(tick_event_t.DONE, self._gateway, self.tick, -1)
 
-    def _run_stage(self, stage: int, members: list[HostEntry], time_us: int) -> None:
+    def _run_stage(self, stage: int, members: list[HostEntry], time_us: int) -> Steps[None]:
         self._step = self._ledger.begin()
         self._stage = stage
         if self._lockstep:
@@ -210,7 +218,7 @@ class MainLoop:
             self._outstanding = {entry.index for entry in members if entry.state == "running" and not entry.busy}
         self.records.event(tick_event_t.STAGE, stage, 0, self._place)
         self._broadcast(members, time_us)
-        began_us = sent_us = self._began_us = monotonic_us()
+        began_us = sent_us = self._began_us = self._events.now_us()
         first_us = self._patience[stage].wait_us
         repeat_us, look_us = first_us, began_us
         now_us = began_us
@@ -223,8 +231,8 @@ class MainLoop:
             due_us = min(sent_us + repeat_us, look_us)
             if not self._lockstep:
                 due_us = min(due_us, began_us + self._stage_time_us)
-            self._mailbox.pump(due_us - now_us)
-            now_us = monotonic_us()
+            yield from self._events.wait(due_us)
+            now_us = self._events.now_us()
             if not self._outstanding:
                 self._patience[stage].took(now_us - sent_us)
                 self.times.stage_ended(stage, now_us - began_us)
@@ -238,7 +246,7 @@ class MainLoop:
                 repeat_us = first_us if self._again else min(2 * repeat_us, max(first_us, REPEAT_LONGEST_US))
                 self._again = False
                 self._broadcast(members, time_us)
-                sent_us = monotonic_us()
+                sent_us = self._events.now_us()
 
     def _broadcast(self, members: list[HostEntry], time_us: int) -> None:
         holder = self.turns.holder
@@ -246,19 +254,19 @@ class MainLoop:
 
     def _look_after(self, members: list[HostEntry]) -> None:
         """Starts again who has to be, and does not wait for those who will not come back."""
-        self._break_off(monotonic_us())
+        self._break_off(self._events.now_us())
         if self._hosts.unsettled:
             self._hosts.maintain()
             self._outstanding &= {entry.index for entry in members if entry.expected}
 
-    def _see_off(self) -> None:
+    def _see_off(self) -> Steps[None]:
         """Waits until those who leave have finalized: what they wrote then is visible in the tick that begins.
 
         Nobody waits for continuous ones.
         """
         continuous = self._continuous.hosts if self._continuous else set()
         while self._hosts.leaving - continuous and not self._interrupted():
-            self._mailbox.pump(LOOK_US)
+            yield from self._events.wait(self._events.now_us() + LOOK_US)
             self._hosts.maintain()
 
     def _break_off(self, now_us: int) -> None:
@@ -367,10 +375,11 @@ class MainLoop:
         if self.opening:
             self.opening.left(entry)
 
-    def _wait(self) -> None:
+    def _wait(self) -> Steps[None]:
         """Waits until it is time for the next tick, or none may begin."""
-        begin_us = self.pace.begin_us(monotonic_us())
-        self._mailbox.pump(0)
-        while not self._interrupted() and not self.pace.stands and (left_us := begin_us - monotonic_us()) > 0:
-            self._mailbox.pump_until(left_us)
-            begin_us = self.pace.begin_us(monotonic_us())
+        now_us = self._events.now_us
+        begin_us = self.pace.begin_us(now_us())
+        yield from self._events.wait(0)
+        while not self._interrupted() and not self.pace.stands and begin_us > now_us():
+            yield from self._events.wait_on_time(begin_us)
+            begin_us = self.pace.begin_us(now_us())

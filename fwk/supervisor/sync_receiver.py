@@ -1,76 +1,30 @@
-"""Everything that reaches the supervisor from outside its own thread of work, handed out as events."""
+"""Receives what hosts and gateway report to the supervisor: dones and states."""
 
-import os
-import signal
 import struct
 from collections.abc import Callable
 
 from fwk.bus import sync
-from fwk.bus.sockets import Address, multicast_receiver, port_of, told
-from fwk.bus.waiting import Waiting
-from fwk.clock import US_PER_S, sleep_s
+from fwk.bus.sockets import Address, port_of, told
 from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
+from fwk.supervisor.event_loop import EventLoop
 from lcmtypes.core import actual_t, done_t
 
-_COARSE_US = 1500  # poll counts in whole milliseconds
 
-Handler = Callable[[], None]
+class SyncReceiver:
+    """The supervisor's socket for dones and states; refuses, counts and names what does not belong there."""
 
-
-class Mailbox:
-    """The supervisor's sockets. `pump` waits for something and lets the handlers deal with it."""
-
-    def __init__(self, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
+    def __init__(self, events: EventLoop, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
         self.on_done: Callable[[done_t], None] = lambda _: None
         self.on_actual: Callable[[actual_t], None] = lambda _: None
-        self.afterwards: Handler = lambda: None  # called when something was handled
-        self.signals: list[int] = []
         self._first_host = ports.host(0)
         self._members = ports.members
         self._assembler = wire.Assembler()
         self._run = run
         self._complain = complain
-        self._socket = multicast_receiver(ports.sync)
-        self._waiting = Waiting()
-        self._handlers: dict[int, Handler] = {}
-        self._wakeup, write = os.pipe()
-        os.set_blocking(self._wakeup, False)
-        os.set_blocking(write, False)
-        signal.set_wakeup_fd(write, warn_on_full_buffer=False)
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-            signal.signal(number, lambda received, _frame: self.signals.append(received))
-        self.watch(self._socket.fileno(), self.drain)
-        self.watch(self._wakeup, self._drain_wakeup)
-
-    def watch(self, descriptor: int, handler: Handler) -> None:
-        """Calls `handler` from `pump` when there is something to read."""
-        self._handlers[descriptor] = handler
-        self._waiting.add(descriptor)
-
-    def unwatch(self, descriptor: int) -> None:
-        """No longer."""
-        if self._handlers.pop(descriptor, None):
-            self._waiting.remove(descriptor)
-
-    def pump(self, timeout_us: int) -> None:
-        """Handles what is there; if nothing is, waits for the first thing or `timeout_us`."""
-        for descriptor in self._waiting.wait(timeout_us):
-            handler = self._handlers.get(descriptor)
-            if handler:
-                handler()
-        self.afterwards()
-
-    def pump_until(self, left_us: int) -> None:
-        """As `pump`, but never longer than `left_us`, to the microsecond as well as the system can."""
-        if left_us > _COARSE_US:
-            self.pump(left_us - _COARSE_US)
-        else:
-            sleep_s(left_us / US_PER_S)
-
-    def _drain_wakeup(self) -> None:
-        os.read(self._wakeup, 1024)
+        self._socket = events.network.group_socket(ports.sync)
+        events.watch(self._socket, self.drain)
 
     def drain(self) -> None:
         """Handles the dones and states that have arrived."""

@@ -7,13 +7,13 @@ from collections import deque
 from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
+from fwk.bus.network import Steps
 from fwk.bus.sockets import Sender
-from fwk.clock import monotonic_us
 from fwk.engine.visibility import Ledger
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.processes.host_process import Change
-from fwk.supervisor.sync_receiver import Mailbox
 from lcmtypes.core import change_t, fetch_t, tick_record_t, void_t
 
 KEPT = 64  # ticks at the least: all that the gateway has not taken yet
@@ -25,7 +25,7 @@ STALLED_US = 200_000
 class Records:
     """The record of the running tick, and the newest ones before it, for which the gateway asks if it lacks them."""
 
-    def __init__(self, ports: Ports, run: int, sender: Sender, mailbox: Mailbox) -> None:
+    def __init__(self, ports: Ports, run: int, sender: Sender, events: EventLoop) -> None:
         self.taken = -1  # newest tick that the gateway has; 0: it hears whatever is sent from now on
         self.heard = 0  # newest change of the blackboard that the gateway was told of beforehand
         self.stalled = False
@@ -33,12 +33,12 @@ class Records:
         self._ports = ports
         self._run = run
         self._sender = sender
-        self._mailbox = mailbox
+        self._loop = events
         self._kept: deque[tuple[int, bytes]] = deque()
         self._events: list[sync.Event] = []
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
-        mailbox.watch(sender.socket.fileno(), self._on_asked)
+        events.watch(sender.socket, self._on_asked)
 
     def event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
         """Something happened, as in core.tick_event_t."""
@@ -52,7 +52,7 @@ class Records:
         """The tick begins with new settings of a component."""
         self._changes.append(change)
 
-    def announce(self, change: Change, patience_us: int, interrupted: Callable[[], bool]) -> None:
+    def announce(self, change: Change, patience_us: int, interrupted: Callable[[], bool]) -> Steps[None]:
         """Waits until the gateway listens to the channels that a change opens, for so long at most; 0: for ever.
 
         It learns of them from the tick's record, too, but by then a writer may have sent something and died.
@@ -60,14 +60,14 @@ class Records:
         record = tick_record_t()
         record.run, record.changes, record.n_changes = self._run, [change_message(change)], 1
         data = record.encode()
-        until_us = monotonic_us() + patience_us if patience_us else sys.maxsize
+        until_us = self._loop.now_us() + patience_us if patience_us else sys.maxsize
         wait_us, due_us = FIRST_WAIT_US, 0
-        while self.heard < change.number and not interrupted() and (now_us := monotonic_us()) < until_us:
+        while self.heard < change.number and not interrupted() and (now_us := self._loop.now_us()) < until_us:
             if now_us >= due_us:
                 self._sender.publish(sync.OPENS, data, self._ports.record)
                 due_us = now_us + wait_us
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
-            self._mailbox.pump(min(due_us, until_us) - now_us)
+            yield from self._loop.wait(min(due_us, until_us))
 
     def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
         """Sends the record of a tick that has ended, and keeps it for a while."""
@@ -85,13 +85,14 @@ class Records:
             self._kept.popleft()
         self._sender.publish(sync.RECORD, data, self._ports.record)
 
-    def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> None:
+    def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> Steps[None]:
         """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us, began_us = FIRST_WAIT_US, monotonic_us()
+        wait_us, began_us = FIRST_WAIT_US, self._loop.now_us()
         while self.taken < tick and not interrupted():
-            self.stalled = monotonic_us() >= began_us + STALLED_US
+            now_us = self._loop.now_us()
+            self.stalled = now_us >= began_us + STALLED_US
             before = self.taken
-            self._mailbox.pump(wait_us)
+            yield from self._loop.wait(now_us + wait_us)
             if self.taken == before:
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
                 self.repeat(self.taken + 1, tick + KEPT)

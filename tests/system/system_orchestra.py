@@ -299,8 +299,8 @@ if loss:
 
     _calm = sockets.Sender.__init__
 
-    def _stormy(self, port):
-        _calm(self, port)
+    def _stormy(self, *arguments):
+        _calm(self, *arguments)
         self.socket = _Lossy(self.socket)
 
     sockets.Sender.__init__ = _stormy

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from fwk.bus.network import Steps, UdpNetwork
 from fwk.host.process import raise_file_limit
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.model.plan import Plan
@@ -19,7 +20,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.hosts import StartFailure
 from fwk.supervisor.processes.zygote import Zygote
-from fwk.supervisor.supervisor import Supervisor
+from fwk.supervisor.supervisor import Machine, Supervisor
 from tools.bench import fwk_launch_file
 from tools.bench.shape import Shape
 from tools.bench.supervise import WARM_UP_TICKS, WARM_UP_US
@@ -31,42 +32,42 @@ _NEVER = 1 << 62
 class MeasuredSupervisor(Supervisor):
     """Runs ticks when the driver says so."""
 
-    def measure(self, control: socket.socket) -> None:
+    def measure(self, control: socket.socket) -> Steps[None]:
         """Starts everything, warms up, answers the driver until it says stop.
 
         Raises:
             StartFailure: components were not ready.
         """
-        self._hosts.start_all(self._interrupted)
+        yield from self._hosts.start_all(self._interrupted)
         with control.makefile("rw") as lines:
 
             def answer(what: dict[str, Any]) -> None:
                 lines.write(json.dumps(what) + "\n")
                 lines.flush()
 
-            self.loop.run_tick()
+            yield from self.loop.run_tick()
             first_us = now_us()
             while self.loop.tick < WARM_UP_TICKS or now_us() < first_us + WARM_UP_US:
-                self._tick()
+                yield from self._tick()
             answer({"first_tick_us": first_us})
             for line in lines:
                 words = line.split()
                 if words[0] == "stop":
                     break
-                answer(self._ticks(int(words[1]), float(words[2])))
-        self.loop.finish()
+                answer((yield from self._ticks(int(words[1]), float(words[2]))))
+        yield from self.loop.finish()
 
-    def _ticks(self, ticks: int, seconds: float) -> dict[str, Any]:
+    def _ticks(self, ticks: int, seconds: float) -> Steps[dict[str, Any]]:
         tick_us: list[int] = []
         repeated = self.loop.repeated
         end_us = now_us() + int(seconds * 1e6)
         while len(tick_us) < ticks and (start_us := now_us()) <= end_us:
-            self._tick()
+            yield from self._tick()
             tick_us.append(now_us() - start_us)
         return {"tick_us": tick_us, "repeated": self.loop.repeated - repeated}
 
-    def _tick(self) -> None:
-        self.loop.run_tick()
+    def _tick(self) -> Steps[None]:
+        yield from self.loop.run_tick()
         if self._status.due:
             self._publish_status()
 
@@ -79,14 +80,15 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     )
     zygote = Zygote(plan, number, {})
     children = HelperProcesses(plan, number, options, {}) if recorded else None
-    supervisor = MeasuredSupervisor(plan, options, number, zygote, {})
+    network = UdpNetwork()
+    supervisor = MeasuredSupervisor(plan, options, number, network, Machine(zygote))
     if not recorded:
         supervisor.loop.records.taken = _NEVER  # there is no gateway to wait for
     try:
-        supervisor.measure(control)
+        network.run(supervisor.measure(control))
     except StartFailure as failure:
         control.sendall(json.dumps({"error": str(failure)}).encode() + b"\n")
-    supervisor.stop()
+    network.run(supervisor.stop())
     if children:
         children.stop()
     zygote.close()

@@ -5,27 +5,30 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from fwk.clock import US_PER_S, monotonic_us
+from fwk.clock import US_PER_S
 from fwk.component.log import Logger
 from fwk.control import requests
-from fwk.control.address import supervisor_address
 from fwk.control.requests import RequestError
-from fwk.control.server import Connection, Server
+from fwk.control.server import Answer, Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
 from fwk.model.plan import Plan
 from fwk.supervisor.control.clock_control import ClockControl
 from fwk.supervisor.control.lifecycle import Steering
 from fwk.supervisor.control.plugin_requests import Directing
 from fwk.supervisor.control.view import component_view, period_us, times_view
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.attach import Places
 from fwk.supervisor.processes.host_process import HostEntry
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.sync_receiver import Mailbox
 from lcmtypes.core import status_t
 
 _FRESH_US = 2 * US_PER_S  # rates older than this say nothing
+
+
+Listen = Callable[[Answer], Server]
+"""Opens the control server that hands requests to an answer."""
 
 
 @dataclass(frozen=True)
@@ -46,9 +49,10 @@ class Control:
         options: RunOptions,
         hosts: Hosts,
         loop: MainLoop,
-        mailbox: Mailbox,
+        events: EventLoop,
         log: Logger,
         places: Places,
+        listen: Listen | None,
     ) -> None:
         self.settings = RunSettings(plan)
         self._plan = plan
@@ -58,7 +62,7 @@ class Control:
         self._log = log
         self._places = places
         self._steering = Steering(plan, hosts.table)
-        self._directing = Directing(hosts, self._steering, log)
+        self._directing = Directing(hosts, self._steering, events.now_us, log)
         loop.on_wishes = self._directing.ask
         self._clock = ClockControl(loop, log)
         self._status = status_t()
@@ -66,22 +70,24 @@ class Control:
         self._new: list[tuple[NewSettings, str]] = []
         self._waiting: list[_Waiting] = []
         self._watching: list[tuple[Connection, list[str]]] = []
-        self._server = Server(supervisor_address(plan.bus_port), self._take)
-        self._mailbox = mailbox
-        mailbox.watch(self._server.fileno(), self._server.handle)
-        mailbox.afterwards = self.check
+        self._events = events
+        self._server = listen(self.take) if listen else None
+        if self._server:
+            events.watch(self._server, self._server.handle)
+        events.afterwards = self.check
         hosts.settings_of = self._settings_of
         loop.on_boundary = self._boundary
 
     def close(self) -> None:
         """Answers nobody any more."""
-        self._mailbox.afterwards = lambda: None
-        self._mailbox.unwatch(self._server.fileno())
-        self._server.close()
+        self._events.afterwards = lambda: None
+        if self._server:
+            self._events.unwatch(self._server)
+            self._server.close()
 
     def published(self, status: status_t) -> None:
         """The newest published status; its rates are shown to who asks."""
-        self._status, self._status_us = status, monotonic_us()
+        self._status, self._status_us = status, self._events.now_us()
 
     def check(self) -> None:
         """Answers those who wait for something that has happened meanwhile."""
@@ -96,7 +102,8 @@ class Control:
                 still.append(waiting)
         self._waiting = still
 
-    def _take(self, line: bytes, connection: Connection) -> None:
+    def take(self, line: bytes, connection: Connection) -> None:
+        """Answers a control request at once, later, or again and again."""
         try:
             request = requests.parsed(requests.to_supervisor, line)
             answer = self._answer(request, connection)
@@ -157,7 +164,7 @@ class Control:
         }
 
     def _now(self) -> dict[str, Any]:
-        fresh = monotonic_us() < self._status_us + _FRESH_US
+        fresh = self._events.now_us() < self._status_us + _FRESH_US
         return {
             **self._clock.now(),
             "speed": self._status.speed if fresh else 0.0,
@@ -176,7 +183,7 @@ class Control:
     def _steer(self, request: requests.Steer, connection: Connection) -> None:
         entries = self._steering.hosts(request.action, request.names, request.force)
         for entry in entries:
-            self._steering.wish(request.action, entry, monotonic_us())
+            self._steering.wish(request.action, entry, self._events.now_us())
             self._hosts.asked.add(entry.index)
             if request.action == "kill":
                 self._hosts.kill(entry)

@@ -1,6 +1,7 @@
 """What components ask to be done with other components: collected during a tick, granted between two."""
 
-from fwk.clock import monotonic_us
+from collections.abc import Callable
+
 from fwk.component.log import Logger
 from fwk.control.requests import Action, RequestError
 from fwk.supervisor.control.lifecycle import Steering
@@ -15,9 +16,10 @@ _Wish = tuple[tuple[int, int, str, int], Action, list[str]]
 class Directing:
     """Grants wishes in one order, whichever came first: by tick, place in the tick, and name."""
 
-    def __init__(self, hosts: Hosts, steering: Steering, log: Logger) -> None:
+    def __init__(self, hosts: Hosts, steering: Steering, now_us: Callable[[], int], log: Logger) -> None:
         self._hosts = hosts
         self._steering = steering
+        self._now_us = now_us
         self._log = log
         self._wishes: list[_Wish] = []
 
@@ -37,6 +39,6 @@ class Directing:
                 self._log.warning(f"{name} wants to {action} {', '.join(names)}; refused: {error}")
                 continue
             for entry in entries:
-                self._steering.wish(action, entry, monotonic_us())
+                self._steering.wish(action, entry, self._now_us())
                 self._hosts.asked.add(entry.index)
             self._log.info(f"{name} asked to {action} {', '.join(entry.name for entry in entries)}")

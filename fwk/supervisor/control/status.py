@@ -1,9 +1,9 @@
 """The supervisor's view of the run, published twice a second."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from copy import copy
 
-from fwk.clock import US_PER_S, monotonic_us
+from fwk.clock import US_PER_S
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.processes.host_process import HostEntry
 from fwk.supervisor.run_clock import Pace
@@ -15,27 +15,30 @@ PERIOD_US = US_PER_S // 2
 class StatusReport:
     """Makes status messages and knows how fast the run is."""
 
-    def __init__(self, run: int, table: Sequence[HostEntry], loop: MainLoop, pace: Pace) -> None:
+    def __init__(
+        self, run: int, table: Sequence[HostEntry], loop: MainLoop, pace: Pace, now_us: Callable[[], int]
+    ) -> None:
         self.run = run
         self._table = table
         self._loop = loop
         self._pace = pace
-        self._began_us = monotonic_us()
+        self._now_us = now_us
+        self._began_us = now_us()
         self._before = (self._began_us, 0, 0)  # wall, tick, logical time of the last message
 
     @property
     def due(self) -> bool:
         """Whether it is time for the next message."""
-        return monotonic_us() >= self._before[0] + PERIOD_US
+        return self._now_us() >= self._before[0] + PERIOD_US
 
     @property
     def wall_s(self) -> float:
         """Wall time since the loop began."""
-        return (monotonic_us() - self._began_us) / US_PER_S
+        return (self._now_us() - self._began_us) / US_PER_S
 
     def message(self) -> status_t:
         """The state of everything now."""
-        now_us = monotonic_us()
+        now_us = self._now_us()
         wall_us, tick, time_us = self._before
         self._before = (now_us, self._loop.tick, self._pace.time_us)
         made = status_t()

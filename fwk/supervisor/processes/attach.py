@@ -9,19 +9,19 @@ from fwk.control.requests import RequestError
 from fwk.control.server import Connection
 from fwk.host.assignment import Start
 from fwk.model.plan import Plan
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.processes.external_process import Hand
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.sync_receiver import Mailbox
 
 
 class Places:
     """Knows what such a process has to be told, and whether it can have the place."""
 
-    def __init__(self, plan: Plan, run: int, hosts: Hosts, mailbox: Mailbox, rings: Mapping[str, Ring]) -> None:
+    def __init__(self, plan: Plan, run: int, hosts: Hosts, events: EventLoop, rings: Mapping[str, Ring]) -> None:
         self._plan = plan
         self._run = run
         self._hosts = hosts
-        self._mailbox = mailbox
+        self._events = events
         self._rings = rings
 
     def give(self, host: int, connection: Connection, held: bool) -> None:
@@ -35,7 +35,7 @@ class Places:
         if other:
             raise RequestError(f"{entry.name} is in the hands of process {other}; end that first")
         try:
-            hand = Hand(connection.pid, held, lambda start: self._begin(host, connection, start), self._mailbox)
+            hand = Hand(connection.pid, held, lambda start: self._begin(host, connection, start), self._events)
         except OSError as error:
             raise RequestError(f"the process that asks cannot be seen from here: {error.strerror}") from error
         self._hosts.hand_over(entry, hand)

@@ -6,7 +6,7 @@ import signal
 from collections.abc import Callable
 
 from fwk.host.assignment import Start
-from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.event_loop import EventLoop
 
 
 class Hand:
@@ -18,17 +18,17 @@ class Hand:
         ProcessLookupError: there is no such process any more.
     """
 
-    def __init__(self, pid: int, held: bool, begin: Callable[[Start], None], mailbox: Mailbox) -> None:
+    def __init__(self, pid: int, held: bool, begin: Callable[[Start], None], events: EventLoop) -> None:
         self.pid = pid
         self.held = held
         """Whether a debugger has it: then nobody hurries it."""
         self.begin = begin
-        self._mailbox = mailbox
+        self._events = events
         self._descriptor = os.pidfd_open(pid)
 
     def watch(self, on_end: Callable[[], None]) -> None:
         """Calls `on_end` when it has ended."""
-        self._mailbox.watch(self._descriptor, on_end)
+        self._events.watch(self._descriptor, on_end)
 
     def signal(self, number: int) -> None:
         """Signals it, unless it has ended meanwhile."""
@@ -37,5 +37,5 @@ class Hand:
 
     def close(self) -> None:
         """It has ended."""
-        self._mailbox.unwatch(self._descriptor)
+        self._events.unwatch(self._descriptor)
         os.close(self._descriptor)

@@ -6,23 +6,23 @@ from fwk.bus.sockets import Sender
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
-from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.event_loop import EventLoop
 
 
 class StandIn:
     """Has the port of the host as long as no process of its own does."""
 
-    def __init__(self, plan: Plan, host: int, mailbox: Mailbox) -> None:
+    def __init__(self, plan: Plan, host: int, events: EventLoop) -> None:
         ports = Ports.of(plan)
         self._gateway = ports.host(ports.gateway)
         self._members = ports.members
-        self._sender = Sender(ports.host(host))
-        self._mailbox = mailbox
-        mailbox.watch(self._sender.socket.fileno(), self._pass_on)
+        self._sender = Sender(ports.host(host), events.network.own_socket(ports.host(host)))
+        self._events = events
+        events.watch(self._sender.socket, self._pass_on)
 
     def close(self) -> None:
         """The host comes back."""
-        self._mailbox.unwatch(self._sender.socket.fileno())
+        self._events.unwatch(self._sender.socket)
         self._sender.socket.close()
 
     def _pass_on(self) -> None:

@@ -4,22 +4,25 @@ import signal
 from collections.abc import Callable
 from functools import partial
 
-from fwk.clock import US_PER_S, Clock, monotonic_us
+from fwk.bus.network import Steps
+from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger
 from fwk.engine.visibility import Ledger
 from fwk.host.assignment import Start
 from fwk.host.debugger import LEFT
 from fwk.model.plan import NOBODY, Plan
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.options import RunBroken
 from fwk.supervisor.processes.external_process import Hand
 from fwk.supervisor.processes.fetch_forwarder import StandIn
 from fwk.supervisor.processes.host_process import HostEntry, host_table
 from fwk.supervisor.processes.output import Printed
-from fwk.supervisor.processes.zygote import Started, Zygote
-from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.processes.starter import ProcessStarter, Started
+from fwk.supervisor.sync_receiver import SyncReceiver
 from lcmtypes.core import actual_t
 
 STOP_GRACE_US = 3 * US_PER_S
+LOOK_US = 100_000  # how often to look after hosts that are being started
 WAITS_US = US_PER_S // 2  # who waits longer for another is told
 
 
@@ -33,7 +36,16 @@ class Hosts:
     A process is started when those that it needs run. One that they will not come back for fails.
     """
 
-    def __init__(self, plan: Plan, zygote: Zygote, ledger: Ledger, mailbox: Mailbox, log: Logger, clock: Clock) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        starter: ProcessStarter,
+        ledger: Ledger,
+        events: EventLoop,
+        receiver: SyncReceiver,
+        log: Logger,
+        clock: Clock,
+    ) -> None:
         self.table: list[HostEntry] = host_table(plan)
         self.on_started: Callable[[HostEntry], None] = lambda _: None
         self.on_lost: Callable[[HostEntry], None] = lambda _: None
@@ -46,32 +58,34 @@ class Hosts:
         self.blackboard: Callable[[], str] = lambda: "[]"
         """What is open that was opened at run time."""
         self._plan = plan
-        self._zygote = zygote
+        self._starter = starter
         self._ledger = ledger
-        self._mailbox = mailbox
+        self._events = events
+        self._receiver = receiver
+        self._now_us = events.now_us
         self._log = log
         self._clock = clock
         self._stopping = False
         self._told: set[int] = set()  # hosts that were said to wait for others
         self._standins: dict[int, StandIn] = {}
         self._hands: dict[int, Hand] = {}
-        self.printed = Printed(mailbox, log, plan.log.lines_per_s)
-        mailbox.on_actual = self._on_actual
-        mailbox.watch(zygote.socket.fileno(), self._on_zygote)
+        self.printed = Printed(events, log, plan.log.lines_per_s)
+        receiver.on_actual = self._on_actual
+        events.watch(starter, self._on_process_events)
 
-    def start_all(self, interrupted: Callable[[], bool]) -> None:
+    def start_all(self, interrupted: Callable[[], bool]) -> Steps[None]:
         """Starts every host and waits until all are ready.
 
         Raises:
             StartFailure: some are not, with the reasons.
         """
-        now_us = monotonic_us()
+        now_us = self._now_us()
         for entry in self.table:
             entry.since_us = now_us
         self._start_ready("loaded")
         while any(entry.state == "starting" for entry in self.table) and not interrupted():
-            self._mailbox.pump(100_000)
-            now_us = monotonic_us()
+            yield from self._events.wait(now_us + LOOK_US)
+            now_us = self._now_us()
             for entry in self.table:
                 if entry.overdue(now_us):
                     entry.state, entry.reason = "failed", _not_ready(entry)
@@ -83,7 +97,7 @@ class Hosts:
 
     def maintain(self) -> None:
         """Starts hosts again whose time has come; gives up on those that do not become ready."""
-        now_us = monotonic_us()
+        now_us = self._now_us()
         for entry in self.table:
             if entry.overdue(now_us):
                 entry.since_us, entry.reason = now_us, _not_ready(entry)
@@ -103,13 +117,13 @@ class Hosts:
             if entry.settled:
                 self.asked.discard(entry.index)
             elif entry.leaves:
-                entry.leaving(monotonic_us())
+                entry.leaving(self._now_us())
                 self.leaving.add(entry.index)
                 self.on_stopped(entry)
                 self._signal(entry, signal.SIGTERM)
             elif entry.joins:
-                if entry.state != "waiting" or entry.restart_us > monotonic_us():
-                    entry.waits(monotonic_us())
+                if entry.state != "waiting" or entry.restart_us > self._now_us():
+                    entry.waits(self._now_us())
             elif not entry.wanted and entry.state in ("loaded", "waiting", "failed"):
                 entry.state, entry.reason = "stopped", ""
                 self.on_stopped(entry)
@@ -127,7 +141,7 @@ class Hosts:
         """At the next boundary a process started by hand takes the place; when it has ended, the host comes back."""
         self._hands[entry.index] = hand
         hand.watch(partial(self._on_hand_ended, entry, hand))
-        entry.want_restart(monotonic_us())
+        entry.want_restart(self._now_us())
         self.asked.add(entry.index)
 
     @property
@@ -140,32 +154,32 @@ class Hosts:
         components = (component for entry in self.table for component in entry.components)
         return {component.name: component.reason for component in components if component.state == "failed"}
 
-    def stop_all(self) -> list[str]:
+    def stop_all(self) -> Steps[list[str]]:
         """Asks all hosts to stop, also those that stand still; kills those that do not and returns their names."""
         self._stopping = True
         killed = []
-        self._zygote.wake()
+        self._starter.wake()
         for entry in self.table:
             if entry.alive and entry.pid:
                 self._signal(entry, signal.SIGTERM)
                 self._signal(entry, signal.SIGCONT)  # somebody may have stopped it
             elif entry.state == "waiting":
                 entry.state = "failed"
-        deadline_us = monotonic_us() + STOP_GRACE_US
-        while any(entry.pid for entry in self.table) and monotonic_us() < deadline_us:
-            self._mailbox.pump(deadline_us - monotonic_us())
+        deadline_us = self._now_us() + STOP_GRACE_US
+        while any(entry.pid for entry in self.table) and self._now_us() < deadline_us:
+            yield from self._events.wait(deadline_us)
         for entry in self.table:
             if entry.pid:
                 killed.append(entry.name)
                 self._signal(entry, signal.SIGKILL)
-        deadline_us = monotonic_us() + STOP_GRACE_US
-        while any(entry.pid for entry in self.table) and monotonic_us() < deadline_us:
-            self._mailbox.pump(deadline_us - monotonic_us())
+        deadline_us = self._now_us() + STOP_GRACE_US
+        while any(entry.pid for entry in self.table) and self._now_us() < deadline_us:
+            yield from self._events.wait(deadline_us)
         return killed
 
     def _start_ready(self, state: str) -> None:
         """Starts those in this state whose time has come and whose needs run; says for whom the others wait."""
-        now_us = monotonic_us()
+        now_us = self._now_us()
         for entry in self.table:
             if entry.state != state or now_us < entry.restart_us or self._stopping:
                 continue
@@ -191,7 +205,7 @@ class Hosts:
         if standin:
             standin.close()
         self._told.discard(entry.index)
-        incarnation = entry.starting(monotonic_us())
+        incarnation = entry.starting(self._now_us())
         settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
         start = Start(
             incarnation,
@@ -207,15 +221,15 @@ class Hosts:
             entry.pid, entry.held = hand.pid, hand.held
             hand.begin(start)
         else:
-            entry.held = incarnation == 1 and self._zygote.debugs(entry.index)
-            self._zygote.start(entry.index, start, entry.fresh_code)
+            entry.held = incarnation == 1 and self._starter.debugs(entry.index)
+            self._starter.start(entry.index, start, entry.fresh_code)
 
     def _signal(self, entry: HostEntry, number: int) -> None:
         hand = self._hands.get(entry.index)
         if hand and hand.pid == entry.pid:
             hand.signal(number)
         elif entry.pid:
-            self._zygote.signal(entry.pid, number)
+            self._starter.signal(entry.pid, number)
 
     def _on_hand_ended(self, entry: HostEntry, hand: Hand) -> None:
         del self._hands[entry.index]
@@ -234,14 +248,14 @@ class Hosts:
         if failed:
             entry.reason = failed[0]
         elif entry.state == "starting" and all(item.state == "running" for item in actual.components):
-            entry.state, entry.since_us = "running", monotonic_us()
+            entry.state, entry.since_us = "running", self._now_us()
             self.on_started(entry)
 
-    def _on_zygote(self) -> None:
+    def _on_process_events(self) -> None:
         try:
-            events = self._zygote.events()
+            events = self._starter.events()
         except RunBroken:
-            self._mailbox.unwatch(self._zygote.socket.fileno())
+            self._events.unwatch(self._starter)
             for entry in self.table:
                 entry.pid = 0  # the kernel kills them all
             raise
@@ -251,24 +265,25 @@ class Hosts:
                 entry.pid = event.pid
                 if entry.state == "stopping":  # asked to stop before there was a process to ask
                     self._signal(entry, signal.SIGTERM)
-                self.printed.listen(entry.name, event.output, event.errors)
+                if event.streams:
+                    self.printed.listen(entry.name, *event.streams)
             elif event.incarnation == entry.incarnation:
                 self._ended(entry, event.code, event.core)
 
     def _ended(self, entry: HostEntry, code: int, core: bool = False) -> None:
         asked = entry.state == "stopping"
         if asked:
-            self._mailbox.drain()  # its last done came before its end
+            self._receiver.drain()  # its last done came before its end
         self.leaving.discard(entry.index)
         culprit = self._culprit(entry)
-        entry.ended(code, monotonic_us(), self._stopping, core, culprit)
+        entry.ended(code, self._now_us(), self._stopping, core, culprit)
         self._ledger.void(entry.index, entry.incarnation + 1, self._clock.tick)
         if not asked:
             self.on_lost(entry)
         if not entry.expected and not self._stopping:
             self._stand_in(entry)
         if not self._stopping and not asked:
-            again = f"; starting it again in {max(0, entry.restart_us - monotonic_us()) / US_PER_S:.1f} s"
+            again = f"; starting it again in {max(0, entry.restart_us - self._now_us()) / US_PER_S:.1f} s"
             log = self._log.info if code == LEFT else self._log.error
             others = [name for name in self._members(entry) if name != culprit]
             went = f"; with it went {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
@@ -282,12 +297,12 @@ class Hosts:
         if len(self._members(entry)) < 2:
             return ""
         failed = [item.name for item in entry.components if item.state == "failed"]
-        working = self._zygote.progress.at(entry.index)
+        working = self._starter.component_at(entry.index)
         return failed[0] if failed else self._plan.components[working].name if working != NOBODY else ""
 
     def _stand_in(self, entry: HostEntry) -> None:
         if entry.index not in self._standins:
-            self._standins[entry.index] = StandIn(self._plan, entry.index, self._mailbox)
+            self._standins[entry.index] = StandIn(self._plan, entry.index, self._events)
 
 
 def _not_ready(entry: HostEntry) -> str:

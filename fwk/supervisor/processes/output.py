@@ -4,7 +4,7 @@ import os
 
 from fwk.component.log import Logger
 from fwk.component.rate_limit import RateLimit
-from fwk.supervisor.sync_receiver import Mailbox
+from fwk.supervisor.event_loop import EventLoop
 from lcmtypes.core import log_t
 
 _LINE_MAX = 4096
@@ -17,9 +17,9 @@ class Captured:
     What is above the limit is read and counted, so that who prints too much is neither heard nor held up.
     """
 
-    def __init__(self, descriptor: int, mailbox: Mailbox, log: Logger, limit: RateLimit, stream: str, level: int):
+    def __init__(self, descriptor: int, events: EventLoop, log: Logger, limit: RateLimit, stream: str, level: int):
         self._descriptor = descriptor
-        self._mailbox = mailbox
+        self._events = events
         self._log = log
         self._limit = limit
         self._stream = stream
@@ -29,7 +29,7 @@ class Captured:
         self._waits = b""  # what of it was there at the last look already
         self.open = True
         os.set_blocking(descriptor, False)
-        mailbox.watch(descriptor, self._read)
+        events.watch(descriptor, self._read)
 
     def look(self) -> None:
         """Once a second: what does not end in a line by then is logged as it is; says how many lines were dropped."""
@@ -66,7 +66,7 @@ class Captured:
         self._lines += len(lines)
         if not data:
             self.open = False
-            self._mailbox.unwatch(self._descriptor)
+            self._events.unwatch(self._descriptor)
             os.close(self._descriptor)
         self._tell_dropped()
 
@@ -77,8 +77,8 @@ class Captured:
 class Printed:
     """What all processes print."""
 
-    def __init__(self, mailbox: Mailbox, log: Logger, lines_per_s: int) -> None:
-        self._mailbox = mailbox
+    def __init__(self, events: EventLoop, log: Logger, lines_per_s: int) -> None:
+        self._events = events
         self._log = log
         self._lines_per_s = lines_per_s
         self._streams: list[Captured] = []
@@ -87,7 +87,7 @@ class Printed:
         """Logs what the process `name` writes to its standard output and error."""
         log = self._log.named(name)
         for descriptor, stream, level in ((output, "stdout", log_t.INFO), (errors, "stderr", log_t.WARNING)):
-            self._streams.append(Captured(descriptor, self._mailbox, log, RateLimit(self._lines_per_s), stream, level))
+            self._streams.append(Captured(descriptor, self._events, log, RateLimit(self._lines_per_s), stream, level))
 
     def look(self) -> None:
         """Once a second: what waits for the end of its line, and how much was too much for the log."""

@@ -10,7 +10,6 @@ import signal
 import socket
 import sys
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from fwk.component.images import Ring
@@ -36,32 +35,10 @@ from fwk.host.uncaught import log_uncaught
 from fwk.model.plan import Plan
 from fwk.supervisor.options import RunBroken
 from fwk.supervisor.processes.preload import preload
+from fwk.supervisor.processes.starter import Ended, Started
 
 _PACKET_MAX = 1 << 20
 _PATIENCE_S = 1.0
-
-
-@dataclass(frozen=True)
-class Started:
-    """A host process was forked; its standard output and error can be read from the two descriptors."""
-
-    host: int
-    incarnation: int
-    pid: int
-    output: int
-    errors: int
-
-
-@dataclass(frozen=True)
-class Ended:
-    """A host process ended: exit code, or minus the signal that killed it."""
-
-    host: int
-    incarnation: int
-    pid: int
-    code: int
-    core: bool
-    """Whether it left a core dump."""
 
 
 class Zygote:
@@ -75,20 +52,28 @@ class Zygote:
         debug: DebugRequest | None = None,
         profile: ProfileRequest | None = None,
     ) -> None:
-        self.socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self.progress = Progress(len(plan.hosts))
+        self._socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._progress = Progress(len(plan.hosts))
         parent = os.getpid()
         gc.collect()
         gc.freeze()  # what is here now stays; hosts share its memory as long as nobody touches it
         self.pid = os.fork()
         if self.pid == 0:
-            self.socket.close()
+            self._socket.close()
             os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
             die_with_parent(parent)
-            run_forked(lambda stop: _Forker(plan, run, rings, self.progress, other, debug, profile).serve(stop))
+            run_forked(lambda stop: _Forker(plan, run, rings, self._progress, other, debug, profile).serve(stop))
         other.close()
-        self.socket.setblocking(False)
+        self._socket.setblocking(False)
         self._debugged = debug.host if debug else None
+
+    def fileno(self) -> int:
+        """Returns the descriptor that is readable when there are events."""
+        return self._socket.fileno()
+
+    def component_at(self, host: int) -> int:
+        """Returns the index of the component that a host executes, or executed when it ended."""
+        return self._progress.at(host)
 
     def debugs(self, host: int) -> bool:
         """Whether the first process of a host runs under a debugger."""
@@ -114,7 +99,7 @@ class Zygote:
         found: list[Started | Ended] = []
         while True:
             try:
-                packet, descriptors, _, _ = socket.recv_fds(self.socket, _PACKET_MAX, 2)
+                packet, descriptors, _, _ = socket.recv_fds(self._socket, _PACKET_MAX, 2)
             except BlockingIOError:
                 return found
             except ConnectionResetError:  # it ended with requests unread
@@ -124,13 +109,13 @@ class Zygote:
                 raise RunBroken(f"the zygote ended: {wait_for_end(pid)}")
             event = json.loads(packet)
             if event.pop("event") == "started":
-                found.append(Started(**event, output=descriptors[0], errors=descriptors[1]))
+                found.append(Started(**event, streams=(descriptors[0], descriptors[1])))
             else:
                 found.append(Ended(**event))
 
     def close(self) -> None:
         """Ends the zygote; hosts that still run are killed."""
-        self.socket.close()
+        self._socket.close()
         if self.pid:
             end_child(self.pid, _PATIENCE_S)
 
@@ -140,10 +125,10 @@ class Zygote:
             os.kill(self.pid, signal.SIGCONT)
 
     def _send(self, request: dict[str, Any]) -> None:
-        self.socket.setblocking(True)
+        self._socket.setblocking(True)
         with contextlib.suppress(ConnectionError):  # it ended; its events say so
-            self.socket.send(json.dumps(request).encode())
-        self.socket.setblocking(False)
+            self._socket.send(json.dumps(request).encode())
+        self._socket.setblocking(False)
 
 
 class _Forker:

@@ -1,6 +1,7 @@
 """The main loop without processes: what it is told in which order, and what it says then."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -9,6 +10,7 @@ from fwk.bus import sync
 from fwk.clock import Clock
 from fwk.component.log import Logger
 from fwk.engine.visibility import Ledger
+from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.processes.host_process import HostEntry, host_table
 from fwk.supervisor.run_clock import Pace
@@ -42,7 +44,9 @@ class Played:
         self.script: list[Callable[[], None]] = []
         self.sent: list[tuple[bytes, bytes]] = []
         self.logged: list[log_t] = []
-        self._mailbox = cast(Any, SimpleNamespace(watch=lambda *_: None, pump=self._pump, pump_until=self._pump))
+        self._receiver = cast(Any, SimpleNamespace())
+        self._now_us = 0
+        network = SimpleNamespace(now_us=self._look_at_the_clock, watch=lambda _: None)
         self._hosts = cast(Any, SimpleNamespace(table=self.table, unsettled=False, leaving=set()))
         self._hosts.maintain = self._hosts.steer = lambda: None
         socket = SimpleNamespace(fileno=lambda: 0)
@@ -52,7 +56,8 @@ class Played:
             RUN,
             self._hosts,
             self.ledger,
-            self._mailbox,
+            EventLoop(cast(Any, network)),
+            self._receiver,
             cast(Any, sender),
             Pace(plan, 0.0),
             Logger("supervisor", Clock(), self.logged.append),
@@ -71,7 +76,7 @@ class Played:
         made.run, made.host, made.incarnation, made.tick, made.stage = RUN, host, incarnation, tick, 5
         made.next_time_us = -1
         made.n_marks, made.channel, made.sequence = 1, [host], [sequence]
-        self._mailbox.on_done(made)
+        self._receiver.on_done(made)
 
     def dones(self, *answers: tuple[int, int, int]) -> None:
         for host, sequence, tick in answers:
@@ -90,9 +95,18 @@ class Played:
     def play(self, *script: Callable[[], None]) -> None:
         """Runs one tick with this script; the loop is interrupted where the script ends."""
         self.script = [*script]
-        self.loop.run_tick()
+        steps = self.loop.run_tick()
+        with suppress(StopIteration):
+            next(steps)
+            while True:
+                self._pump()
+                steps.send([])
 
-    def _pump(self, _: int) -> None:
+    def _look_at_the_clock(self) -> int:
+        self._now_us += 10
+        return self._now_us
+
+    def _pump(self) -> None:
         if self.loop._outstanding and self.script:
             self.script.pop(0)()
 
