@@ -9,7 +9,7 @@ from typing import NoReturn
 import pytest
 from hypothesis import settings
 
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile("long", deadline=None, max_examples=5000)

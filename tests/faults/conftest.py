@@ -4,12 +4,12 @@ from pathlib import Path
 
 import pytest
 
-from tests.faults.faults_after import Aftermath
-from tests.system.conftest import _types, folder, launch
-from tests.system.system_orchestra import orchestra
-from tests.system.system_runs import played
+from tests.faults.aftermath import Aftermath
+from tests.harness.fixtures import folder, launch, orchestra_types
+from tests.harness.runs import played
+from tests.programs.orchestra import orchestra
 
-__all__ = ["RUN", "TICKS", "_types", "folder", "launch"]
+__all__ = ["RUN", "TICKS", "folder", "launch", "orchestra_types"]
 
 TICKS = 40
 RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")

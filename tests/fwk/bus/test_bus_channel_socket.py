@@ -10,7 +10,7 @@ from fwk.lcm import wire
 from fwk.model.plan import ChannelPlan
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 PLAN = ChannelPlan(0, "cyan1/pose", "soccer.pose_t", 0, ())
 WRITER, STRANGER = 1, 2

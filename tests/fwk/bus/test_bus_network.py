@@ -1,6 +1,6 @@
 from fwk.bus.network import Steps, UdpNetwork
 from fwk.bus.sockets import GROUP, LOOPBACK
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 MS = 1000
 

@@ -6,7 +6,7 @@ import pytest
 
 from fwk.bus.port_lock import PortLock, PortsInUse
 from fwk.model.ports import Ports
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 
 def test_no_port_has_two_uses() -> None:

@@ -2,7 +2,7 @@
 
 from fwk.bus.sockets import Sender, multicast_receiver
 from fwk.lcm import wire
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 
 def test_halves_of_two_lives_are_no_message(ports: PortBlock) -> None:

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works

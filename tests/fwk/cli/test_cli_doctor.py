@@ -16,7 +16,7 @@ from fwk.cli.check import machine_checks as checks
 from fwk.cli.check.doctor import doctor
 from fwk.cli.check.machine_checks import Finding, Level
 from fwk.model.ports import Ports
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.check.doctor import doctor; typer.run(doctor)"]
 

@@ -17,7 +17,7 @@ from fwk.cli.launch import app
 from fwk.lcm.event_log import LogReader
 from fwk.model.ports import Ports
 from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, launch, write_files
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 CARDS = "launch/cards.yaml"
 PICTURE = {"procs/picture.py": "import numpy as np\n\ndef draw(newest):\n    return np.zeros((48, 64, 3), np.uint8)\n"}

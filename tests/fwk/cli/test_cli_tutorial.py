@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from tests.fwk.cli.cli_processes import run, write_files
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 DOCS = Path(__file__).parents[3] / "docs"
 _FILE = re.compile(r"this as `([^`]+)`:\n\n```\w+\n(.*?)```", re.S)

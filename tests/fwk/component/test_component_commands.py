@@ -13,8 +13,8 @@ from fwk.component.commands import QUEUE_MAX, CommandError
 from fwk.lcm.type_registry import use_types_of
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.core import answer_t
-from tests.system.command_system import command_system
-from tests.system.system_runs import write_files
+from tests.harness.runs import write_files
+from tests.programs.command_system import command_system
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ from fwk.control.settings import RunSettings
 from fwk.control.yaml_edit import EditError, read
 from fwk.model.errors import PlanError
 from fwk.plan.load import LaunchOptions, load_plan
-from tests.faults.faults_fuzz import HOSTILE_TEXT
+from tests.harness.fuzz import HOSTILE_TEXT
 
 FEW = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 PARTS = """

@@ -12,7 +12,7 @@ from fwk.lcm.messages import sequence_of
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, log_t, tick_record_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 RUN = 4711
 

@@ -19,7 +19,7 @@ from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t, tick_record_t
 from lcmtypes.robot import imu_t, motor_command_t
 from tests.fwk.gateway.test_gateway_following import RUN, Kept
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 WISH = "r/wish"
 

@@ -16,7 +16,7 @@ from fwk.lcm.messages import MessageError, sequence_of
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
-from tests.system.system_runs import PortBlock, pause
+from tests.harness.runs import PortBlock, pause
 
 RUN = 4711
 

@@ -9,7 +9,7 @@ from fwk.host.outputs import Outputs
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t
 from tests.fwk.host.host_parts import imu, plan
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 CHANNEL, INDEX = "r/spot", 1
 ASKS = 1  # host

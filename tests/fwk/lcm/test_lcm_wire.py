@@ -11,7 +11,7 @@ import pytest
 from fwk.bus.public import PublicBus, UrlError, parse_url
 from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
-from tests.system.system_runs import PortBlock
+from tests.harness.runs import PortBlock
 
 SIZES = [0, 1, 300, 65_000, 65_490, 65_499, 65_500, 131_000, 1_000_000]
 

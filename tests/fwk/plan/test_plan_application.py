@@ -7,7 +7,7 @@ import pytest
 
 from fwk.model.plan import Plan
 from fwk.plan.files.source_files import Sources, mistakes
-from tests.system.system_runs import write_files
+from tests.harness.runs import write_files
 
 COMPONENT = """
 {imports}

@@ -1,0 +1,93 @@
+"""A C program made of nothing but our .lcm files reads the bus."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import lcm
+import pytest
+
+from fwk.lcm.event_log import LogReader
+from fwk.recording.compare import FRAMEWORK
+from tests.clients.bus import Bus, process, program
+from tests.fwk.recording.recording_made import entry, world_model
+from tests.harness.runs import PortBlock
+
+pytestmark = pytest.mark.system
+ROOT = Path(__file__).parents[2]
+WHEEL = Path(lcm.__file__).parent.parent
+
+
+@pytest.fixture(scope="module")
+def ball(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
+    """Builds the program when first asked; every type of ours is compiled without a warning."""
+    folder = tmp_path_factory.mktemp("ball")
+
+    def build() -> str:
+        if not (folder / "ball").exists():
+            types = map(str, sorted((ROOT / "lcmtypes").glob("*.lcm")))
+            subprocess.run([program("lcm-gen"), "-c", "--c-cpath", folder, "--c-hpath", folder, *types], check=True)
+            sources = [str(ROOT / "tools/clients/ball.c"), *map(str, folder.glob("*.c"))]
+            paths = [f"-I{folder}", f"-I{WHEEL}/include", f"-L{WHEEL}/lib", f"-Wl,-rpath,{WHEEL}/lib"]
+            subprocess.run(["cc", "-Wall", "-Werror", *paths, "-o", folder / "ball", *sources, "-llcm"], check=True)
+        return str(folder / "ball")
+
+    return build
+
+
+def test_the_ball_of_a_robot_is_printed(ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock) -> None:
+    needs("cc")
+    bus = Bus(ports.public_url)
+    channel, data, _ = entry("cyan1/world_model", world_model(7, 1), 7)
+    unknown = world_model(8, 1)
+    unknown.ball.known = False
+    with process([ball(), "cyan1", bus.url, "1"]) as started:
+        bus.publish_until(lambda: started.poll() is not None, data, channel)
+        assert started.stdout
+        assert started.stdout.read() == (
+            "cyan1/world_model tick 7: ball at (0.70, 0.00) m, moving (2.00, 0.00) m/s, seen 0.00 s ago\n"
+        )
+    with process([ball(), "cyan1", bus.url, "1"]) as started:
+        bus.publish_until(lambda: started.poll() is not None, entry(channel, unknown, 8)[1], channel)
+        assert started.stdout
+        assert started.stdout.read() == "cyan1/world_model tick 8: ball unknown\n"
+        assert started.returncode == 0
+
+
+def test_wrong_use_is_explained(ball: Callable[[], str], needs: Callable[..., None]) -> None:
+    needs("cc")
+    result = subprocess.run([ball()], capture_output=True, text=True, check=False)
+    assert result.returncode == 2
+    assert "usage: " in result.stderr
+
+
+def test_beside_a_running_robot_the_ball_is_printed_and_lcm_logger_hears_what_we_record(
+    ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock, tmp_path: Path
+) -> None:
+    needs("cc")
+    bus = Bus(ports.public_url)
+    launch = [sys.executable, "-m", "fwk.cli.launch", "one-robot.yaml", "--ticks", "240", "--speed", "5", "--plain"]
+    where = ["--bus-port", str(ports.bus), "--set", f"public_url={bus.url}", "--record", str(tmp_path / "own")]
+    with process([ball(), "cyan1", bus.url, "200"]) as printing, bus.logger(tmp_path / "heard"):
+        run = subprocess.run(
+            [*launch, *where], cwd=tmp_path, env={**os.environ, "HOME": str(tmp_path)}, capture_output=True, text=True
+        )
+        assert run.returncode == 0, run.stdout + run.stderr
+        assert printing.wait(30) == 0
+        assert printing.stdout
+        lines = printing.stdout.read().splitlines()
+    assert len(lines) == 200
+    assert all(line.startswith("cyan1/world_model tick ") for line in lines)
+    assert any("ball at (" in line for line in lines)
+    own, heard = said(tmp_path / "own"), said(tmp_path / "heard")
+    assert {channel for channel, _ in heard} == {channel for channel, _ in own}
+    assert set(heard) <= set(own)  # to the byte
+    assert len(set(heard)) > 0.9 * len(set(own))  # a public bus may lose some: beside a busy machine lcm-logger is late
+
+
+def said(log: Path) -> list[tuple[str, bytes]]:
+    """What components published."""
+    ours = [event for event in LogReader(log) if "/" in event.channel and not event.channel.startswith(FRAMEWORK)]
+    return [(event.channel, event.data) for event in ours]

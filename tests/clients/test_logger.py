@@ -1,0 +1,38 @@
+"""lcm-logplayer plays our logs, and what lcm-logger records of it compares equal."""
+
+from pathlib import Path
+
+import pytest
+
+from fwk.recording.compare import compare
+from fwk.recording.log_info import log_info
+from tests.clients.bus import Bus
+from tests.fwk.recording.recording_made import entries, write
+from tests.harness.runs import PortBlock
+
+pytestmark = pytest.mark.system
+
+
+@pytest.mark.core
+def test_what_lcm_logger_heard_of_lcm_logplayer_is_what_we_wrote(tmp_path: Path, ports: PortBlock) -> None:
+    bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=40))
+    with bus.logger(tmp_path / "heard"):
+        bus.play(played)
+    assert compare(played, tmp_path / "heard") is None
+    assert log_info(tmp_path / "heard").channels["cyan1/odometry"].lost == 0
+
+
+def test_what_was_not_played_is_missed(tmp_path: Path, ports: PortBlock) -> None:
+    bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=10))
+    with bus.logger(tmp_path / "heard"):
+        bus.play(played, "--regexp=cyan1/.*")
+    assert "cyan2/odometry: tick 1" in str(compare(played, tmp_path / "heard"))
+    assert compare(played, tmp_path / "heard", common=True) is None
+
+
+def test_a_log_played_twice_is_the_same_with_everything_repeated(tmp_path: Path, ports: PortBlock) -> None:
+    bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=10))
+    with bus.logger(tmp_path / "heard"):
+        bus.play(played)
+        bus.play(played)
+    assert compare(played, tmp_path / "heard") is None

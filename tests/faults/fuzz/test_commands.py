@@ -1,0 +1,169 @@
+"""Whatever is typed behind a command, it ends with an answer or a sentence, never with a traceback."""
+
+import json
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as some
+from typer import Typer
+from typer.main import get_command
+from typer.testing import CliRunner
+
+from fwk.cli import launch as launching
+from fwk.cli.commands import app as fwk
+from fwk.cli.launch import app as fwk_launch
+from fwk.cli.look.bb import _message
+from fwk.cli.steer.send import made
+from fwk.gateway.channel_server import plain
+from fwk.lcm import messages
+from fwk.lcm.messages import MessageError
+from tests.harness.fuzz import HOSTILE_TEXT, all_types
+from tests.harness.runs import PortBlock, write_files
+
+TINY = {
+    "tiny.py": """
+from fwk import Component, Config
+
+
+class TinyConfig(Config):
+    gain: float = 1.0
+    names: list[str] = []
+
+
+class Tiny(Component):
+    stage = "think"
+    config: TinyConfig
+""",
+    "tiny.yaml": 'name: tiny\ncomponents: {a/tiny: {use: "tiny:Tiny"}}\n',
+}
+
+
+class _WouldRun(Exception):  # noqa: N818 - what happens
+    pass
+
+
+@pytest.fixture
+def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a launch file whose run is not started."""
+
+    def run(*_: object) -> None:
+        raise _WouldRun
+
+    write_files(tmp_path, TINY)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(launching, "run", run)
+    return tmp_path
+
+
+def check(app: Typer, *arguments: str) -> None:
+    result = CliRunner().invoke(app, arguments)
+    caught = result.exception
+    assert caught is None or isinstance(caught, SystemExit | _WouldRun), (arguments, caught)
+    assert result.exit_code in (0, 1, 2)
+
+
+OPTIONS = [
+    "--ticks",
+    "--time",
+    "--speed",
+    "--seed",
+    "--record",
+    "--set",
+    "--hosting",
+    "--profile",
+    "--only",
+    "--without",
+    "--debug",
+    "--debugpy",
+    "--bus-port",
+    "--video",
+]
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_every_option_of_fwk_launch(tiny: Path, option: str) -> None:
+    for text in HOSTILE_TEXT:
+        check(fwk_launch, "tiny.yaml", option, text)
+
+
+@pytest.mark.parametrize("path", ["", "a/tiny.", "a/tiny.gain=", "a/tiny.names=", "a/tiny.names.0=", "*/tiny.gain="])
+def test_every_part_of_set(tiny: Path, path: str) -> None:
+    for text in HOSTILE_TEXT:
+        check(fwk_launch, "tiny.yaml", "--set", path + text)
+
+
+def test_every_launch_file(tiny: Path) -> None:
+    for text in HOSTILE_TEXT:
+        check(fwk_launch, text)
+        check(fwk, "check", text)
+
+
+def commands(path: tuple[str, ...], command: Any) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Every command of `fwk` with its words."""
+    below: Any = getattr(command, "commands", {})
+    if not below:
+        yield path, command
+    for name in below:
+        yield from commands((*path, name), below[name])
+
+
+COMMANDS = {" ".join(path): command for path, command in commands((), get_command(fwk)) if path != ("spy",)}
+"""Without the one that starts a program of somebody else."""
+
+
+def places(command: Any) -> Iterator[tuple[str, ...]]:
+    """Words behind which each text is typed: as an argument, behind other arguments, and behind each option."""
+    arguments = [each for each in command.params if each.param_type_name == "argument"]
+    for count in range(len(arguments)):
+        yield ("x",) * count
+    needed = ("x",) * sum(each.required for each in arguments)
+    for option in command.params:
+        if option.param_type_name == "option" and not option.is_flag:
+            yield (*needed, option.opts[0])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_argument_and_option_of_every_command(tiny: Path, ports: PortBlock, command: str) -> None:
+    made = COMMANDS[command]
+    nobody = ("--bus-port", str(ports.bus))  # and not somebody else's run on this machine
+    has_port = any("--bus-port" in each.opts for each in made.params)
+    for before in places(made):
+        port = nobody if has_port and before[-1:] != ("--bus-port",) else ()
+        for text in HOSTILE_TEXT:
+            check(fwk, *command.split(), *port, *before, text)
+
+
+@pytest.mark.parametrize("command", ["status", "bb list", "config list", "log", "doctor"])
+def test_every_bus_port(tiny: Path, command: str) -> None:
+    for text in ("-1", "0", "1", "65535", "65536", "x", str(2**64)):
+        check(fwk, *command.split(), "--bus-port", text)
+
+
+TYPES = [messages.type_name(kind) for kind in all_types()]
+VALUES = some.recursive(
+    some.none() | some.booleans() | some.integers() | some.floats() | some.text(max_size=8),
+    lambda below: some.lists(below, max_size=3) | some.dictionaries(some.text(max_size=3), below, max_size=2),
+    max_leaves=4,
+)
+
+
+@given(some.sampled_from(TYPES), VALUES | some.sampled_from(HOSTILE_TEXT), some.data())
+@example("robot.imu_t", "[" * 1200, None)
+def test_every_field_and_value_of_fwk_send(name: str, value: Any, data: some.DataObject | None) -> None:
+    kind: Any = messages.type_named(name)
+    fields = [*kind.__slots__, "", ".", "header.tick", "header.__class__", "decode", "a.b"]
+    field = data.draw(some.sampled_from(fields)) if data else fields[-1]
+    text = value if isinstance(value, str) else json.dumps(value)
+    try:
+        sent = messages.encode(made(name, [f"{field}={text}"]), "a/b")
+    except MessageError:
+        return
+    shown = {"channel": "a/b", "type": name, "sequence": 1, "tick": 1, "time_us": 1, "value": plain(kind.decode(sent))}
+    assert json.dumps(shown)
+    if messages.has_header(kind):
+        assert list(islice(_message(shown), 1000))

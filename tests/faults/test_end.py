@@ -1,0 +1,72 @@
+"""A run that ends badly, or whose end goes wrong: nothing is left of it, and it says what happened."""
+
+import contextlib
+import os
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.faults.aftermath import Aftermath
+from tests.faults.conftest import RUN
+from tests.harness.fixtures import Launch
+from tests.harness.runs import Launched
+
+pytestmark = pytest.mark.system
+
+WHO: dict[str, Callable[[Launched], int]] = {
+    "gateway": lambda run: run.gateway(),
+    "zygote": lambda run: run.zygote(),
+}
+
+
+@pytest.mark.parametrize("who", WHO)
+def test_who_dies_while_everything_is_being_stopped_is_named(
+    launch: Launch, traced: Path, after: Aftermath, who: str
+) -> None:
+    run = launch(*RUN, "--set", "d/player.trouble=finalize:wait")
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    victim = WHO[who](run)
+    run.signal(signal.SIGINT)
+    run.until_true((traced / "trouble-d_player").exists, "d/player finalizes")
+    os.kill(victim, signal.SIGKILL)
+    (traced / "go-on").touch()
+    after.check(run, code=1)
+    assert f"the {who} ended: killed by signal 9 while everything was being stopped" in run.text
+
+
+def test_who_asks_all_processes_to_end_gets_a_clean_end(launch: Launch, traced: Path, after: Aftermath) -> None:
+    """As systemd does when it stops a service."""
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    for pid in [run.zygote(), *(process.pid for process in run.processes())]:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(pid, signal.SIGTERM)
+    recording = after.check(run)
+    assert recording.gaps() == {}
+    assert "broken" not in run.text
+
+
+def test_who_stands_still_is_no_orphan_when_the_supervisor_is_killed(
+    launch: Launch, traced: Path, after: Aftermath
+) -> None:
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    for process in run.processes():
+        if process.pid != run.process.pid:
+            os.kill(process.pid, signal.SIGSTOP)
+    run.signal(signal.SIGKILL)
+    after.check(run, code=-signal.SIGKILL)
+
+
+def test_ctrl_c_that_is_kept_pressed_ends_it_as_well(launch: Launch, traced: Path, after: Aftermath) -> None:
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    while run.process.poll() is None:
+        run.signal(signal.SIGINT)
+    after.check(run)

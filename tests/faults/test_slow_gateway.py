@@ -1,0 +1,64 @@
+"""A gateway that takes its time to start: nothing is sent before it hears."""
+
+from pathlib import Path
+
+import pytest
+
+from tests.faults.aftermath import Aftermath
+from tests.faults.conftest import RUN
+from tests.harness.fixtures import Launch
+from tests.harness.runs import write_files
+
+pytestmark = pytest.mark.system
+
+SLOW = '''
+"""Half a second until the gateway has its sockets."""
+
+import time
+
+from fwk.gateway.gateway import Gateway
+
+make = Gateway.__init__
+
+
+def make_slowly(self, *arguments):
+    time.sleep(0.5)
+    make(self, *arguments)
+
+
+Gateway.__init__ = make_slowly
+'''
+
+
+@pytest.fixture
+def slow(traced: Path) -> Path:
+    """The orchestra's folder with a slow gateway."""
+    write_files(traced, {"procs/slow.py": SLOW})
+    player = traced / "procs/player.py"
+    player.write_text(player.read_text().replace("import procs.weather\n", "import procs.slow\n"))
+    return traced
+
+
+def trouble(kind: str) -> list[str]:
+    """Settings of `a/player`."""
+    settings = {"trouble": kind, "trouble_tick": 1, "trouble_stage": "act"}
+    return [f"--set=a/player.{name}={value}" for name, value in settings.items()]
+
+
+@pytest.mark.parametrize("hosting", ["process", "single"])
+def test_it_has_also_what_somebody_wrote_who_died_in_the_first_tick(
+    launch: Launch, slow: Path, after: Aftermath, hosting: str
+) -> None:
+    run = launch(*RUN, "--ticks", "10", "--hosting", hosting, *trouble("loop:raise"))
+    run.until_ticks("f/player", 1)
+    after.note(run)
+    recording = after.check(run, tracebacks=True)
+    assert recording.gaps() == {}
+    assert "a/player#2" in {header.writer for header in recording.headers("a/note")}
+    assert "lost 0" in run.text
+
+
+def test_it_tells_why_somebody_failed_in_init(launch: Launch, slow: Path) -> None:
+    run = launch(*RUN, *trouble("init:raise"))
+    assert run.wait() == 1
+    assert "a/player: failed in init" in run.text

@@ -1,0 +1,190 @@
+"""Processes that stand still for three seconds (SIGSTOP): lockstep waits for them, real time goes on without them."""
+
+import contextlib
+import os
+import re
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+import psutil
+import pytest
+
+from lcmtypes.core import tick_event_t
+from tests.faults.aftermath import Aftermath
+from tests.faults.conftest import RUN, TICKS
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import Launched, PortBlock, pause, write_files
+from tests.programs.control_system import Steered
+
+pytestmark = pytest.mark.system
+
+STILL_S = 3.0
+WHO: dict[str, Callable[[Launched], int]] = {
+    "a component": lambda run: run.host("d/player"),
+    "the supervisor": lambda run: run.process.pid,
+    "the gateway": lambda run: run.gateway(),
+    "the zygote": lambda run: run.zygote(),
+}
+
+
+@pytest.mark.parametrize("who", WHO)
+def test_in_lockstep_nothing_shows_that_somebody_stood_still(
+    launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, who: str
+) -> None:
+    run = launch(*RUN, "--ticks", str(TICKS))
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    still = WHO[who](run)
+    os.kill(still, signal.SIGSTOP)
+    pause(STILL_S)
+    with contextlib.suppress(ProcessLookupError):  # a run that needed no new process has ended, and woken the zygote
+        os.kill(still, signal.SIGCONT)
+    recording = after.check(run, equal_to=undisturbed)
+    assert recording.gaps() == {}
+    assert "lost 0" in run.text
+
+
+def test_in_lockstep_everybody_waits(launch: Launch, traced: Path, after: Aftermath) -> None:
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    os.kill(run.host("d/player"), signal.SIGSTOP)
+    pause(0.5)
+    before = run.tick("a/player")
+    pause(STILL_S - 0.5)
+    assert run.tick("a/player") == before
+    os.kill(run.host("d/player"), signal.SIGCONT)
+    run.until_ticks("f/player", 5)
+    run.signal(signal.SIGINT)
+    after.check(run)
+
+
+def test_the_state_names_a_gateway_that_stands_still(launch: Launch, folder: Path, ports: PortBlock) -> None:
+    run = Steered(launch(*RUN), ports)
+    gateway = run.launched.gateway()
+    os.kill(gateway, signal.SIGSTOP)
+    run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["gateway"], "that the gateway is waited for")
+    os.kill(gateway, signal.SIGCONT)
+    run.ticks_pass()
+    run.end()
+
+
+@pytest.mark.parametrize("who", ["a component", "the supervisor"])
+def test_in_real_time_the_run_goes_on(launch: Launch, wall: Path, after: Aftermath, who: str) -> None:
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    still = WHO[who](run)
+    os.kill(still, signal.SIGSTOP)
+    if who == "a component":
+        run.until("d/player is late")
+        run.until_ticks("f/player", 10)  # the others go on
+    pause(STILL_S)
+    os.kill(still, signal.SIGCONT)
+    run.until_ticks("d/player", 5)
+    run.until_ticks("f/player", 5)
+    run.signal(signal.SIGINT)
+    recording = after.check(run)
+    assert recording.gaps() == {}
+    if who == "a component":
+        assert "d/player is on time again" in run.text
+
+
+@pytest.mark.parametrize("who", ["a component", "the gateway", "the zygote"])
+def test_who_stands_still_is_woken_to_end_well(launch: Launch, traced: Path, after: Aftermath, who: str) -> None:
+    run = launch(*RUN)
+    run.until_ticks("f/player", 5)
+    after.note(run)
+    os.kill(WHO[who](run), signal.SIGSTOP)
+    run.signal(signal.SIGINT)
+    recording = after.check(run)
+    assert recording.gaps() == {}
+    assert "killed" not in run.text
+
+
+LOSING = '''
+"""A player whose messages get lost and who stands still before anybody can ask for them again."""
+
+import os
+import signal
+
+from fwk.host.outputs import Outputs
+
+
+def lose_and_stand_still():
+    publish = Outputs.publish
+
+    def publish_nothing(self, written):
+        sender, send = self._sender, self._sender.publish
+
+        def send_last(*done):
+            send(*done)
+            sender.publish = send
+            os.kill(os.getpid(), signal.SIGSTOP)
+
+        sender.publish = lambda *_: None
+        marks = publish(self, written)
+        sender.publish = send_last
+        Outputs.publish = publish
+        return marks
+
+    Outputs.publish = publish_nothing
+
+
+MORE = {"lose": lose_and_stand_still}
+'''
+
+
+@pytest.fixture
+def losing(traced: Path) -> list[str]:
+    """Settings with which `d/player` loses its messages of tick 5 and stands still."""
+    trouble = traced / "procs/trouble.py"
+    write_files(traced, {"procs/losing.py": LOSING})
+    trouble.write_text(trouble.read_text() + "\nfrom procs.losing import MORE  # noqa: E402\nMAKE |= MORE\n")
+    settings = {"trouble": "loop:lose", "trouble_tick": 5}
+    return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
+
+
+def until_still(run: Launched) -> int:
+    """Waits until `d/player` stands still; its process."""
+    run.until_ticks("d/player", 5)
+    process = psutil.Process(run.host("d/player"))
+    run.until_true(lambda: process.status() == psutil.STATUS_STOPPED, "d/player stands still")
+    return process.pid
+
+
+def test_in_lockstep_what_somebody_lost_who_stands_still_is_waited_for(
+    launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, losing: list[str]
+) -> None:
+    run = launch(*RUN, "--ticks", str(TICKS), *losing)
+    still = until_still(run)
+    after.note(run)
+    pause(2.0)
+    assert run.tick("a/player") == 5
+    os.kill(still, signal.SIGCONT)
+    recording = after.check(run)
+    assert recording.messages == Recording(undisturbed).messages
+    assert "lost 0" in run.text
+
+
+def test_in_real_time_it_is_lost_and_told_and_the_run_goes_on_and_replays(
+    launch: Launch, wall: Path, after: Aftermath, losing: list[str]
+) -> None:
+    run = launch(*RUN, *losing)
+    still = until_still(run)
+    after.note(run)
+    run.until_ticks("f/player", 120)  # more than the loop may be ahead of the gateway
+    assert psutil.Process(still).status() == psutil.STATUS_STOPPED
+    os.kill(still, signal.SIGCONT)
+    run.until_ticks("d/player", 5)
+    run.signal(signal.SIGINT)
+    recording = after.check(run)
+    assert {"d/note"} <= recording.gaps().keys() <= {"d/note", "d/burst"}
+    assert "gateway: d/note: 1 messages of 5 to 5 are lost and not in the recording" in run.text
+    assert "f/player: d/note: 1 messages of 5 to 5 lost" in run.text
+    assert re.search(r"messages and ticks: lost [1-9]", run.text), run.text
+    assert re.search(r"recording: .*log.lcm; \d messages were lost on their way there", run.text), run.text
+    missed = [event for record in recording.records for event in record.events if event.kind == tick_event_t.MISSED]
+    assert {(event.index, event.tick) for event in missed} >= {(host, 5) for host in (0, 1, 2, 4, 5)}

@@ -1,0 +1,117 @@
+"""The wheel, in an empty environment far from any checkout: complete, and enough to run systems of one's own."""
+
+import os
+import shutil
+import subprocess
+import sys
+import venv
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.fwk.cli.cli_processes import PROCS, write_files
+from tests.harness.runs import PortBlock
+
+ROOT = Path(__file__).parents[2]
+INSTALL_TIMEOUT_S = 280.0
+LEFTOVER = "procs/left_over.py"
+Run = Callable[..., "subprocess.CompletedProcess[str]"]
+
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel of a clean copy, without generated types, but with what an earlier build left behind."""
+    folder = tmp_path_factory.mktemp("wheel")
+    copy = folder / "source"
+    for name in ("fwk", "procs", "launch"):
+        shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for file in (*ROOT.glob("lcmtypes/*.lcm"), ROOT / "pyproject.toml", ROOT / "README.md", ROOT / "LICENSE"):
+        write_files(copy, {str(file.relative_to(ROOT)): file.read_text()})
+    write_files(copy, {f"build/lib/{LEFTOVER}": ""})
+    build = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(folder), str(copy)]
+    subprocess.run(build, check=True, timeout=INSTALL_TIMEOUT_S)
+    (built,) = folder.glob("*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """Runs the commands of a fresh environment that holds the wheel and what it asks for, in a folder of the user's."""
+    folder = tmp_path_factory.mktemp("installed")
+    environment = folder / "env"
+    venv.create(environment, with_pip=True)
+    binaries = environment / "bin"
+    pip = [str(binaries / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", str(wheel)]
+    subprocess.run(pip, check=True, timeout=INSTALL_TIMEOUT_S)
+    user = folder / "user"
+    write_files(user, PROCS)
+    variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    variables |= {"HOME": str(user), "PATH": f"{binaries}{os.pathsep}/usr/bin:/bin"}
+
+    def run(*command: str) -> "subprocess.CompletedProcess[str]":
+        return subprocess.run(
+            [str(binaries / command[0]), *command[1:]],
+            cwd=user,
+            env=variables,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            timeout=INSTALL_TIMEOUT_S,
+            check=False,
+        )
+
+    return run
+
+
+def test_the_wheel_holds_framework_components_types_and_launch_files(wheel: Path) -> None:
+    names = set(zipfile.ZipFile(wheel).namelist())
+    wanted = {
+        "fwk/py.typed",
+        "fwk/cli/launch.py",
+        "procs/simulation/simulator.py",
+        "procs/simulation/physics/world.py",
+        "lcmtypes/core.lcm",
+        "lcmtypes/core/header_t.py",
+        "lcmtypes/core/header_t.pyi",
+        "lcmtypes/soccer/__init__.py",
+        "launch/soccer.yaml",
+    }
+    assert wanted <= names
+    assert LEFTOVER not in names
+    assert not [name for name in names if name.startswith(("tests/", "tools/", "docs/", "build/"))]
+    assert not {"lcmtypes/__init__.py", "procs/__init__.py"} & names  # namespace packages, so that a user's joins them
+
+
+@pytest.mark.parametrize("command", ["fwk", "fwk-launch"])
+def test_the_commands_explain_themselves(installed: Run, command: str) -> None:
+    result = installed(command, "--help")
+    assert result.returncode == 0, result.stdout
+    assert f"Usage: {command} " in result.stdout
+
+
+def test_the_installed_launch_files_are_found(installed: Run) -> None:
+    result = installed("fwk", "check", "soccer.yaml")
+    assert result.returncode == 0, result.stdout
+    assert "components" in result.stdout
+
+
+def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run, ports: PortBlock) -> None:
+    arguments = ["--ticks", "20", "--speed", "max", "--bus-port", str(ports.bus)]
+    result = installed("fwk-launch", "cards.yaml", "--record", "mine.log", *arguments)
+    assert result.returncode == 0, result.stdout
+    assert "20 ticks done" in result.stdout
+    info = installed("fwk", "log-info", "mine.log")
+    assert "cards.count_t" in info.stdout, info.stdout
+
+
+def test_the_installed_robots_play(installed: Run, ports: PortBlock) -> None:
+    result = installed(
+        "fwk-launch", "one-robot.yaml", "--ticks", "5", "--speed", "max", "--bus-port", str(ports.bus), "--no-record"
+    )
+    assert result.returncode == 0, result.stdout
+    assert "CYAN 0 : 0 MAGENTA" in result.stdout
+    assert "one-robot: 5 ticks done" in result.stdout

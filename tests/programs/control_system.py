@@ -1,0 +1,151 @@
+"""A small system to be looked at and steered: a counter, one that follows it, and a camera with its user."""
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+from fwk.control.address import supervisor_address
+from fwk.control.client import Client, ControlError
+from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, fwk, write_files
+
+PARTS = '''
+"""Counts, follows, and looks."""
+
+import numpy as np
+
+from fwk import Component, Config, Image, Logger, Reads, VisionMaster, Writes, channel
+from fwk.clock import sleep_s
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+
+class CounterConfig(Config):
+    step: float = 1.0
+    """Added in each iteration."""
+    hang: bool = False
+    """Whether an iteration never ends."""
+
+
+class Counter(Component):
+    """Counts up."""
+
+    stage = "think"
+    config: CounterConfig
+    log: Logger
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        while self.config.hang:
+            sleep_s(0.01)
+        self.imu.value.heading_rad += self.config.step
+        self.imu.write()
+
+    def config_changed(self) -> None:
+        self.log.warning(f"step is {self.config.step}")
+
+    def finalize(self) -> None:
+        self.log.info("counted enough")
+
+
+class Follower(Component):
+    """Says where the counter is; does not like 99."""
+
+    stage = "act"
+    imu: Reads[imu_t] = channel("r/imu")
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        self.pose.value.heading_rad = self.imu.value.heading_rad
+        self.pose.value.x_m = 1.0
+        self.pose.write()
+
+
+class Camera(Component):
+    """Gives out frames."""
+
+    stage = "sensor_acquire"
+    image: VisionMaster
+
+    def loop(self) -> None:
+        self.image.publish(np.zeros((4, 4), np.uint8))
+
+
+class Finder(Component):
+    """Looks at them."""
+
+    stage = "sensor_prepare"
+    image: Image
+    imu: Writes[imu_t] = channel("r/seen")
+
+    def loop(self) -> None:
+        self.imu.write()
+'''
+LAUNCH = """
+name: small
+public_url: {url}
+components:
+  r/counter: {{use: "parts:Counter", restart: {{limit: 1}}}}
+  r/follower: {{use: "parts:Follower"}}
+  r/camera: {{use: "parts:Camera"}}
+  r/finder: {{use: "parts:Finder"}}
+"""
+
+
+def write_system(folder: Path, ports: PortBlock) -> None:
+    """Writes the files of the system."""
+    write_files(folder, {"parts.py": PARTS, "small.yaml": LAUNCH.format(url=ports.public_url)})
+
+
+class Steered:
+    """A run of it, and what is typed in another terminal."""
+
+    def __init__(self, launched: Launched, ports: PortBlock) -> None:
+        self.launched = launched
+        self._ports = ports
+        launched.until_true(self._ticks, "the first tick")
+
+    def fwk(self, *arguments: str, code: int = 0) -> str:
+        """What `fwk ARGUMENTS` prints about this run; it has to end with that exit code."""
+        which = [] if "--verify" in arguments else ["--bus-port", str(self._ports.bus)]
+        return fwk(self.launched.folder, *arguments, *which, code=code)
+
+    def json(self, *arguments: str) -> Any:
+        """What `fwk ARGUMENTS --json` prints."""
+        return json.loads(self.fwk(*arguments, "--json"))
+
+    def ask(self, verb: str, **fields: Any) -> dict[str, Any]:
+        """An answer of the supervisor."""
+        with Client(supervisor_address(self._ports.bus), TIMEOUT_S) as client:
+            return client.ask(verb, **fields)
+
+    def steer(self, action: str, *names: str) -> None:
+        """As `fwk ACTION NAMES`, without a process of its own."""
+        self.ask("steer", action=action, names=names)
+
+    def component(self, name: str) -> dict[str, Any]:
+        """The state of a component."""
+        found: dict[str, Any] = self.ask("status", names=[name])["components"][0]
+        return found
+
+    @property
+    def tick(self) -> int:
+        """The newest tick."""
+        return int(self.ask("status")["tick"])
+
+    def ticks_pass(self, number: int = 3) -> None:
+        """Waits so many ticks."""
+        before = self.tick
+        self.launched.until_true(lambda: self.tick >= before + number, f"{number} more ticks")
+
+    def end(self) -> Path:
+        """Ends the run in good order; its recording."""
+        self.launched.signal(signal.SIGINT)
+        assert self.launched.wait() == 0, self.launched.text
+        return self.launched.run_dir / "log.lcm"
+
+    def _ticks(self) -> bool:
+        try:
+            return self.tick > 1
+        except ControlError:  # it does not listen yet
+            return False

@@ -1,0 +1,122 @@
+"""Programs outside write a run's channels: stamped, seen once, repaired, recorded, and replayed byte for byte."""
+
+import os
+import signal
+from pathlib import Path
+
+import lcm
+import pytest
+
+from fwk.control.address import gateway_address
+from fwk.control.client import Client
+from lcmtypes.robot import motor_command_t
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
+from tests.programs.control_system import Steered
+from tests.programs.outside_system import outside_system
+
+pytestmark = pytest.mark.system
+
+FILE = "joystick.yaml"
+WISHES = 40
+SIMULATED, WALL = "period_s: 0.01", "period_s: 0.02\nclock: wall\nstage_time_s: 0.1"
+
+
+class Joystick:
+    """A program with nothing but LCM and the type; counts what the run has taken of it."""
+
+    def __init__(self, ports: PortBlock, run: Steered) -> None:
+        self._bus = lcm.LCM(ports.public_url)
+        self._ports = ports
+        self._run = run
+        self.published = 0
+
+    def wish(self, times: int = 1) -> None:
+        """Publishes a wish, waits until the run has recorded it, and again."""
+        for _ in range(times):
+            self.published += 1
+            self.publish(float(self.published))
+            self._run.launched.until_true(lambda: self.taken >= self.published, f"wish {self.published}")
+
+    def publish(self, vx_m_s: float) -> None:
+        message = motor_command_t()
+        message.vx_m_s = vx_m_s
+        self._bus.publish("r/wish", message.encode())
+
+    @property
+    def taken(self) -> int:
+        with Client(gateway_address(self._ports.bus), TIMEOUT_S) as client:
+            return int(client.ask("show", channel="r/wish")["sequence"])
+
+
+def checked(run: Steered, log: Path, published: int) -> Recording:
+    """The recording of a run that has taken that much, and replays."""
+    recording = Recording(log)
+    assert recording.gaps() == {}
+    headers = recording.headers("r/wish")
+    assert [(header.sequence, header.writer, header.stage) for header in headers] == [
+        (number, "outside", -1) for number in range(1, published + 1)
+    ]
+    assert "byte for byte" in run.fwk("replay", str(log), "--verify")
+    return recording
+
+
+@pytest.mark.parametrize("time", [SIMULATED, WALL], ids=["lockstep", "real time"])
+@pytest.mark.parametrize("loss", ["0", "0.2"])
+def test_every_wish_is_recorded_once_seen_by_all_in_lockstep_and_replayed(
+    launch: Launch, tmp_path: Path, ports: PortBlock, loss: str, time: str
+) -> None:
+    write_files(tmp_path, outside_system(ports.public_url, time))
+    run = Steered(launch(FILE, env={"FWK_TEST_LOSS": loss}), ports)
+    joystick = Joystick(ports, run)
+    joystick.wish(WISHES)
+    run.ticks_pass(5)
+    recording = checked(run, run.end(), WISHES)
+    for name in ("r", "s") if time == SIMULATED else ():  # in real time who is away for long sees the newest alone
+        assert recording.decoded(f"{name}/total")[-1].heading_rad == WISHES * (WISHES + 1) / 2
+        assert recording.decoded(f"{name}/recent")[-1].heading_rad == WISHES + WISHES - 1 + WISHES - 2
+    assert [wish.vx_m_s for wish in recording.decoded("r/wish")] == [float(n) for n in range(1, WISHES + 1)]
+    assert "somebody else" not in run.launched.text
+
+
+def test_who_is_started_again_has_the_newest_wish_at_once(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
+    run = Steered(launch(FILE), ports)
+    Joystick(ports, run).wish(5)
+    run.steer("restart", "r/obeys")
+    run.ticks_pass(3)
+    recording = checked(run, run.end(), 5)
+    again = [
+        message.heading_rad
+        for message, header in zip(recording.decoded("r/total"), recording.headers("r/total"), strict=True)
+        if header.writer == "r/obeys#2"
+    ]
+    assert again[0] == again[-1] == 5.0
+
+
+def test_a_flood_is_bounded_and_said_and_the_run_goes_on(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
+    run = Steered(launch(FILE), ports)
+    joystick = Joystick(ports, run)
+    os.kill(run.launched.process.pid, signal.SIGSTOP)  # no tick can take anything meanwhile
+    for _ in range(64 + 100):
+        joystick.publish(1.0)
+    run.launched.until("64 messages wait for the next tick already; not taken (100 times)")
+    os.kill(run.launched.process.pid, signal.SIGCONT)
+    run.launched.until_true(lambda: joystick.taken == 64, "what fits into a tick")
+    joystick.published = 64
+    joystick.wish()
+    checked(run, run.end(), 65)
+
+
+@pytest.mark.core
+def test_fwk_send_is_such_a_program(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
+    run = Steered(launch(FILE), ports)
+    joystick = Joystick(ports, run)
+    assert "r/wish: " in run.fwk("send", "r/wish", "vx_m_s=2.5")
+    run.launched.until_true(lambda: joystick.taken == 1, "what was sent")
+    run.ticks_pass(3)
+    recording = checked(run, run.end(), 1)
+    assert recording.decoded("s/total")[-1].heading_rad == 2.5

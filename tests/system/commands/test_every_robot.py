@@ -1,0 +1,81 @@
+"""One component carries out the commands to all robots."""
+
+from pathlib import Path
+
+import pytest
+
+from fwk.lcm.type_registry import use_types_of
+from fwk.recording.compare import Comparison
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, replayed, write_files
+
+pytestmark = pytest.mark.system
+
+FILES = {
+    "lcmtypes/crane.lcm": """
+package crane;
+struct haul_t { core.header_t header; core.command_t command; double height_m; }
+struct tally_t { core.header_t header; int32_t done; int32_t failed; }
+""",
+    "cranes.py": '''
+"""One crane for all."""
+
+from fwk import Clock, CommandsEach, Component, Sends, Writes, channel
+from lcmtypes.crane import haul_t, tally_t
+
+
+class Crane(Component):
+    stage = "act"
+    clock: Clock
+    hauls: CommandsEach[haul_t] = channel("*/haul")
+
+    def loop(self) -> None:
+        for hauls in self.hauls.values():
+            for command in list(hauls.open):
+                command.done()
+            for command in hauls:
+                command.accept()
+
+
+class Robot(Component):
+    stage = "think"
+    haul: Sends[haul_t]
+    tally: Writes[tally_t]
+
+    def init(self) -> None:
+        self.future = None
+
+    def loop(self) -> None:
+        tally = self.tally.value
+        if self.future and self.future.finished:
+            tally.done += self.future.done
+            tally.failed += not self.future.done
+        if not self.future or self.future.finished:
+            self.future = self.haul.send()
+        self.tally.write()
+''',
+    "it.yaml": """
+name: cranes
+public_url: {url}
+components:
+  w/crane: {{use: "cranes:Crane"}}
+  one/robot: {{use: "cranes:Robot"}}
+  two/robot: {{use: "cranes:Robot"}}
+""",
+}
+
+
+def test_every_robot_has_its_answers_in_any_layout_and_in_replay(
+    launch: Launch, tmp_path: Path, ports: PortBlock
+) -> None:
+    write_files(tmp_path, FILES | {"it.yaml": FILES["it.yaml"].format(url=ports.public_url)})
+    for name, hosting in (("it.lcm", "process"), ("single.lcm", "single")):
+        run = launch("it.yaml", "--ticks", "40", "--speed", "max", "--record", name, "--hosting", hosting)
+        assert run.wait() == 0, run.text
+    use_types_of(tmp_path)
+    for robot in ("one", "two"):
+        last = Recording(tmp_path / "it.lcm").decoded(f"{robot}/tally")[-1]
+        assert (last.done, last.failed) == (19, 0)  # accepted in one tick, done in the next
+    assert Comparison(tmp_path / "it.lcm", tmp_path / "single.lcm", False).difference is None
+    replayed(tmp_path, log="it.lcm")

@@ -1,0 +1,166 @@
+"""A component of a real run takes the main loop over and gives it back; the recording replays."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from lcmtypes.core import tick_event_t
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording, difference
+from tests.harness.runs import PortBlock, replayed, write_files
+from tests.programs.control_system import Steered
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""One takes the main loop, one wants it too, two play."""
+
+import os
+import signal
+from pathlib import Path
+
+from fwk import Clock, Component, Config, MainLoop, ReadsEach, Writes, channel
+from lcmtypes.robot import imu_t
+
+
+class DriverConfig(Config):
+    first: int = 5
+    last: int = 12
+    order: list[str] = ["act", "think", "act", "act", "sensor_acquire"]
+    dies: int = 0
+
+
+class Player(Component):
+    """Sums up what it hears."""
+
+    stage = "act"
+    all: ReadsEach[imu_t] = channel("*/imu")
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 1 + sum(
+            message.header.sequence for reader in self.all.values() for message in reader.fresh
+        )
+        self.imu.write()
+
+
+class Driver(Player):
+    """Has the main loop from one tick to another."""
+
+    stage = "think"
+    clock: Clock
+    config: DriverConfig
+    main_loop: MainLoop
+
+    def loop(self) -> None:
+        super().loop()
+        self.imu.value.heading_rad += 1000 * self.main_loop.mine + 10 * bool(self.main_loop.holder)
+        if self.clock.tick == self.config.first:
+            self.main_loop.take_over(self.config.order)
+        if self.clock.tick == self.config.last:
+            self.main_loop.give_back()
+        if self.clock.tick == self.config.dies and not Path("died").exists():
+            Path("died").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+'''
+LAUNCH = """
+name: taken
+public_url: {url}
+speed: max
+components:
+  a/driver: {{use: "parts:Driver"}}
+  b/driver: {{use: "parts:Driver", stage: [act, post_loop], config: {{first: 8, last: 30}}}}
+  c/player: {{use: "parts:Player", stage: sensor_acquire}}
+  d/player: {{use: "parts:Player"}}
+  e/player: {{use: "parts:Player", stage: worldstate}}
+"""
+STAGES = ("pre_loop", "sensor_acquire", "sensor_prepare", "sensor_process", "worldstate", "think", "skill", "act")
+USUAL = ["sensor_acquire", "worldstate", "think", "act", "post_loop"]
+TAKEN = ["act", "think", "act", "act", "sensor_acquire"]
+
+
+@pytest.fixture
+def taken(tmp_path: Path, ports: PortBlock) -> Path:
+    write_files(tmp_path, {"parts.py": PARTS, "taken.yaml": LAUNCH.format(url=ports.public_url)})
+    return tmp_path
+
+
+def orders(recording: Recording) -> dict[int, list[str]]:
+    """Tick to the stages that it ran."""
+    names = (*STAGES, "act_exec", "post_loop")
+    return {
+        record.tick: [names[event.index] for event in record.events if event.kind == tick_event_t.STAGE]
+        for record in recording.records
+    }
+
+
+def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_same(launch: Launch, taken: Path) -> None:
+    run = launch("taken.yaml", "--ticks", "60", "--record", "log.lcm")
+    assert run.wait() == 0, run.text
+    assert f"a/driver has the main loop from tick 6 on: {', '.join(TAKEN)}" in run.text
+    assert run.text.count("b/driver wants the main loop, but a/driver has it; refused until that gives it back") == 3
+    assert "a/driver has given the main loop back; tick 13 runs the usual stages" in run.text
+    recording = Recording(taken / "log.lcm")
+    assert orders(recording) == {tick: TAKEN if 6 <= tick <= 12 else USUAL for tick in range(1, 61)}
+    assert recording.gaps() == {}
+    places = [(header.tick, header.stage) for header in recording.headers("d/imu") if 5 <= header.tick <= 7]
+    assert places == [(5, 7), (6, 0), (6, 2), (6, 3), (7, 0), (7, 2), (7, 3)]
+    replayed(taken)
+    for arguments in (("--hosting", "single"), ("--hosting", "robot"), ()):
+        again = launch("taken.yaml", "--ticks", "60", "--record", "again.lcm", *arguments)
+        assert again.wait() == 0, again.text
+        assert difference(taken / "log.lcm", taken / "again.lcm") == ""
+        replayed(taken, log="again.lcm")
+
+
+def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> None:
+    sets = ("--set", "a/driver.last=400", "--set", "a/driver.order=[think, act]")
+    run = launch("taken.yaml", "--ticks", "410", "--record", "log.lcm", *sets)
+    assert run.wait() == 0, run.text
+    assert "lost 0" in run.text
+    recording = Recording(taken / "log.lcm")
+    assert {header.tick for header in recording.headers("e/imu")} == {*range(1, 6), *range(401, 411)}
+    replayed(taken)
+    again = launch("taken.yaml", "--ticks", "410", "--record", "again.lcm", "--hosting", "single", *sets)
+    assert again.wait() == 0, again.text
+    assert difference(taken / "log.lcm", taken / "again.lcm") == ""
+
+
+def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
+    run = launch("taken.yaml", "--ticks", "40", "--record", "log.lcm", "--set", "a/driver.dies=9")
+    assert run.wait() == 0, run.text
+    assert "a/driver has given the main loop back; tick 10 runs the usual stages" in run.text
+    recording = Recording(taken / "log.lcm")
+    assert orders(recording)[9] == TAKEN
+    assert orders(recording)[10] == USUAL
+    assert recording.gaps() == {}
+    replayed(taken)
+
+
+def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
+    file = taken / "taken.yaml"
+    file.write_text(file.read_text().replace("speed: max", "speed: 5"))
+    run = Steered(launch("taken.yaml", "--set", "a/driver.last=0"), ports)
+    run.launched.until("a/driver has the main loop")
+    assert f"a/driver has the main loop: {', '.join(TAKEN)}" in run.fwk("status")
+    run.ask("pause")
+    run.steer("stop", "a/driver")
+    assert run.ask("step")["paused"]
+    assert run.json("status")["main_loop"] == ""
+    assert re.search(r"a/driver has given the main loop back; tick \d+ runs the usual stages", run.launched.text)
+    run.ask("resume")
+    run.ticks_pass(20)
+    log = run.end()
+    replayed(taken, log=log)
+
+
+def test_in_real_time_it_is_taken_over_too(launch: Launch, taken: Path) -> None:
+    file = taken / "taken.yaml"
+    file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.5"))
+    run = launch("taken.yaml", "--ticks", "30", "--record", "log.lcm")
+    assert run.wait() == 0, run.text
+    recording = Recording(taken / "log.lcm")
+    assert orders(recording)[6] == TAKEN
+    assert orders(recording)[30] == USUAL
+    replayed(taken)

@@ -1,0 +1,111 @@
+"""The iteration contract on real processes, checked against its own words."""
+
+import os
+import random
+import signal
+from pathlib import Path
+
+import pytest
+
+from lcmtypes.core import tick_event_t
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.oracle import contradictions
+from tests.harness.runs import pause
+from tests.programs.orchestra import PLAYERS, STAGES
+
+pytestmark = pytest.mark.system
+
+RUN = ("launch/orchestra.yaml", "--seed", "7", "--record", "log.lcm")
+KILLS = 20
+
+
+@pytest.mark.core
+def test_every_iteration_sees_what_the_contract_says(launch: Launch, folder: Path) -> None:
+    run = launch(*RUN, "--ticks", "40", env={"FWK_TEST_LOSS": "0.1"})
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    assert contradictions(recording) == []
+    assert recording.gaps() == {}
+    assert "repeated" in run.text  # ticks were lost, and yet nobody ran twice:
+    for player in PLAYERS:
+        at = [(header.tick, header.stage) for header in recording.headers(f"{player}/note")]
+        assert at == [(tick, stage) for tick in range(1, 41) for stage in STAGES[player]]
+    assert [look.lost for look in recording.decoded("a/look")] == [0] * 40
+    assert all(look.digest >= 0 for look in recording.decoded("a/look"))
+
+
+def test_the_record_says_in_which_order_the_main_loop_did_it(launch: Launch, folder: Path) -> None:
+    run = launch(*RUN, "--ticks", "10")
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    names = sorted(recording.messages)
+    for record in recording.records:
+        stages, running = [], -1
+        for event in record.events:
+            if event.kind == tick_event_t.STAGE:
+                running = event.index
+                stages.append(running)
+            elif event.kind == tick_event_t.DONE:
+                assert (event.tick, event.stage) == (record.tick, running)
+        assert stages == sorted(stages)
+        marks = {names[channel]: sequence for channel, sequence in zip(record.channel, record.sequence, strict=True)}
+        for name in names:
+            written = [header.sequence for header in recording.headers(name) if header.tick == record.tick]
+            assert marks.get(name) == (written[-1] if written else None)
+
+
+@pytest.mark.parametrize("moment", ["loop:kill", "loop:kill after publish", "loop:raise"])
+def test_what_a_dying_iteration_wrote_nobody_has_seen(launch: Launch, folder: Path, moment: str) -> None:
+    run = launch(*RUN, "--ticks", "30", "--set", f"d/player.trouble={moment}", "--set", "d/player.trouble_tick=15")
+    assert run.wait() == 0, run.text
+    assert "d/player ended: " in run.text
+    assert "d/player runs again, start number 2" in run.text
+    assert "lost 0" in run.text
+    recording = Recording(folder / "log.lcm")
+    assert contradictions(recording) == []
+    assert recording.gaps() == {}
+    writers = [header.writer for header in recording.headers("d/note")]
+    assert writers == ["d/player"] * 14 + ["d/player#2"] * 16
+
+
+@pytest.mark.parametrize("hosting", ["process", "robot", "single"])
+def test_who_dies_between_its_stages_goes_on_with_what_it_last_said_itself(
+    launch: Launch, folder: Path, hosting: str
+) -> None:
+    trouble = {"trouble": "loop:kill after publish", "trouble_tick": 15, "trouble_stage": "act"}
+    sets = [word for key, value in trouble.items() for word in ("--set", f"a/player.{key}={value}")]
+    run = launch(*RUN, "--ticks", "20", "--hosting", hosting, *sets)
+    assert run.wait() == 0, run.text
+    assert "lost 0" in run.text
+    recording = Recording(folder / "log.lcm")
+    assert contradictions(recording) == []
+    assert recording.gaps() == {}
+    first = next(note for note in recording.decoded("a/note") if note.header.writer == "a/player#2")
+    own = next(heard for heard in first.heard if heard.channel == "a/note")
+    assert (first.header.tick, first.header.stage) == (15, STAGES["a"][1])
+    assert (own.count, own.newest_tick, own.newest_stage) == (1, 15, STAGES["a"][0])
+
+
+@pytest.mark.slow
+def test_whoever_is_killed_whenever_nothing_is_seen_twice_or_lost(launch: Launch, folder: Path) -> None:
+    (folder / "traces").mkdir()
+    file = folder / "launch/orchestra.yaml"
+    use = 'use: "procs.player:Player"'
+    file.write_text(file.read_text().replace(use, f"{use}, restart: {{ backoff_s: 0.01, limit: 100 }}"))
+    run = launch(*RUN)
+    luck = random.Random(1)
+    for kills in range(KILLS):
+        run.until_count(" runs again", kills)
+        # Two ticks without a death: a message that its writer took along before a newcomer could ask for it is lost.
+        run.until_ticks("f/player", 3)
+        pause(luck.uniform(0.0, 0.1))
+        os.kill(run.host(f"{luck.choice(PLAYERS)}/player"), signal.SIGKILL)
+    run.until_count(" runs again", KILLS)
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    recording = Recording(folder / "log.lcm")
+    assert contradictions(recording) == []
+    assert recording.gaps() == {}
+    writers = {header.writer for player in PLAYERS for header in recording.headers(f"{player}/note")}
+    assert len(writers) > len(PLAYERS)

@@ -1,0 +1,83 @@
+"""A component that starts and stops others does so between two ticks, the same way each time, and it replays."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.harness.logs import Recording, difference
+from tests.harness.runs import Launched, PortBlock, replayed, write_files
+from tests.programs.control_system import PARTS
+
+pytestmark = pytest.mark.system
+
+DIRECTOR = (
+    PARTS.replace("import Component, Config,", "import Clock, Component, Config, PluginControl,")
+    + '''
+
+class Director(Component):
+    """Has a script."""
+
+    stage = "worldstate"
+    clock: Clock
+    plugins: PluginControl
+
+    def loop(self) -> None:
+        tick, plugins = self.clock.tick, self.plugins
+        if tick == 5:
+            plugins.stop("r/counter")
+        elif tick == 8:
+            plugins.load("r/finder")
+        elif tick == 10:
+            plugins.start("r/counter")
+            plugins.unload("r/camera")
+        elif tick == 11:
+            plugins.stop("r/follower")
+            plugins.start("r/follower")
+        elif tick == 12:
+            plugins.restart("r")
+
+
+class Rival(Director):
+    """Asks for something else in the same tick; its name comes later."""
+
+    def loop(self) -> None:
+        if self.clock.tick == 5:
+            self.plugins.start("r/counter")
+        elif self.clock.tick == 7:
+            self.plugins.stop("r/counter")
+'''
+)
+LAUNCH = """
+name: directed
+speed: max
+public_url: {url}
+components:
+  b/rival: {{use: "parts:Rival"}}
+  r/counter: {{use: "parts:Counter"}}
+  r/follower: {{use: "parts:Follower"}}
+  r/camera: {{use: "parts:Camera", start: false}}
+  r/finder: {{use: "parts:Finder", start: false}}
+  a/director: {{use: "parts:Director"}}
+"""
+
+
+def test_it_happens_at_the_same_ticks_in_every_run_and_replays(
+    tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]
+) -> None:
+    write_files(tmp_path, {"parts.py": DIRECTOR, "it.yaml": LAUNCH.format(url=ports.public_url)})
+    logs = [tmp_path / "one.lcm", tmp_path / "two.lcm"]
+    for log in logs:
+        run = launch("it.yaml", "--ticks", "20", "--record", str(log))
+        assert run.wait() == 0, run.text
+        assert "a/director asked to stop r/counter" in run.text
+        assert "a/director wants to unload r/camera; refused: r/camera is needed by r/finder" in run.text
+    assert difference(*logs) == ""
+    recording = Recording(logs[0])
+    ticks = {channel: [header.tick for header in recording.headers(channel)] for channel in recording.messages}
+    assert ticks["r/imu"] == [1, 2, 3, 4, 5, 6, 7, *range(11, 21)]  # restarted after 5, stopped after 7
+    assert ticks["r/image"] == ticks["r/seen"] == list(range(9, 21))
+    assert ticks["r/pose"] == list(range(1, 21))
+    writers = [header.writer for header in recording.headers("r/imu")]
+    assert list(dict.fromkeys(writers)) == ["r/counter", "r/counter#2", "r/counter#3", "r/counter#4"]
+    replayed(tmp_path, log=logs[0])

@@ -1,0 +1,96 @@
+"""With --watch a saved file reloads exactly the components that consist of it."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.harness.runs import Launched, PortBlock, write_files
+from tests.programs.control_system import PARTS, Steered
+
+pytestmark = pytest.mark.system
+
+HELPER = "ADDED = 1.0\n"
+COUNTING = PARTS.replace("class CounterConfig", "import helper\n\n\nclass CounterConfig")
+LAUNCH = """
+name: small
+public_url: {url}
+hosts: {{both: [r/camera, r/finder]}}
+components:
+  r/counter: {{use: "parts:Counter"}}
+  r/helped: {{use: "counting:Counter", channels: {{imu: r/helped_imu}}}}
+  r/camera: {{use: "looking:Camera"}}
+  r/finder: {{use: "parts:Finder"}}
+"""
+
+
+@pytest.fixture
+def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Steered:
+    counting = COUNTING.replace("self.config.step\n        self.imu.write", "helper.ADDED\n        self.imu.write")
+    files = {"parts.py": PARTS, "counting.py": counting, "looking.py": PARTS, "helper.py": HELPER}
+    write_files(tmp_path, {**files, "small.yaml": LAUNCH.format(url=ports.public_url)})
+    return Steered(launch("small.yaml", "--watch"), ports)
+
+
+def starts(run: Steered) -> dict[str, int]:
+    return {each["name"].removeprefix("r/"): each["starts"] for each in run.ask("status")["components"]}
+
+
+def test_whoever_imports_a_changed_file_is_reloaded_and_nobody_else(run: Steered, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("ADDED = -1000.0\n")
+    run.launched.until("helper.py changed; reloading r/helped")
+    run.launched.until("r/helped runs again")
+    run.ticks_pass()
+    assert run.json("bb", "show", "r/helped_imu")["value"]["heading_rad"] <= -1000.0
+    assert starts(run) == {"counter": 1, "helped": 2, "camera": 1, "finder": 1}
+    (tmp_path / "looking.py").write_text(PARTS + "\n# changed\n")
+    run.launched.until("looking.py changed; reloading r/camera, r/finder")
+    run.launched.until("both runs again")
+    run.ticks_pass()
+    assert starts(run) == {"counter": 1, "helped": 2, "camera": 2, "finder": 2}
+    run.end()
+    assert run.launched.gone_within(5.0)
+
+
+def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_right(
+    run: Steered, tmp_path: Path
+) -> None:
+    assert "noted, tick" in run.fwk("note", "here", "it", "begins")
+    run.launched.until("here it begins")
+    (tmp_path / "helper.py").write_text("ADDED = \n")
+    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
+    run.ticks_pass()
+    assert starts(run)["helped"] == 1
+    assert "helper.py:1: invalid syntax" in run.fwk("reload", "r/helped", code=2)
+    run.steer("stop", "r/counter")
+    (tmp_path / "parts.py").write_text(PARTS + "\n# changed\n")
+    (tmp_path / "helper.py").write_text("ADDED = -1000.0\n")
+    run.launched.until("r/helped runs again")
+    run.ticks_pass()
+    assert run.json("bb", "show", "r/helped_imu")["value"]["heading_rad"] <= -1000.0
+    assert run.component("r/counter")["state"] == "stopped"
+    run.end()
+
+
+def test_a_file_that_is_missing_for_a_moment_stops_nobody(run: Steered, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("ADDED = \n")
+    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
+    (tmp_path / "helper.py").unlink()
+    run.launched.until("helper.py: cannot be read: No such file or directory; not reloaded, so the old code runs on")
+    run.ticks_pass()
+    assert starts(run)["helped"] == 1
+    (tmp_path / "new.py").write_text("ADDED = -1000.0\n")
+    (tmp_path / "new.py").rename(tmp_path / "helper.py")
+    run.launched.until("r/helped runs again")
+    run.ticks_pass()
+    assert run.json("bb", "show", "r/helped_imu")["value"]["heading_rad"] <= -1000.0
+    run.end()
+
+
+def test_who_failed_is_started_again_when_its_file_was_put_right(run: Steered, tmp_path: Path) -> None:
+    (tmp_path / "helper.py").write_text("1 / 0\n")
+    run.launched.until("helper.py changed; reloading r/helped")
+    run.launched.until_true(lambda: run.component("r/helped")["state"] == "failed", "r/helped fails")
+    (tmp_path / "helper.py").write_text(HELPER)
+    run.launched.until_true(lambda: run.component("r/helped")["state"] == "running", "r/helped runs")
+    run.end()

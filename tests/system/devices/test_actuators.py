@@ -1,0 +1,140 @@
+"""Actuators in a running match: a driver that is stopped leaves them stopped, one that is killed lets them time out."""
+
+import math
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from fwk.control import client
+from lcmtypes.core import done_t, tick_event_t
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, replayed
+from tests.programs.control_system import Steered, write_system
+
+pytestmark = pytest.mark.system
+
+LAUNCH = Path(__file__).parents[3] / "launch"
+TICKS_PER_S = 20
+BRAKING_S = 0.8  # from full speed, with the motors' lag
+TIMEOUT_OF_MOTORS_S = 0.25
+STANDING_M_S = 0.02
+
+
+@pytest.fixture
+def match(launch: Launch, ports: PortBlock, tmp_path: Path) -> Steered:
+    """One robot on the field, under way; its base is not started again when it dies."""
+    robot = (LAUNCH / "msl-robot.yaml").read_text()
+    (tmp_path / "msl-robot.yaml").write_text(
+        robot.replace("use: procs.drivers.base\n", "use: procs.drivers.base\n      restart: {when: never}\n")
+    )
+    (tmp_path / "one.yaml").write_text((LAUNCH / "one-robot.yaml").read_text())
+    return Steered(launch("one.yaml", "--speed", "max", "--set", f"public_url={ports.public_url}"), ports)
+
+
+def drive(match: Steered, ports: PortBlock) -> None:
+    """Waits until the robot is fast."""
+
+    def fast() -> bool:
+        with client.gateway(ports.bus) as run:
+            truth = run.ask("show", channel="world/ground_truth")["value"]
+        return truth is not None and math.hypot(truth["robots"][0]["vx_m_s"], truth["robots"][0]["vy_m_s"]) > 0.5
+
+    match.launched.until_true(fast, "a fast robot")
+
+
+def speeds_m_s(recording: Recording) -> dict[int, float]:
+    """Of the robot, by tick."""
+    truths = recording.decoded("world/ground_truth")
+    return {each.header.tick: math.hypot(each.robots[0].vx_m_s, each.robots[0].vy_m_s) for each in truths}
+
+
+def tick_of(recording: Recording, kind: int, host: int) -> int:
+    """The tick of such an event of a host."""
+    (tick,) = [
+        record.tick for record in recording.records for each in record.events if (each.kind, each.index) == (kind, host)
+    ]
+    return tick
+
+
+def index_of(match: Steered, name: str) -> int:
+    names = [each["name"] for each in match.ask("status")["components"]]
+    return names.index(name)
+
+
+def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered, ports: PortBlock) -> None:
+    base = index_of(match, "cyan1/base")
+    drive(match, ports)
+    match.steer("stop", "cyan1/base")
+    match.ticks_pass(2 * TICKS_PER_S)
+    match.steer("start", "cyan1/base")
+    match.ticks_pass(TICKS_PER_S)
+    log = match.end()
+    recording = Recording(log)
+    stopped = tick_of(recording, tick_event_t.STOPPED, base)
+    (last,) = [each for each in recording.decoded("cyan1/wheel_command") if each.header.stage == done_t.FINAL]
+    assert last.header.tick == stopped - 1
+    assert tuple(last.wheel_m_s) == (0.0, 0.0, 0.0)
+    speeds = speeds_m_s(recording)
+    standing = range(stopped + round(BRAKING_S * TICKS_PER_S), stopped + 2 * TICKS_PER_S)
+    assert max(speeds[tick] for tick in standing) < STANDING_M_S
+    assert recording.gaps() == {}
+    replayed(log.parent, log=log)
+
+
+def test_a_killed_base_lets_the_motors_time_out(match: Steered, ports: PortBlock) -> None:
+    base = index_of(match, "cyan1/base")
+    drive(match, ports)
+    os.kill(match.component("cyan1/base")["pid"], signal.SIGKILL)
+    match.launched.until("cyan1/base ended: killed by signal 9")
+    match.ticks_pass(2 * TICKS_PER_S)
+    match.launched.signal(signal.SIGINT)
+    assert match.launched.wait() == 1, match.launched.text  # a component has failed
+    recording = Recording(match.launched.run_dir / "log.lcm")
+    lost, speeds = tick_of(recording, tick_event_t.LOST, base), speeds_m_s(recording)
+    standing = lost + round((TIMEOUT_OF_MOTORS_S + BRAKING_S) * TICKS_PER_S)
+    assert speeds[lost - 1] > STANDING_M_S
+    assert max(speed for tick, speed in speeds.items() if tick >= standing) < STANDING_M_S
+
+
+FINAL_WORDS = """
+    def finalize(self) -> None:
+        self.imu.value.heading_rad = -1.0
+        self.imu.write()
+        self.log.info("counted enough")
+"""
+
+
+@pytest.mark.parametrize("clock", ["simulated", "wall"])
+@pytest.mark.core
+def test_what_finalize_writes_is_seen_recorded_and_replayed(
+    launch: Launch, ports: PortBlock, tmp_path: Path, clock: str
+) -> None:
+    write_system(tmp_path, ports)
+    parts = (tmp_path / "parts.py").read_text()
+    old = '\n    def finalize(self) -> None:\n        self.log.info("counted enough")\n'
+    assert old in parts
+    (tmp_path / "parts.py").write_text(parts.replace(old, FINAL_WORDS))
+    with (tmp_path / "small.yaml").open("a") as file:
+        file.write(f"clock: {clock}\nstage_time_s: 0.2\n")
+    run = Steered(launch("small.yaml"), ports)
+    run.steer("stop", "r/counter")
+    run.ticks_pass()
+    run.steer("start", "r/counter")
+    run.ticks_pass()
+    run.steer("restart", "r/counter")
+    run.ticks_pass()
+    log = run.end()
+    recording = Recording(log)
+    assert recording.gaps() == {}
+    stops = [r.tick for r in recording.records for e in r.events if (e.kind, e.index) == (tick_event_t.STOPPED, 0)]
+    last = [each.header for each in recording.decoded("r/imu") if each.heading_rad == -1.0]
+    assert [header.stage for header in last] == [done_t.FINAL] * 2  # that of the end nobody would see
+    seen = [each.header.tick for each in recording.decoded("r/pose") if each.heading_rad == -1.0]
+    if clock == "simulated":
+        assert [header.tick for header in last] == [tick - 1 for tick in stops]
+        assert stops[0] in seen  # in the very tick from which on the writer is missing
+    assert seen
+    replayed(log.parent, log=log)

@@ -1,0 +1,182 @@
+"""Frames in real runs: whole under load, losses noticed in real time, no shared memory left whatever is killed."""
+
+import os
+import signal
+from pathlib import Path
+
+import psutil
+import pytest
+
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, write_files
+from tests.programs.control_system import Steered
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""A camera whose frames carry a checksum, and finders that check it."""
+
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from fwk import Clock, Component, Config, Image, VisionMaster, Writes, channel
+from fwk.clock import sleep_s
+from lcmtypes.soccer import pose_t
+
+
+def leave(name, number):
+    Path(f"{name}.new").write_text(str(number))
+    Path(f"{name}.new").rename(name)
+
+
+class Camera(Component):
+    stage = "sensor_acquire"
+    image: VisionMaster
+    clock: Clock
+    rng: np.random.Generator
+
+    def init(self) -> None:
+        leave("camera.pid", os.getpid())
+
+    def loop(self) -> None:
+        for _ in range(1 + self.clock.tick % 3):
+            body = self.rng.integers(0, 256, 399_996, np.uint8)
+            head = np.frombuffer(zlib.crc32(body).to_bytes(4, "big"), np.uint8)
+            self.image.publish(np.concatenate([head, body]).reshape(400, 1000))
+        leave("camera.frame", self.image.announcement.sequence + self.image.announcement.pending)
+
+
+class FinderConfig(Config):
+    dawdle_tick: int = 0
+    """From this tick on, once, it reads its frame only when the camera has overwritten it."""
+
+
+class Finder(Component):
+    """Says which frame it saw and whether it was whole."""
+
+    stage = "sensor_prepare"
+    image: Image = channel("r/image")
+    pose: Writes[pose_t]
+    clock: Clock
+    config: FinderConfig
+
+    def init(self) -> None:
+        leave(self.name.replace("/", "-") + ".pid", os.getpid())
+        self.dawdled = False
+
+    def loop(self) -> None:
+        if self.clock.tick >= self.config.dawdle_tick > 0 and not self.dawdled:
+            self.dawdled = True
+            while int(Path("camera.frame").read_text()) < self.image.announcement.value.frame + 5:
+                sleep_s(0.01)
+        pixels = self.image.pixels
+        self.pose.value.x_m = float(self.image.announcement.value.frame)
+        if pixels is None:
+            self.pose.value.y_m = -1.0
+        else:
+            flat = pixels.reshape(-1)
+            self.pose.value.y_m = float(zlib.crc32(flat[4:]) == int.from_bytes(flat[:4].tobytes(), "big"))
+        self.pose.write()
+'''
+LAUNCH = """
+name: frames
+public_url: {url}
+components:
+  r/camera: {{use: "parts:Camera"}}
+  a/finder: {{use: "parts:Finder"}}
+  b/finder: {{use: "parts:Finder"}}
+  c/finder: {{use: "parts:Finder"}}
+"""
+
+
+@pytest.fixture
+def frames(tmp_path: Path, ports: PortBlock) -> Path:
+    write_files(tmp_path, {"parts.py": PARTS, "frames.yaml": LAUNCH.format(url=ports.public_url)})
+    return tmp_path
+
+
+def wall(frames: Path, period_s: float) -> None:
+    """By the clock on the wall; a stage may take long, so that nobody is late by accident."""
+    with (frames / "frames.yaml").open("a") as file:
+        file.write(f"clock: wall\nperiod_s: {period_s}\nstage_time_s: 0.2\n")
+
+
+def seen(log: Path, finder: str) -> list[tuple[int, int]]:
+    """Numbers of the frames that a finder saw, and 1 for whole, 0 for torn, -1 for lost."""
+    return [(int(pose.x_m), int(pose.y_m)) for pose in Recording(log).decoded(f"{finder}/pose")]
+
+
+def holders(ring: str) -> list[int]:
+    """Processes that have the shared memory of a ring open or mapped."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            names = [os.readlink(each) for each in Path(f"/proc/{process.pid}/fd").iterdir()]
+            names += Path(f"/proc/{process.pid}/maps").read_text().splitlines()
+            if any(f"memfd:{ring}" in name for name in names):
+                found.append(process.pid)
+        except OSError:
+            continue
+    return found
+
+
+def test_in_lockstep_every_reader_sees_every_tick_whole(launch: Launch, frames: Path) -> None:
+    run = launch("frames.yaml", "--ticks", "60", "--speed", "max", "--record", "log.lcm")
+    assert run.wait() == 0, run.text
+    newest = [sum(1 + tick % 3 for tick in range(1, last + 1)) for last in range(1, 61)]
+    for finder in "abc":
+        assert seen(frames / "log.lcm", finder) == [(number, 1) for number in newest]
+
+
+def test_in_real_time_an_overwritten_frame_is_noticed_counted_and_said(
+    launch: Launch, frames: Path, ports: PortBlock
+) -> None:
+    wall(frames, 0.05)
+    run = Steered(launch("frames.yaml", "--set", "b/finder.dawdle_tick=5", "--record", "log.lcm"), ports)
+    run.launched.until("was overwritten before it was read (1 lost so far)")
+    run.launched.until("b/finder is on time again")
+    run.ticks_pass(5)
+    run.launched.until_true(lambda: run.component("b/finder")["lost"] == 1, "a lost frame in the status")
+    assert run.component("a/finder")["lost"] == 0
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    log = frames / "log.lcm"
+    assert [state for _, state in seen(log, "b")].count(-1) == 1
+    assert {state for finder in "abc" for _, state in seen(log, finder)} == {1, -1}
+    assert seen(log, "b")[-1][1] == 1  # it goes on with the next
+
+
+def test_killed_readers_and_cameras_come_back_and_see_whole_frames(
+    launch: Launch, frames: Path, ports: PortBlock
+) -> None:
+    run = Steered(launch("frames.yaml", "--record", "log.lcm"), ports)
+    for name in ("a-finder", "camera", "b-finder", "camera"):
+        os.kill(int((frames / f"{name}.pid").read_text()), signal.SIGKILL)
+        full = "r/camera" if name == "camera" else name.replace("-", "/")
+        starts = 3 if name == "camera" and run.component(full)["starts"] > 1 else 2
+        run.launched.until(f"{full} runs again, start number {starts}")
+        run.ticks_pass()
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    for finder in "abc":
+        assert {state for _, state in seen(frames / "log.lcm", finder)} == {1}
+
+
+def test_no_shared_memory_is_left_when_everything_is_killed(launch: Launch, frames: Path, ports: PortBlock) -> None:
+    own = (frames / "frames.yaml").read_text().replace("r/camera:", f"ring{ports.bus}/camera:")
+    (frames / "frames.yaml").write_text(own)
+    (frames / "parts.py").write_text(PARTS.replace("r/image", f"ring{ports.bus}/image"))
+    before = set(os.listdir("/dev/shm"))
+    run = Steered(launch("frames.yaml"), ports)
+    run.ticks_pass()
+    ring = f"ring{ports.bus}/image"
+    assert len(holders(ring)) >= 5  # supervisor, zygote, hosts
+    for process in run.launched.processes():
+        process.kill()
+    assert run.launched.gone_within(10.0)
+    assert holders(ring) == []
+    assert not {name for name in set(os.listdir("/dev/shm")) - before if "ring" in name or "image" in name}

@@ -1,0 +1,115 @@
+"""Replay of readers of camera frames: in real time they get late what the camera has overwritten, and lose it again."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, replayed, write_files
+from tests.programs.control_system import Steered
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""A camera of noise, and watchers that now and then are slow."""
+
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+
+from fwk import Component, Config, Image, VisionMaster, Writes, channel
+from fwk.clock import sleep_s
+from lcmtypes.soccer import pose_t
+
+
+class Camera(Component):
+    """Three frames in each tick."""
+
+    stage = "sensor_acquire"
+    image: VisionMaster
+    rng: np.random.Generator
+
+    def loop(self) -> None:
+        for _ in range(3):
+            self.image.publish(self.rng.integers(0, 256, (60, 80, 3), np.uint8))
+
+
+class WatcherConfig(Config):
+    slow: bool = False
+    """Whether it dawdles now and then before it looks."""
+    looks_first: bool = False
+    """Whether it dawdles now and then after it has looked."""
+
+
+class Watcher(Component):
+    """Says which frame it was told of, what it saw, and how many it has lost."""
+
+    stage = "sensor_prepare"
+    image: Image = channel("r/image")
+    pose: Writes[pose_t]
+    rng: np.random.Generator
+    config: WatcherConfig
+
+    def init(self) -> None:
+        Path(self.name.replace("/", "-") + ".pid").write_text(str(os.getpid()))
+
+    def loop(self) -> None:
+        dawdles = self.rng.random() < 0.2
+        if self.config.slow and dawdles:
+            sleep_s(0.06)
+        pixels = self.image.pixels
+        if self.config.looks_first and dawdles:
+            sleep_s(0.06)
+        self.pose.value.x_m = float(self.image.announcement.value.frame)
+        self.pose.value.y_m = -1.0 if pixels is None else float(zlib.crc32(pixels))
+        self.pose.value.heading_rad = float(self.image.lost)
+        self.pose.write()
+'''
+LAUNCH = """
+name: watch
+public_url: {url}
+clock: wall
+period_s: 0.02
+stage_time_s: 0.01
+components:
+  r/camera: {{use: "watch:Camera"}}
+  a/watcher: {{use: "watch:Watcher"}}
+  b/watcher: {{use: "watch:Watcher", config: {{slow: true}}}}
+  c/watcher: {{use: "watch:Watcher", config: {{slow: true}}}}
+  d/watcher: {{use: "watch:Watcher", config: {{looks_first: true}}}}
+hosts: {hosts}
+"""
+
+
+@pytest.fixture(params=["{}", "{pair: [b/watcher, c/watcher]}"], ids=["each alone", "two in a process"])
+def watch(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> Path:
+    launch = LAUNCH.format(url=ports.public_url, hosts=request.param)
+    write_files(tmp_path, {"watch.py": PARTS, "watch.yaml": launch})
+    return tmp_path
+
+
+def lost(folder: Path, watcher: str) -> int:
+    """How many iterations of a watcher found their frame overwritten."""
+    return [pose.y_m for pose in Recording(folder / "log.lcm").decoded(f"{watcher}/pose")].count(-1.0)
+
+
+def test_frames_that_a_slow_reader_lost_are_lost_again_in_a_replay(
+    launch: Launch, watch: Path, ports: PortBlock
+) -> None:
+    run = Steered(launch("watch.yaml", "--record", "log.lcm"), ports)
+    for start in (2, 3):
+        run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost")
+        os.kill(int((watch / "b-watcher.pid").read_text()), signal.SIGKILL)
+        run.launched.until(f"runs again, start number {start}")
+        run.ticks_pass(60)  # so that the figures are those of the new start
+    run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost again")
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    assert lost(watch, "b") > 6
+    replayed(watch)
+    replayed(watch, "--only", "b/watcher")

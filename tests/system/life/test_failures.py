@@ -1,0 +1,206 @@
+"""Life and death of processes: everything that goes wrong is named, nothing hangs, nothing is left behind."""
+
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import Launched, pause
+
+pytestmark = pytest.mark.system
+
+FILE = "launch/orchestra.yaml"
+STOP_S = 5.0
+ORPHAN_S = 2.0
+
+
+@pytest.fixture
+def traced(folder: Path) -> Path:
+    """The orchestra's folder; players leave their numbers of process and tick in it."""
+    (folder / "traces").mkdir()
+    return folder
+
+
+def trouble(what: str, tick: int = 5, again: bool = False) -> list[str]:
+    """Settings that let `d/player` make trouble."""
+    settings = {"trouble": what, "trouble_tick": tick, "trouble_again": str(again).lower()}
+    return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
+
+
+def running(launch: Launch, *arguments: str) -> Launched:
+    """A run without an end of its own, some ticks old."""
+    run = launch(FILE, "--record", "log.lcm", *arguments)
+    run.until_ticks("f/player", 3)
+    return run
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.core
+def test_asked_to_stop_everything_stops_and_all_is_well(launch: Launch, traced: Path, number: signal.Signals) -> None:
+    run = running(launch)
+    run.signal(number)
+    assert run.wait(STOP_S) == 0, run.text
+    assert run.gone_within(0.5)
+    assert "orchestra: interrupted" in run.text
+    assert "Traceback" not in run.text
+    assert Recording(traced / "log.lcm").gaps() == {}
+
+
+def test_who_ignores_the_request_is_killed_and_named(launch: Launch, traced: Path) -> None:
+    run = launch(FILE, *trouble("loop:ignore"))
+    run.until_true(lambda: (traced / "ignoring").exists(), "d/player ignores signals")
+    run.signal(signal.SIGINT)
+    assert run.wait() == 0, run.text
+    assert run.gone_within(0.5)
+    assert "d/player did not stop when asked; killed" in run.text
+
+
+def test_a_killed_supervisor_takes_everything_along_and_leaves_a_log(launch: Launch, traced: Path) -> None:
+    run = running(launch)
+    pause(1.2)  # the recorder writes once a second
+    os.kill(run.process.pid, signal.SIGKILL)
+    assert run.gone_within(ORPHAN_S), run.processes()
+    recording = Recording(traced / "log.lcm")
+    assert len(recording.messages["f/note"]) >= 3
+    assert recording.gaps() == {}
+
+
+@pytest.mark.core
+def test_a_killed_component_is_named_and_the_run_goes_on(launch: Launch, traced: Path) -> None:
+    run = running(launch)
+    os.kill(run.host("c/player"), signal.SIGKILL)
+    run.until("c/player ended: killed by signal 9; starting it again")
+    run.until("c/player runs again, start number 2")
+    run.until_ticks("f/player", 3)
+    run.signal(signal.SIGINT)
+    assert run.wait(STOP_S) == 0, run.text
+    assert Recording(traced / "log.lcm").gaps() == {}
+
+
+@pytest.mark.parametrize("victim", ["zygote", "gateway"])
+def test_the_run_ends_with_its_reason_when_a_process_of_the_framework_is_killed(
+    launch: Launch, traced: Path, victim: str
+) -> None:
+    run = running(launch)
+    os.kill(run.zygote() if victim == "zygote" else run.gateway(), signal.SIGKILL)
+    assert run.wait(STOP_S) == 1, run.text
+    assert run.gone_within(ORPHAN_S)
+    assert f"orchestra: broken: the {victim} ended: killed by signal 9" in run.text
+    assert "Traceback" not in run.text
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("init:raise", "d/player: RuntimeError: a wrong note"),
+        ("init:exit", "d/player: SystemExit: 0"),
+        ("init:os._exit", "d/player: exit code 3"),
+        ("init:kill", "d/player: killed by signal 9"),
+    ],
+)
+def test_who_does_not_come_up_is_named_with_the_reason(launch: Launch, folder: Path, what: str, says: str) -> None:
+    run = launch(FILE, *trouble(what))
+    assert run.wait() == 1, run.text
+    assert run.gone_within(0.5)
+    assert "not started" in run.text
+    assert says in run.text
+    assert "c/player:" not in run.text
+
+
+def test_who_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None:
+    file = folder / FILE
+    file.write_text(file.read_text().replace("d/player: {", "d/player: { ready_timeout_s: 0.5,"))
+    run = launch(FILE, *trouble("init:wait"))
+    assert run.wait() == 1, run.text
+    assert run.gone_within(0.5)
+    assert "d/player: not ready after 0.5 s; still in init: d/player" in run.text
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("loop:raise", "d/player ended: RuntimeError: a wrong note"),
+        ("loop:exit", "d/player ended: SystemExit: 0"),
+        ("loop:exit text", "d/player ended: SystemExit: enough"),
+        ("loop:give up", "d/player ended: GiveUp: no more"),
+        ("loop:os._exit", "d/player ended: exit code 3"),
+        ("loop:leave", "d/player ended: it left by itself (exit code 0), which nobody had asked it to"),
+        ("loop:crash", "d/player ended: killed by signal 11"),
+    ],
+)
+def test_who_fails_once_is_named_and_started_again(launch: Launch, folder: Path, what: str, says: str) -> None:
+    run = launch(FILE, *trouble(what), "--ticks", "8", "--record", "log.lcm")
+    assert run.wait() == 0, run.text
+    assert says in run.text
+    assert "d/player runs again, start number 2" in run.text
+    assert len(Recording(folder / "log.lcm").messages["d/note"]) == 8
+
+
+@pytest.mark.parametrize(("limit", "starts"), [("when: never", 1), ("limit: 2, backoff_s: 0.01", 3)])
+def test_the_restart_policy_is_obeyed_and_the_run_goes_on_without(
+    launch: Launch, folder: Path, limit: str, starts: int
+) -> None:
+    file = folder / FILE
+    file.write_text(file.read_text().replace("d/player: {", f"d/player: {{ restart: {{ {limit} }},"))
+    run = launch(FILE, *trouble("loop:raise", again=True), "--ticks", "8", "--record", "log.lcm")
+    assert run.wait() == 1, run.text
+    assert run.text.count("d/player ended: ") == starts
+    assert "orchestra: failed: d/player: RuntimeError: a wrong note" in run.text
+    recording = Recording(folder / "log.lcm")
+    assert len(recording.messages["d/note"]) == 4
+    assert len(recording.messages["f/note"]) == 8
+
+
+def test_who_fails_in_finalize_is_named(launch: Launch, folder: Path) -> None:
+    run = launch(FILE, *trouble("finalize:raise"), "--ticks", "5")
+    assert run.wait() == 1, run.text
+    assert "orchestra: failed: d/player: RuntimeError: a wrong note" in run.text
+    assert "in finalize" in run.text
+
+
+@pytest.mark.parametrize(
+    ("what", "says"),
+    [
+        ("init:crash", "strings: c/player: killed by signal 11"),
+        ("init:raise", "strings: c/player: RuntimeError: a wrong note"),
+        ("loop:crash", "strings ended: c/player: killed by signal 11"),
+        ("loop:kill", "strings ended: c/player: killed by signal 9"),
+        ("loop:raise", "strings ended: c/player: RuntimeError: a wrong note"),
+        ("loop:os._exit", "strings ended: c/player: exit code 3"),
+    ],
+)
+def test_in_a_shared_process_the_guilty_one_is_named_and_who_went_with_it(
+    launch: Launch, folder: Path, what: str, says: str
+) -> None:
+    file = folder / FILE
+    file.write_text(file.read_text() + "hosts: {strings: [a/player, c/player, e/player]}\n")
+    sets = [word.replace("d/player", "c/player") for word in trouble(what)]
+    run = launch(FILE, *sets, "--ticks", "8", "--record", "log.lcm")
+    assert run.wait() == (1 if "init" in what else 0), run.text
+    assert says in run.text
+    if "loop" in what:
+        assert "; with it went a/player, e/player; starting it again" in run.text
+        assert "strings runs again, start number 2" in run.text
+        assert len(Recording(folder / "log.lcm").messages["e/note"]) == 8
+
+
+def test_what_components_print_is_in_the_log_with_their_names(launch: Launch, folder: Path) -> None:
+    run = launch(FILE, *trouble("loop:print"), "--ticks", "8")
+    assert run.wait() == 0, run.text
+    assert "d/player: words on standard output (stdout:1)" in run.text
+    assert "d/player: words on standard error (stderr:1)" in run.text
+
+
+def test_a_second_run_on_the_same_ports_is_refused_and_disturbs_nothing(launch: Launch, traced: Path) -> None:
+    first = running(launch)
+    second = launch(FILE, "--ticks", "1")
+    assert second.wait() == 2
+    assert "are used by another run" in second.text
+    assert [path.name.endswith(f"-{first.process.pid}") for path in first.run_dir.parent.iterdir()] == [True]
+    first.until_ticks("f/player", 3)
+    first.signal(signal.SIGINT)
+    assert first.wait(STOP_S) == 0, first.text
+    assert "refused" not in first.text

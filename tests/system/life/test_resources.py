@@ -1,0 +1,161 @@
+"""What a component does to its process is seen from outside: where its time goes, how it crashed, how much it took."""
+
+import json
+import re
+import resource
+import signal
+from pathlib import Path
+
+import pytest
+
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording, difference
+from tests.harness.runs import Launched, PortBlock, write_files
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""One that works, and one that takes too much or falls over."""
+
+import ctypes
+from pathlib import Path
+
+import numpy as np
+
+from fwk import Component, Config, Reads, Writes
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+_taken = []
+
+
+def long_sum(number: int) -> float:
+    return float(sum(each * each for each in range(number)))
+
+
+class Worker(Component):
+    """Computes."""
+
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += long_sum(3000)
+        self.imu.write()
+
+
+class GluttonConfig(Config):
+    array_mb: int = 0
+    """Taken and kept in each iteration, in one piece."""
+    objects: int = 0
+    """Taken and kept in each iteration."""
+    crash_tick: int = 0
+    """At which it falls over, in its first life."""
+
+
+class Glutton(Component):
+    """Takes."""
+
+    stage = "think"
+    config: GluttonConfig
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        tick = self.imu.value.header.tick
+        if tick == self.config.crash_tick and not Path("crashed").exists():
+            Path("crashed").touch()
+            ctypes.string_at(0)
+        if self.config.array_mb:
+            _taken.append(np.ones(self.config.array_mb << 20, np.uint8))
+        _taken.extend([object()] for _ in range(self.config.objects))
+        self.pose.value.x_m = float(tick)
+        self.pose.write()
+'''
+LAUNCH = """
+name: parts
+public_url: {url}
+components:
+  r/worker: {{use: "parts:Worker"}}
+  r/glutton: {{use: "parts:Glutton", restart: {{backoff_s: 0.01}}, memory_limit_mb: 60}}
+"""
+
+
+@pytest.fixture
+def parts(tmp_path: Path, ports: PortBlock, launch: Launch) -> Launch:
+    write_files(tmp_path, {"parts.py": PARTS, "parts.yaml": LAUNCH.format(url=ports.public_url)})
+
+    def started(*arguments: str) -> Launched:
+        return launch("parts.yaml", "--speed", "max", "--ticks", "200", *arguments)
+
+    return started
+
+
+def settings(**values: int) -> list[str]:
+    return [word for key, value in values.items() for word in ("--set", f"r/glutton.{key}={value}")]
+
+
+def log_of(run: Launched) -> str:
+    return (run.run_dir / "fwk.log").read_text()
+
+
+@pytest.mark.parametrize("hosting", ["process", "robot"])
+def test_a_profile_says_where_the_time_goes_and_changes_no_message(parts: Launch, tmp_path: Path, hosting: str) -> None:
+    assert parts("--record", "free.log").wait() == 0
+    run = parts("--record", "profiled.log", "--profile", "r/worker", "--hosting", hosting)
+    assert run.wait() == 0, run.text
+    assert difference(tmp_path / "free.log", tmp_path / "profiled.log") == ""
+    text = (run.run_dir / "profile-r-worker.txt").read_text()
+    assert f"profile: {run.run_dir / 'profile-r-worker.txt'}" in run.text
+    assert "iterations of r/worker" in text
+    assert "long_sum" in text
+    assert "Glutton" not in text
+    page = (run.run_dir / "profile-r-worker.html").read_text()
+    assert "<html" in page
+    assert "long_sum" in page
+    frames = json.loads((run.run_dir / "profile-r-worker.speedscope.json").read_text())["shared"]["frames"]
+    assert {"long_sum", "loop"} <= {frame["name"] for frame in frames}
+
+
+def test_a_profile_of_nobody_is_refused(parts: Launch) -> None:
+    run = parts("--profile", "r/wroker")
+    assert run.wait() == 2
+    assert "did you mean 'r/worker'?" in " ".join(run.text.replace("│", " ").split())
+
+
+def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch, tmp_path: Path) -> None:
+    run = parts("--record", "log.lcm", *settings(crash_tick=20))
+    assert run.wait() == 0, run.text
+    log = log_of(run)
+    assert re.search(r"r/glutton stderr:\d+: Fatal Python error: Segmentation fault", log)
+    assert "parts.py" in log.partition("Fatal Python error")[2]
+    _, hard = resource.getrlimit(resource.RLIMIT_CORE)
+    pattern = Path("/proc/sys/kernel/core_pattern").read_text().strip()
+    dumped = ", core dumped" if hard and pattern else ""
+    assert f"r/glutton ended: killed by signal {signal.SIGSEGV.value}{dumped}; starting it again" in log
+    if dumped and pattern == "core":
+        assert list(tmp_path.glob("core*"))
+    ticks = [header.tick for header in Recording(tmp_path / "log.lcm").headers("r/pose")]
+    assert ticks == list(range(1, 201))
+
+
+@pytest.mark.parametrize("takes", [{"array_mb": 5}, {"objects": 30_000}])
+def test_who_takes_more_memory_than_allowed_is_ended_named_and_started_again(
+    parts: Launch, tmp_path: Path, takes: dict[str, int]
+) -> None:
+    run = parts("--record", "log.lcm", "--ticks", "60", *settings(**takes))
+    assert run.wait() == 0, run.text
+    log = log_of(run)
+    assert "r/glutton ended: MemoryError: more memory than its memory_limit_mb of 60 (" in log
+    said = log.partition("r/glutton ended: MemoryError")[2].splitlines()[0]
+    assert "in loop, tick" in said or "in its process" in said, said  # it may run out while messages are sent, too
+    assert "starting it again" in log
+    assert "r/worker ended" not in log
+    ticks = [header.tick for header in Recording(tmp_path / "log.lcm").headers("r/pose")]
+    assert ticks == list(range(1, 61))
+
+
+def test_the_limit_of_a_process_is_the_sum_of_its_components(parts: Launch) -> None:
+    run = parts("--ticks", "60", "--hosting", "robot", *settings(array_mb=5))
+    assert run.wait() == 0, run.text
+    assert "MemoryError" not in log_of(run)  # r/worker has no limit, so their process has none

@@ -1,0 +1,94 @@
+"""All that can happen to a run happens to one: it is replayed exactly, and a changed component is found."""
+
+import json
+import random
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fwk.lcm.type_registry import use_types_of
+from lcmtypes.core import tick_event_t
+from tests.harness.fate import Fate
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import TIMEOUT_S, PortBlock, replayed, write_files
+from tests.programs.control_system import Steered
+from tests.programs.everything import everything
+from tests.programs.together import FILE
+
+pytestmark = pytest.mark.system
+
+STRIKES = (
+    ("call", ""),
+    ("wish", ""),
+    ("set", "e/player"),
+    ("kill", "e/player"),
+    ("set", "z/follower"),
+    ("still", "f/player"),
+    ("stop and start", "r/lifter"),
+    ("call", ""),
+    ("kill", "z/planner"),
+    ("set", "z/planner"),
+    ("restart", "z/follower"),
+    ("kill", "z/driver"),
+    ("wish", ""),
+    ("kill", "one/worker"),
+    ("set", "d/player"),
+)
+EACH_ALONE = '''
+"""Replays each component alone; prints how many messages were compared and differed."""
+
+import json
+from pathlib import Path
+import sys
+
+from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.replay import Replay
+
+sys.path.append(".")
+found = {}
+for component in Recording(Path("log.lcm")).plan.components:
+    alone = Replay(Recording(Path("log.lcm")), [component.name])
+    alone.run()
+    found[component.name] = (alone.compared, [str(each) for each in alone.differences])
+print(json.dumps(found))
+'''
+
+
+def each_alone(folder: Path) -> dict[str, tuple[int, list[str]]]:
+    """Of each component how many messages were compared, and what differed."""
+    write_files(folder, {"each_alone.py": EACH_ALONE})
+    done = subprocess.run(
+        [sys.executable, "each_alone.py"], cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    found: dict[str, tuple[int, list[str]]] = json.loads(done.stdout)
+    return found
+
+
+@pytest.mark.parametrize("clock", ["lockstep", "real time"])
+def test_whatever_happens_is_replayed_exactly(launch: Launch, tmp_path: Path, ports: PortBlock, clock: str) -> None:
+    write_files(tmp_path, everything(ports.public_url, real_time=clock == "real time"))
+    use_types_of(tmp_path)
+    run = Steered(launch(FILE, "--record", "log.lcm"), ports)
+    fate = Fate(run, ports, random.Random(2))
+    for what, whom in STRIKES:
+        fate.strike(what, whom)
+        run.ticks_pass(2)
+    run.ticks_pass(24)
+    run.end()
+    kinds = {event.kind for record in Recording(tmp_path / "log.lcm").records for event in record.events}
+    usual = {tick_event_t.LOST, tick_event_t.STOPPED, tick_event_t.MAIN_LOOP, tick_event_t.TOLD}
+    assert usual <= kinds
+    assert (tick_event_t.LATE in kinds) == (clock == "real time")
+    replayed(tmp_path)
+    alone = each_alone(tmp_path)
+    assert {name: differences for name, (_, differences) in alone.items() if differences} == {}
+    assert min(compared for name, (compared, _) in alone.items() if name not in ("world/conductor", "z/driver")) > 0
+    parts = tmp_path / "everything_parts.py"
+    parts.write_text(parts.read_text().replace("self.digest + float(", "(self.digest + 1.0) + float("))
+    said = replayed(tmp_path, "--only", "z/planner", code=1)
+    assert re.search(r"z/planner: z/plan: tick \d+, stage \d+, message \d+ by z/planner: heading_rad is ", said), said

@@ -1,0 +1,141 @@
+"""Whatever happens in a run, real components fed with its recording do the same again, byte for byte."""
+
+import random
+import re
+import signal
+import sys
+from pathlib import Path
+
+import pytest
+
+from lcmtypes.core import tick_event_t
+from tests.harness.fate import Fate
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, replayed, write_files
+from tests.harness.terminals import Terminal
+from tests.programs.control_system import Steered
+from tests.programs.orchestra import PLAYER
+from tests.programs.together import FILE, together
+
+pytestmark = pytest.mark.system
+
+
+@pytest.mark.parametrize("groups", [False, True], ids=["alone", "groups"])
+@pytest.mark.parametrize("real_time", [False, True], ids=["lockstep", "real time"])
+def test_what_people_and_fate_did_to_a_run_is_replayed_exactly(
+    tmp_path: Path, ports: PortBlock, launch: Launch, real_time: bool, groups: bool
+) -> None:
+    write_files(tmp_path, together(ports.public_url, real_time=real_time, groups=groups))
+    (tmp_path / "traces").mkdir()
+    run = Steered(launch(FILE, "--record", "log.lcm"), ports)
+    luck = random.Random(3)
+    fate = Fate(run, ports, luck)
+    for _ in range(30):
+        fate.strike(luck.choice(["kill", "kill", "stop and start", "restart", "set", "still"]))
+        run.ticks_pass(luck.randrange(1, 5))
+    run.launched.signal(signal.SIGINT)
+    assert run.launched.wait() == 0, run.launched.text
+    recording = Recording(tmp_path / "log.lcm")
+    kinds = {event.kind for record in recording.records for event in record.events}
+    assert {tick_event_t.LOST, tick_event_t.STOPPED, tick_event_t.MAIN_LOOP} <= kinds
+    assert (tick_event_t.LATE in kinds) == real_time
+    assert any(record.n_changes for record in recording.records)
+    assert recording.messages["r/lift@one/worker"]
+    replayed(tmp_path)
+    replayed(tmp_path, "--only", "c/player", "--only", "r/lifter")
+
+
+@pytest.fixture
+def recorded(folder: Path, launch: Launch) -> Path:
+    """A folder with the recording of 30 ticks of the orchestra."""
+    run = launch("launch/orchestra.yaml", "--record", "log.lcm", "--ticks", "30")
+    assert run.wait() == 0, run.text
+    return folder
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "what"),
+    [
+        pytest.param(
+            "made.newest_stage = reader.header.tick,",
+            "made.newest_stage = reader.header.tick + CHANGED * (reader.channel == 'b/note'),",
+            "heard[1].newest_tick is 17 in the recording, 18 in the replay",
+            id="a member of a struct in an array",
+        ),
+        pytest.param(
+            "note.heard = [",
+            "note.heard = [] if CHANGED else [",
+            "n is 12 in the recording, 0 in the replay",
+            id="a shorter array",
+        ),
+        pytest.param(
+            "        self.note.write()",
+            "        CHANGED or self.note.write()",
+            "there in the recording, missing in the replay",
+            id="no message",
+        ),
+    ],
+)
+def test_a_changed_component_is_found_and_its_first_difference_named(
+    recorded: Path, before: str, after: str, what: str
+) -> None:
+    file = recorded / "procs/player.py"
+    changed = "(self.name == 'd/player' and self.clock.tick >= 17)"
+    assert before in file.read_text()
+    file.write_text(file.read_text().replace(before, after.replace("CHANGED", changed)))
+    said = replayed(recorded, code=1)
+    assert re.search(r"d/player: d/note: tick 17, stage 5, message 17 by d/player: " + re.escape(what), said), said
+    assert "different: 14 of " in said
+    replayed(recorded, "--to-tick", "16")
+    replayed(recorded, "--only", "c/player", "--only", "e/player")
+    assert "different: 4 of " in replayed(recorded, "--only", "d/*", "--from-tick", "27", code=1)
+
+
+def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: Path) -> None:
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "12"]
+    stopped = Terminal(recorded, *command, "--verify")
+    assert "loop()" in stopped.prompt()
+    assert "('e/player', 12)" in stopped.ask("p (self.name, self.clock.tick)")
+    stopped.ask(f"tbreak {recorded / 'procs/player.py'}:{line_of('self.note.write()')}")
+    stopped.ask("c")
+    assert "12" in stopped.ask("p note.iterations")
+    stopped.type("c")
+    stopped.child.expect("equal: ")
+    assert stopped.end() == 0
+    left = Terminal(recorded, *command)
+    left.prompt()
+    left.type("q")
+    left.child.expect("left in tick 12")
+    assert left.end() == 0
+
+
+def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> None:
+    file = recorded / "procs/player.py"
+    file.write_text(file.read_text().replace("        self.note.write()", "        1 / (self.clock.tick - 20)"))
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
+    failed = Terminal(recorded, *command)
+    failed.prompt()
+    assert "ZeroDivisionError" in failed.ask("c")
+    assert "20" in failed.ask("p note.iterations")
+    failed.type("q")
+    assert failed.end() == 0
+
+
+def line_of(text: str) -> int:
+    """Where it stands in the player's file."""
+    return 1 + next(number for number, line in enumerate(PLAYER.splitlines()) if text in line)
+
+
+@pytest.mark.parametrize("tick", [1, 9])
+@pytest.mark.parametrize("what", ["kill after publish", "raise"])
+@pytest.mark.parametrize("hosting", ["process", "single"])
+def test_who_dies_in_an_iteration_is_replayed_from_its_new_start_on(
+    folder: Path, launch: Launch, what: str, tick: int, hosting: str
+) -> None:
+    settings = {"trouble": f"loop:{what}", "trouble_tick": tick, "trouble_stage": "act"}
+    sets = [f"--set=a/player.{key}={value}" for key, value in settings.items()]
+    run = launch("launch/orchestra.yaml", "--record", "log.lcm", "--ticks", "20", "--hosting", hosting, *sets)
+    assert run.wait() == 0, run.text
+    assert "a/player#2" in {header.writer for header in Recording(folder / "log.lcm").headers("a/note")}
+    replayed(folder)

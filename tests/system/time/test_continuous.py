@@ -1,0 +1,207 @@
+"""Continuous components in real processes: at their own pace, never waited for, and replayed exactly."""
+
+import os
+import signal
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+
+from lcmtypes.core import tick_event_t
+from tests.harness.fixtures import Launch
+from tests.harness.logs import Recording
+from tests.harness.runs import PortBlock, fwk, replayed, write_files
+from tests.programs.control_system import Steered
+from tests.programs.orchestra import WEATHER
+
+pytestmark = pytest.mark.system
+
+PARTS = '''
+"""A counter, a planner that is slow and continuous, and one that follows the planner."""
+
+import os
+import weather
+from pathlib import Path
+
+from fwk import Clock, Component, Config, MainLoop, Reads, ReadsEach, Writes, channel
+from fwk.clock import sleep_s
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+
+class Counter(Component):
+    """Counts."""
+
+    stage = "think"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 1
+        self.imu.write()
+
+
+class PlannerConfig(Config):
+    takes_s: float = 0.02
+    gain: float = 1.0
+    takes_loop: int = 0
+
+
+class Planner(Component):
+    """Sums up all that it hears."""
+
+    rate_hz = 0
+    clock: Clock
+    config: PlannerConfig
+    main_loop: MainLoop
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def init(self) -> None:
+        Path("planner.pid").write_text(str(os.getpid()))
+
+    def loop(self) -> None:
+        before = [message.header.sequence for message in self.imu.fresh]
+        sleep_s(self.config.takes_s)
+        assert before == [message.header.sequence for message in self.imu.fresh]
+        self.pose.value.x_m += self.config.gain * sum(before)
+        self.pose.value.y_m = before[0] if before else 0
+        self.pose.value.heading_rad = before[-1] if before else 0
+        self.pose.write()
+        Path("planned").write_text(str(self.pose.value.header.sequence))
+        number, first = self.pose.value.header.sequence, self.config.takes_loop
+        if first and number == first:
+            self.main_loop.take_over(["think", "think", "act"])
+        if first and number > first + 4 and self.main_loop.mine:
+            self.main_loop.give_back()
+
+
+class Follower(Component):
+    """Adds up what the planner says."""
+
+    stage = "act"
+    pose: Reads[pose_t]
+    imu: Writes[imu_t] = channel("r/followed")
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += sum(message.x_m for message in self.pose.fresh)
+        self.imu.write()
+'''
+LAUNCH = """
+name: restless
+public_url: {url}
+period_s: 0.05
+components:
+  r/counter: {{use: "parts:Counter"}}
+  r/planner: {{use: "parts:Planner", restart: {{backoff_s: 0}}}}
+  r/follower: {{use: "parts:Follower"}}
+"""
+PLANNER = 1
+Start = Callable[..., Steered]
+
+
+@pytest.fixture
+def folder(tmp_path: Path, ports: PortBlock) -> Path:
+    write_files(
+        tmp_path, {"parts.py": PARTS, "weather.py": WEATHER, "restless.yaml": LAUNCH.format(url=ports.public_url)}
+    )
+    return tmp_path
+
+
+@pytest.fixture
+def start(folder: Path, ports: PortBlock, launch: Launch) -> Start:
+    return lambda *arguments, **more: Steered(launch("restless.yaml", *arguments, **more), ports)
+
+
+def planned(folder: Path) -> int:
+    file = folder / "planned"
+    return int(file.read_text() or 0) if file.exists() else 0
+
+
+def until_planned(run: Steered, number: int) -> None:
+    before = planned(run.launched.folder)
+    run.launched.until_true(lambda: planned(run.launched.folder) >= before + number, f"{number} more plans")
+
+
+def verified(log: Path) -> Recording:
+    replayed(log.parent, log=log)
+    recording = Recording(log)
+    assert recording.gaps() == {}
+    return recording
+
+
+@pytest.mark.parametrize("loss", ["0", "0.1"])
+def test_the_loop_goes_on_meanwhile_and_nothing_is_missed(start: Start, loss: str) -> None:
+    run = start("--speed", "max", env={"FWK_TEST_LOSS": loss})
+    until_planned(run, 20)
+    recording = verified(run.end())
+    poses = recording.decoded("r/pose")
+    assert [pose.header.stage for pose in poses] == [1] * len(poses)
+    assert any(after.header.tick > before.header.tick + 1 for before, after in pairwise(poses))
+    heard = [(pose.y_m, pose.heading_rad) for pose in poses if pose.heading_rad]
+    first_tick = poses[0].header.tick  # who comes to its first iteration later hears the newest only
+    assert heard[0][0] == max(1, first_tick - 1)
+    assert all(after[0] == before[1] + 1 for before, after in pairwise(heard))  # each message once, in order
+    ticks = {record.tick for record in recording.records}
+    assert len(recording.headers("r/imu")) >= len(ticks) - 1  # the counter has run in each
+
+
+def test_killed_in_the_middle_and_steered_it_replays(start: Start, folder: Path) -> None:
+    run = start("--speed", "5", "--set", "r/planner.takes_s=0.1")
+    until_planned(run, 3)
+    pid = int((folder / "planner.pid").read_text())
+    os.kill(pid, signal.SIGKILL)
+    run.launched.until("r/planner runs again, start number 2")
+    until_planned(run, 3)
+    run.ask("set", changes=["r/planner.gain=3", "r/planner.takes_s=0.01"])
+    until_planned(run, 3)
+    run.steer("restart", "r/planner", "r/follower")
+    until_planned(run, 3)
+    run.steer("stop", "r/planner")
+    run.ticks_pass()
+    run.steer("start", "r/planner")
+    until_planned(run, 3)
+    recording = verified(run.end())
+    writers = list(dict.fromkeys(header.writer for header in recording.headers("r/pose")))
+    assert writers == ["r/planner", "r/planner#2", "r/planner#3", "r/planner#4"]
+    lost = [event.index for record in recording.records for event in record.events if event.kind == tick_event_t.LOST]
+    assert lost == [PLANNER]
+
+
+def test_faster_than_the_loop_it_runs_several_times_a_tick_not_more(start: Start, folder: Path) -> None:
+    file = folder / "restless.yaml"
+    file.write_text(file.read_text().replace('"parts:Planner",', '"parts:Planner", rate_hz: 100,'))
+    run = start("--set", "r/planner.takes_s=0")
+    assert run.ask("period", name="r/planner") == {"ok": True, "name": "r/planner", "period_us": 10_000, "stages": []}
+    assert "100 Hz" in run.fwk("status")
+    assert "100 Hz" in fwk(folder, "check", "restless.yaml", "--channels")
+    until_planned(run, 30)
+    run.ask("pause")
+    run.steer("restart", "r/follower")
+    run.ask("resume")
+    until_planned(run, 10)
+    headers = verified(run.end()).headers("r/pose")
+    numbers = {header.stage for header in headers}
+    assert max(numbers) in (2, 3, 4, 5)  # 100 Hz in 50 ms
+    for before, after in pairwise(headers):
+        assert (after.tick, after.stage) > (before.tick, before.stage)
+
+
+def test_in_real_time_it_keeps_its_pace(start: Start, folder: Path) -> None:
+    file = folder / "restless.yaml"
+    text = file.read_text().replace('"parts:Planner",', '"parts:Planner", rate_hz: 40,')
+    file.write_text(text + "clock: wall\nstage_time_s: 0.5\n")
+    run = start("--set", "r/planner.takes_s=0.001")
+    until_planned(run, 40)
+    verified(run.end())
+
+
+def test_it_may_take_the_main_loop_over(start: Start) -> None:
+    run = start("--speed", "max", "--set", "r/planner.takes_loop=5")
+    run.launched.until("r/planner has given the main loop back")
+    until_planned(run, 3)
+    recording = verified(run.end())
+    assert any(
+        [event.stage for event in record.events if event.kind == tick_event_t.STAGE] == [0, 1, 2]
+        for record in recording.records
+    )
