@@ -8,8 +8,10 @@ from typing import Any, Protocol
 
 from fwk.bus import sync
 from fwk.bus.complaints import Complaints
+from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
-from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
+from fwk.bus.sender import Sender
+from fwk.bus.sockets import multicast_receiver, port_of, told
 from fwk.clock import Clock
 from fwk.component.log import Logger
 from fwk.engine.message_history import gaps
@@ -57,11 +59,15 @@ class Gateway:
         self._control = control
         self._public = public
         self._ports = Ports.of(plan)
-        self._sender = Sender(self._ports.host(self._ports.gateway))
+        self._network = UdpNetwork()
+        self._sender = Sender(self._ports.host(self._ports.gateway), self._network)
+        self._network.watch(self._sender.socket)
         self.clock = Clock(plan.period_us)
         self.log = Logger("gateway", self.clock, self._log_line)
         self._complaints = Complaints(self.log)
-        self._inputs = Inputs(plan, plan.channels, [], self._ports.gateway, run, self._sender, self._complaints)
+        self._inputs = Inputs(
+            plan, plan.channels, [], self._ports.gateway, run, self._network, self._sender, self._complaints
+        )
         opened = [each for each in plan.channels if each.of_tools or each.name in plan.outside or each.name == LINES]
         self._outside = Outside(opened, self._ports, self._sender, self._inputs, self.clock)
         self._strangers = Strangers(plan, self.take_in, self._complaints)
@@ -97,7 +103,10 @@ class Gateway:
         """Says that it hears everything from now on, and works until the supervisor closes the control connection."""
         self._acknowledge()
         while self._open:
-            if not self._poller.poll(100) and (self._outside.marks or self._next == 1):
+            wait_us = max(0, min(100_000, self._sender.due_us - self._network.now_us()))
+            happened = self._poller.poll(wait_us / 1000)
+            self._sender.send_due()
+            if not happened and (self._outside.marks or self._next == 1):
                 self._acknowledge()  # the main loop may have lost what it was told
             self._handle_own()
             self._hear_strangers()
@@ -151,7 +160,8 @@ class Gateway:
             if change.component == NOBODY:
                 self._open_channels(change)
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
-        if not self._inputs.wait(moved, self._handle_own):
+        lacking = self._inputs.collect(moved)
+        if lacking and not self._network.run(self._inputs.fetch(lacking, self._handle_own)):
             return False
         collected = []
         for box in moved:
@@ -292,7 +302,7 @@ class Gateway:
         for first, last in gaps((number for number, _ in found), fetch.first_sequence, fetch.last_sequence):
             self._tell_gone(fetch, first, last)
         for _, data in found if fetch.host != self._ports.gateway else ():
-            self._sender.publish_slowly(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
+            self._sender.publish_paced(box.plan.name.encode(), data, self._ports.channel(fetch.channel))
 
     def _tell_gone(self, fetch: fetch_t, first: int, last: int) -> None:
         gone = gone_t()

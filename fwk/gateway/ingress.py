@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.clock import Clock
 from fwk.engine.message_history import History
 from fwk.host.inputs import Inputs

@@ -12,8 +12,8 @@ from typing import Any
 from fwk.component.images import Ring
 from fwk.component.port import DeclarationError
 from fwk.host.assignment import Assignment, Start
-from fwk.host.continuous import host_of
 from fwk.host.debugger import DebugRequest, debug
+from fwk.host.driver import HostDriver
 from fwk.host.failures import Failure
 from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
@@ -60,12 +60,12 @@ class Place:
             print(f"error: {reason}", file=sys.stderr)
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
-        host = host_of(self._assignment(told), stop, stop.wakeup)
-        forward_logging(host.log_of_now)
+        driver = HostDriver(self._assignment(told), stop)
+        forward_logging(driver.host.log_of_now)
         try:
             if self.debug:
-                return debug(self.debug, host.serve)
-            host.serve()
+                return debug(self.debug, driver.serve)
+            driver.serve()
         except Failure as failure:
             print(f"error: {failure}", file=sys.stderr)
             return FAILED

@@ -1,42 +1,57 @@
-"""Somebody who answers the others while a long iteration runs."""
+"""Serves other processes in a thread while a long iteration runs."""
 
 import select
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
-_LOOK_MS = 100
+from fwk.bus.waiting import HasDescriptor
+from fwk.clock import monotonic_us
+
+LOOK_US = 100_000
+"""Longest wait of the thread: by then it has noticed that the iteration has ended."""
+
+Handle = Callable[[], int]
+"""Handles what has arrived; returns the wall time in microseconds at which it wants to be called again."""
+Background = Callable[[HasDescriptor, Handle], AbstractContextManager[None]]
+"""Within the context, `handle` is called when the source is readable; the caller then touches nothing that it uses."""
 
 
-class Attendant:
-    """A thread that calls `handle` when there is something to read, but only while the main thread lets it."""
+class BackgroundServer:
+    """A thread that calls a handler when a source is readable, but only while the main thread lets it."""
 
-    def __init__(self, descriptor: int, handle: Callable[[], object]) -> None:
-        self._descriptor = descriptor
-        self._handle = handle
-        self._attends = threading.Event()
+    def __init__(self) -> None:
+        self._serves = threading.Event()
         self._handling = threading.Lock()
         self._thread: threading.Thread | None = None
 
     @contextmanager
-    def serving(self) -> Iterator[None]:
-        """Meanwhile the main thread touches nothing that `handle` does."""
+    def serving(self, source: HasDescriptor, handle: Handle) -> Iterator[None]:
+        """Calls `handle` in the thread; the source and the handler are those of the first call."""
         if not self._thread:
-            self._thread = threading.Thread(target=self._work, daemon=True)
+            self._thread = threading.Thread(target=self._work, args=(source, handle), daemon=True)
             self._thread.start()
-        self._attends.set()
+        self._serves.set()
         try:
             yield
         finally:
-            self._attends.clear()
-            with self._handling:  # what it does just now comes to its end
+            self._serves.clear()
+            with self._handling:  # lets a call that is under way end
                 pass
 
-    def _work(self) -> None:
+    def _work(self, source: HasDescriptor, handle: Handle) -> None:
         poller = select.poll()
-        poller.register(self._descriptor, select.POLLIN)
-        while self._attends.wait():
-            if poller.poll(_LOOK_MS):
+        poller.register(source.fileno(), select.POLLIN)
+        again_us = 0
+        while self._serves.wait():
+            wait_us = max(0, min(again_us - monotonic_us(), LOOK_US))
+            if poller.poll(wait_us / 1000) or monotonic_us() >= again_us:
                 with self._handling:
-                    if self._attends.is_set():
-                        self._handle()
+                    if self._serves.is_set():
+                        again_us = handle()
+
+
+@contextmanager
+def no_background(_source: HasDescriptor, _handle: Handle) -> Iterator[None]:
+    """Serves nobody: iterations of a process with one thread take no wall time that others would notice."""
+    yield

@@ -6,7 +6,6 @@ from importlib import import_module
 
 from pydantic import ValidationError
 
-from fwk.clock import monotonic_us
 from fwk.component.declaration import declaration
 from fwk.component.log import Logger
 from fwk.component.port import DeclarationError
@@ -32,16 +31,18 @@ class Members:
         self,
         assignment: Assignment,
         make_runner: Callable[..., Runner],
+        now_us: Callable[[], int],
         log: Logger,
         send_log: Callable[[log_t], None],
     ) -> None:
         plan = assignment.plan
         self.plans = [plan.components[index] for index in plan.hosts[assignment.host].components]
-        self.figures = {component.name: Figures(component.name) for component in self.plans}
+        self.figures = {component.name: Figures(component.name, now_us) for component in self.plans}
         self.runners: dict[str, Runner] = {}
         self._assignment = assignment
         self._plan = plan
         self._make_runner = make_runner
+        self._now_us = now_us
         self._send_log = send_log
         self._blame = Blame(self.figures, plan.memory_limit_mb(assignment.host) or 0.0, log)
         self._index = {component.name: component.index for component in self.plans}
@@ -145,7 +146,7 @@ class Members:
         """One iteration of each of these: what they wrote, when the next tick is (or -1), how long it took."""
         written: list[tuple[str, bytes]] = []
         next_us = -1
-        began_us = start_us = monotonic_us()
+        began_us = start_us = self._now_us()
         for name in names:
             runner, waiting = self.runners[name], self._waiting[name]
             if self._progress:
@@ -157,7 +158,7 @@ class Members:
                 self._blame.make_room(error)
                 self._blame.put(name, f"loop, tick {tick.tick}", error)
                 raise
-            end_us = monotonic_us()
+            end_us = self._now_us()
             self.figures[name].ran(end_us - start_us)
             start_us = end_us
             next_us = max(next_us, runner.time_source.said_us)

@@ -1,21 +1,22 @@
 """The host of a continuous component: it iterates at its own pace on the newest marks that it was told."""
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from fwk.bus import sync
-from fwk.clock import US_PER_S, monotonic_us, sleep_s
+from fwk.bus.network import Network, Steps
+from fwk.clock import US_PER_S
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.engine.runner import Runner
 from fwk.host.assignment import Assignment
-from fwk.host.background_server import Attendant
 from fwk.host.dynamic_channels import Opened
+from fwk.host.hooks import ProcessHooks
 from fwk.host.host import Host
 from lcmtypes.core import change_t, done_t, tick_t
 
 REPEAT_US = 2_000  # a done that was not taken is sent again after so long, later less and less often
 REPEAT_LONGEST_US = 100_000
-PATIENCE_US = US_PER_S  # how long one that is stopped waits until its last iteration was taken
+TAKEN_TIMEOUT_US = US_PER_S
+"""How long a host that is stopped waits until its last iteration was taken."""
 _MOST = done_t.FINAL - 1  # iterations on the same marks
 
 
@@ -26,21 +27,14 @@ class ContinuousHost(Host):
     stands still when time does.
     """
 
-    def __init__(
-        self,
-        assignment: Assignment,
-        stopping: Callable[[], bool],
-        wakeup: int,
-        make_runner: Callable[..., Runner] = Runner,
-    ) -> None:
-        super().__init__(assignment, stopping, wakeup, make_runner)
+    def __init__(self, assignment: Assignment, network: Network, hooks: ProcessHooks) -> None:
+        super().__init__(assignment, network, hooks)
         own = self._members.plans[0]
         rate_hz = own.rate_hz or 0.0
         self._period_us = round(US_PER_S / rate_hz) if rate_hz else 0
         a_tick = max(1, math.ceil(rate_hz * self._plan.period_us / US_PER_S))
         self._most = _MOST if self._plan.clock == "wall" and rate_hz else a_tick
         self._names = (own.name,)
-        self._attendant = Attendant(self._sender.socket.fileno(), self._attend)
         self._told: list[tick_t] = []  # not taken over yet
         self._tick: tick_t | None = None  # the newest one that was taken over
         self._moved: dict[int, ChannelBuffer] = {}  # in which something became visible since the last iteration
@@ -51,32 +45,36 @@ class ContinuousHost(Host):
         self._sent_us = 0
         self._taken = True  # whether the supervisor has the last done
 
-    def _turn(self) -> None:
-        self._handle_own()
-        self._take_over()
-        if self._ready and monotonic_us() >= self._due_us:
-            self._run()
-        else:
-            self._poller.poll(self._idle_s)
-        self._repeat_if_due()
+    def _work(self) -> Steps[None]:
+        while not self._stopping():
+            self._handle_own()
+            self._take_over()
+            if self._ready and self._now_us() >= self._due_us:
+                yield from self._run()
+            else:
+                yield self._idle_until_us
+            self._repeat_if_due()
+            self._sender.send_due()
+            if self._now_us() >= self._report_us:
+                self._report()
 
-    def _finalize(self) -> None:
-        self._see_taken()
-        super()._finalize()
+    def _finalize(self) -> Steps[None]:
+        yield from self._wait_until_taken()
+        yield from super()._finalize()
 
     @property
     def _ready(self) -> bool:
         return self._tick is not None and self._taken and self._runs < self._most
 
     @property
-    def _idle_s(self) -> float:
-        """How long there is nothing to do unless something comes."""
-        until_us = self._report_us
+    def _idle_until_us(self) -> int:
+        """Wall time until which there is nothing to do unless a message comes."""
+        until_us = min(self._report_us, self._sender.due_us)
         if self._ready:
             until_us = min(until_us, self._due_us)
         if not self._taken:
             until_us = min(until_us, self._sent_us + self._repeat_us)
-        return max(0.0, (until_us - monotonic_us()) / US_PER_S)
+        return until_us
 
     def _handle_message(self, channel: bytes, data: bytes) -> None:
         if channel == sync.TICK:
@@ -86,15 +84,17 @@ class ContinuousHost(Host):
         elif channel == sync.DONE:
             done: done_t = sync.decode_done(data)
             self._taken = self._taken or (done.tick, done.stage) == self._answered
-            if self._leaving:
-                self._leaving.heard(done)
+            if self._shutdown:
+                self._shutdown.answered(done)
         else:
             super()._handle_message(channel, data)
 
-    def _attend(self) -> None:
-        """While an iteration runs: the inputs of the next one are collected, and who lacks something gets it."""
+    def _serve_in_background(self) -> int:
+        """Answers fetches and collects the next inputs while an iteration runs; returns when it wants to be called."""
         self._handle_own()
         self._take_over()
+        self._sender.send_due()
+        return self._sender.due_us
 
     def _take_over(self) -> None:
         """Takes over what ticks say, in their order."""
@@ -111,7 +111,7 @@ class ContinuousHost(Host):
             self._changes |= {change.number: change for change in tick.changes}  # told again until they are taken over
             self._tick, self._runs = tick, 0
 
-    def _run(self) -> None:
+    def _run(self) -> Steps[None]:
         tick = self._tick
         assert tick
         changes = [self._changes[number] for number in sorted(self._changes)]
@@ -119,7 +119,8 @@ class ContinuousHost(Host):
         if self._opened and changes:
             self._open(self._opened, changes, tick)
         moved = list(self._moved.values())
-        if not self.inputs.wait(moved, self._handle_own):
+        lacking = self.inputs.collect(moved)
+        if lacking and not (yield from self._fetch(lacking)):
             return
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
@@ -131,11 +132,11 @@ class ContinuousHost(Host):
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         self._runs += 1
         tick.stage = self._runs
-        self._due_us = self._period_us + max(self._due_us, monotonic_us() - self._period_us)
-        with self._attendant.serving():
+        self._due_us = self._period_us + max(self._due_us, self._now_us() - self._period_us)
+        with self._hooks.background(self._own, self._serve_in_background):
             ran = self._members.run(self._names, "", tick)
         self._answered, self._taken = (tick.tick, tick.stage), False
-        self._sent_us, self._repeat_us = monotonic_us(), REPEAT_US
+        self._sent_us, self._repeat_us = self._now_us(), REPEAT_US
         self._finish(tick, self._names, *ran)
 
     def _open(self, opened: Opened, changes: Sequence[change_t], tick: tick_t) -> None:
@@ -147,29 +148,25 @@ class ContinuousHost(Host):
         moved = {**self._moved, **{box.plan.index: box for box in new if box.mark}}
         self._moved = {index: box for index, box in moved.items() if index in self.inputs}
 
-    def _see_taken(self) -> None:
-        """Before the last done: the one before it has to be taken, or its messages would be seen without it."""
-        until_us = monotonic_us() + PATIENCE_US
-        while not self._taken and monotonic_us() < until_us:
-            sleep_s(0.001)
+    def _wait_until_taken(self) -> Steps[None]:
+        """Waits for the done before the last one: without it, its messages would be seen but not its iteration."""
+        until_us = self._now_us() + TAKEN_TIMEOUT_US
+        while not self._taken and self._now_us() < until_us:
+            yield min(until_us, self._sent_us + self._repeat_us, self._sender.due_us)
             self._handle_own()
             self._repeat_if_due()
+            self._sender.send_due()
 
     def _repeat_if_due(self) -> None:
-        if self._taken or monotonic_us() < self._sent_us + self._repeat_us:
+        if self._taken or self._now_us() < self._sent_us + self._repeat_us:
             return
         self._sender.publish(sync.DONE, self._done, self._sync_port)
-        self._sent_us, self._repeat_us = monotonic_us(), min(2 * self._repeat_us, REPEAT_LONGEST_US)
+        self._sent_us, self._repeat_us = self._now_us(), min(2 * self._repeat_us, REPEAT_LONGEST_US)
 
 
-def host_of(
-    assignment: Assignment,
-    stopping: Callable[[], bool],
-    wakeup: int,
-    make_runner: Callable[..., Runner] = Runner,
-) -> Host:
-    """The host that suits the components of an assignment."""
+def host_of(assignment: Assignment, network: Network, hooks: ProcessHooks) -> Host:
+    """Returns the host that suits the components of an assignment."""
     plan = assignment.plan
     components = [plan.components[index] for index in plan.hosts[assignment.host].components]
     kind = Host if components[0].rate_hz is None else ContinuousHost
-    return kind(assignment, stopping, wakeup, make_runner)
+    return kind(assignment, network, hooks)

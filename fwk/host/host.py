@@ -1,53 +1,51 @@
 """The host process: answers each tick with one iteration of each of its components and one done."""
 
 import json
-import select
-import socket
 import struct
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from fwk.bus import sync
 from fwk.bus.complaints import Complaints
-from fwk.bus.sockets import Sender, multicast_receiver, port_of, told
-from fwk.clock import US_PER_S, Clock, monotonic_us
+from fwk.bus.network import Network, Steps
+from fwk.bus.receiver import Receiver
+from fwk.bus.sender import Sender
+from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger
-from fwk.engine.runner import Runner, is_new
+from fwk.engine.channel_buffer import ChannelBuffer
+from fwk.engine.runner import is_new
 from fwk.host.assignment import Assignment
 from fwk.host.component_group import Members
 from fwk.host.dynamic_channels import Opened
+from fwk.host.hooks import ProcessHooks
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
-from fwk.host.process import give_memory_back
-from fwk.host.shutdown import Leaving
-from fwk.lcm import wire
+from fwk.host.shutdown import Shutdown
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
 
-READY_REPORT_MS = 100  # how often a host says that it is ready until its first tick comes
+READY_REPORT_US = 100_000
+"""How often a host reports that it is ready until its first tick comes."""
 REPORT_US = US_PER_S
 
 
 class Host:
-    """Takes its components from `init` to `finalize`."""
+    """Takes its components from `init` to `finalize`: a participant, which `serve` runs."""
 
-    def __init__(
-        self,
-        assignment: Assignment,
-        stopping: Callable[[], bool],
-        wakeup: int,
-        make_runner: Callable[..., Runner] = Runner,
-    ) -> None:
+    def __init__(self, assignment: Assignment, network: Network, hooks: ProcessHooks) -> None:
         plan = assignment.plan
         self._assignment = assignment
         self._plan = plan
-        self._stopping = stopping
+        self._network = network
+        self._now_us = network.now_us
+        self._hooks = hooks
+        self._stopping = hooks.stopping
         self._ports = Ports.of(plan)
-        self._supervisor_port, self._sync_port = self._ports.supervisor, self._ports.sync
-        self._sender = Sender(self._ports.host(assignment.host))
+        self._sync_port = self._ports.sync
+        self._sender = Sender(self._ports.host(assignment.host), network)
         self._clock = Clock(plan.period_us)
         self.log = Logger(plan.hosts[assignment.host].name, self._clock, self._send_log)
-        self._members = Members(assignment, make_runner, self.log, self._send_log)
+        self._members = Members(assignment, hooks.make_runner, network.now_us, self.log, self._send_log)
         self._complaints = Complaints(self.log)
         indices = {component.index for component in self._members.plans}
         written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
@@ -59,28 +57,33 @@ class Host:
             local,
             assignment.host,
             assignment.run,
+            network,
             self._sender,
             self._complaints,
             restarted=assignment.start.incarnation > 1,
         )
-        self._outputs = Outputs(written, self._ports, self._sender, self.inputs.local, assignment.start.sequences)
+        self._outputs = Outputs(
+            written, self._ports, self._sender, self.inputs.local, assignment.start.sequences, network.now_us
+        )
         self._opened: Opened | None = None
         if instances := self._members.instances:
             self._opened = Opened(plan, assignment.host, self._members, instances, self.inputs, self._outputs)
-        stages = sorted({stage for component in self._members.plans for stage in component.stages})
-        listening = [(stage, multicast_receiver(self._ports.stage(stage))) for stage in stages]
-        self._sockets = {source.fileno(): (stage, source) for stage, source in listening}
-        self._assembler = wire.Assembler()
-        self._poller = select.epoll()  # unlike poll() it does not look at every socket again each time
-        for descriptor in (*self._sockets, self._sender.socket.fileno(), wakeup):
-            self._poller.register(descriptor, select.EPOLLIN)
+        self._own = Receiver(self._sender.socket, self._ports.members, "of this run", "fwk/fetch", self._complaints)
+        self._ticks: dict[int, tuple[int, Receiver]] = {}  # by descriptor: stage, where its ticks arrive
+        for stage in sorted({stage for component in self._members.plans for stage in component.stages}):
+            source = network.group_socket(self._ports.stage(stage))
+            receiver = Receiver(source, (self._ports.supervisor,), "the supervisor's", "fwk/tick", self._complaints)
+            self._ticks[source.fileno()] = stage, receiver
+        network.watch(self._own)
+        for _, receiver in self._ticks.values():
+            network.watch(receiver)
         self._takes_part = [
             [component.name for component in self._members.plans if stage in component.stages]
             for stage in range(len(plan.stages))
         ]
         self._answered = (0, -1)  # the newest (tick, stage) done
         self._done = b""
-        self._leaving: Leaving | None = None
+        self._shutdown: Shutdown | None = None
         self._message = done_t()  # the next done; what stays the same in it is written once
         self._message.run, self._message.host = assignment.run, assignment.host
         self._message.incarnation = assignment.start.incarnation
@@ -90,19 +93,16 @@ class Host:
         """That of the component that works now; while none does, the process's own."""
         return self._members.log_of_now() or self.log
 
-    def serve(self) -> None:
-        """Initialises the components, answers ticks until it is told to stop, finalizes the components.
+    def serve(self) -> Steps[None]:
+        """Initialises the components, answers ticks until the process is asked to stop, finalizes the components.
 
         Raises:
             Failure: a component raised.
         """
         try:
             self._init()
-            while not self._stopping():
-                self._turn()
-                if monotonic_us() >= self._report_us:
-                    self._report()
-            self._finalize()
+            yield from self._work()
+            yield from self._finalize()
         except MemoryError as error:  # between two iterations
             self._members.out_of_memory(error)
         finally:
@@ -112,43 +112,51 @@ class Host:
 
     def _init(self) -> None:
         self._members.init(self._report)
-        give_memory_back()
+        self._hooks.initialized()
         self._report()
 
-    def _turn(self) -> None:
-        """Waits for something to do, and does it."""
-        for descriptor, _ in self._poller.poll(0.001 * READY_REPORT_MS if self._answered[0] == 0 else 1):
-            source = self._sockets.get(descriptor)
-            tick = self._receive_tick(source[1]) if source else None
-            if source and tick:
-                self._answer(tick, source[0])
-            elif not source:
-                self._handle_own()
+    def _work(self) -> Steps[None]:
+        """Answers ticks and fetches until the process is asked to stop."""
+        own = self._own.fileno()
+        while not self._stopping():
+            for descriptor in (yield min(self._report_us, self._sender.due_us)):
+                if descriptor == own:
+                    self._handle_own()
+                elif descriptor in self._ticks:
+                    stage, receiver = self._ticks[descriptor]
+                    tick = self._receive_tick(receiver)
+                    if tick:
+                        yield from self._answer(tick, stage)
+            self._sender.send_due()
+            if self._now_us() >= self._report_us:
+                self._report()
 
-    def _finalize(self) -> None:
+    def _finalize(self) -> Steps[None]:
         """Finalizes the components and sends what they wrote, with a last done: it counts if the run goes on."""
+        self._ignore_ticks(True)
         written, tick = self._members.finalize()
         before = self._done
         self._publish(written, tick, done_t.FINAL, -1, 0, self._members.missed_frames())
-        self._leaving = Leaving(self._ports, self._sender, before, self._message, self._outputs.sent)
-        self._leaving.wait(self._handle_own)
+        self._shutdown = Shutdown(self._network, self._ports, self._sender, before, self._message, self._outputs.sent)
+        yield from self._shutdown.wait(self._handle_own)
 
-    def _receive_tick(self, source: socket.socket) -> tick_t | None:
-        try:
-            datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
-        except BlockingIOError:
+    def _receive_tick(self, receiver: Receiver) -> tick_t | None:
+        message = receiver.receive()
+        if message is None:
             return None
         try:
-            if port_of(address) != self._supervisor_port:
-                raise MessageError(f"datagram from {told(address)}, which is not the supervisor's")
-            message = self._assembler.feed(datagram, address[1])
-            tick: tick_t | None = sync.decode_tick(message[1]) if message else None
+            tick: tick_t = sync.decode_tick(message[1])
         except MessageError as error:
-            self._complaints("fwk/tick", f"{error}; refused")
+            receiver.refuse(str(error))
             return None
-        return tick if tick and tick.run == self._assignment.run else None
+        return tick if tick.run == self._assignment.run else None
 
-    def _answer(self, tick: tick_t, stage: int) -> None:
+    def _ignore_ticks(self, ignored: bool) -> None:
+        """Leaves ticks in their sockets, where repeated ones would end every wait at once."""
+        for _, receiver in self._ticks.values():
+            (self._network.unwatch if ignored else self._network.watch)(receiver)
+
+    def _answer(self, tick: tick_t, stage: int) -> Steps[None]:
         if self._assignment.host in tick.absent:
             return
         this = (tick.tick, tick.stage)
@@ -163,7 +171,8 @@ class Host:
             box.skip_to(box.mark - 1)
         if is_new(tick.tick, self._answered[0]):
             self.inputs.newest_only()
-        if not self.inputs.wait(moved, self._handle_own):
+        lacking = self.inputs.collect(moved)
+        if lacking and not (yield from self._fetch(lacking)):
             return
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
@@ -174,6 +183,13 @@ class Host:
         names = self._takes_part[stage]
         self._finish(tick, names, *self._members.run(names, self._plan.stages[stage], tick))
         self._answered = this
+
+    def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
+        """Fetches until everything visible is here; returns False if the process is asked to stop meanwhile."""
+        self._ignore_ticks(True)
+        complete = yield from self.inputs.fetch(lacking, self._handle_own)
+        self._ignore_ticks(False)
+        return complete
 
     def _finish(
         self, tick: tick_t, names: Sequence[str], written: list[tuple[str, bytes]], next_us: int, busy_us: int
@@ -201,23 +217,21 @@ class Host:
         self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _handle_own(self) -> bool:
-        """Handles what was sent to this host's own port; false when it is time to stop."""
-        while True:
+        """Handles what was sent to this host alone; returns False when it is time to stop."""
+        while message := self._own.receive():
             try:
-                message = self._sender.receive(self._ports.members)
-                if message is None:
-                    return not self._stopping()
-                self._handle_message(*message)
+                self._handle_message(message[0], message[1])
             except (MessageError, ValueError, struct.error) as error:
-                self._complaints("fwk/fetch", f"{error}; refused")
+                self._own.refuse(str(error))
+        return not self._stopping()
 
     def _handle_message(self, channel: bytes, data: bytes) -> None:
         if channel == b"fwk/fetch":
             fetch = fetch_t.decode(data)
             if fetch.run == self._assignment.run:
                 self._outputs.answer(fetch)
-        elif channel == sync.DONE and self._leaving:
-            self._leaving.heard(sync.decode_done(data))
+        elif channel == sync.DONE and self._shutdown:
+            self._shutdown.answered(sync.decode_done(data))
         elif channel == b"fwk/gone":
             gone = gone_t.decode(data)
             if gone.run == self._assignment.run:
@@ -233,7 +247,7 @@ class Host:
             self.log.warning(f"{channel}: {lost} messages of {numbers} lost: their writer no longer has them")
 
     def _report(self) -> None:
-        self._report_us = monotonic_us() + (READY_REPORT_MS * 1000 if self._answered[0] == 0 else REPORT_US)
+        self._report_us = self._now_us() + (READY_REPORT_US if self._answered[0] == 0 else REPORT_US)
         runners, figures = self._members.runners, self._members.figures.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host

@@ -1,11 +1,10 @@
-"""What a host reads: waits until everything that a tick's marks name is here, asking writers for what was lost."""
+"""The channels that a host reads: collects what the marks name and fetches what was lost."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Sequence
 
 from fwk.bus.channel_socket import ChannelSocket, Complain
-from fwk.bus.sockets import Sender
-from fwk.bus.waiting import Waiting
-from fwk.clock import monotonic_us
+from fwk.bus.network import Network, Steps
+from fwk.bus.sender import Sender
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.ports import Ports
@@ -31,11 +30,13 @@ class Inputs:
         local: Sequence[ChannelPlan],
         host: int,
         run: int,
+        network: Network,
         sender: Sender,
         complain: Complain,
         restarted: bool = False,
     ) -> None:
         ports = Ports.of(plan)
+        self._network = network
         self._sender = sender
         self._ports = ports
         self._patience_us = PATIENCE_US if plan.clock == "wall" else 0
@@ -51,7 +52,7 @@ class Inputs:
                 self._boxes[channel.index] = ChannelBuffer(channel)
             else:
                 senders = (ports.host(self._writer_host[channel.index]), ports.host(ports.gateway))
-                self._boxes[channel.index] = ChannelSocket(channel, ports.channel(channel.index), senders, complain)
+                self._boxes[channel.index] = self._listen(channel, senders)
         self.local = {channel.name: self._boxes[channel.index] for channel in local}
         self.fetched = 0  # messages that were lost and came after asking
         self.lost = 0  # messages that could not be had any more
@@ -87,9 +88,12 @@ class Inputs:
             writer_host = self._host_of(channel.writer)
         self._writer_host[channel.index] = writer_host
         # Its writer may change, sooner than this process hears of it: whatever comes from the run is taken.
-        box = ChannelSocket(channel, self._ports.channel(channel.index), self._ports.members, self._complain)
-        self._boxes[channel.index] = box
+        box = self._boxes[channel.index] = self._listen(channel, self._ports.members)
         return box
+
+    def _listen(self, channel: ChannelPlan, senders: Container[int]) -> ChannelSocket:
+        source = self._network.group_socket(self._ports.channel(channel.index))
+        return ChannelSocket(channel, source, senders, self._complain)
 
     def comes_from(self, channel: int, writer_host: int) -> None:
         """Another process writes a channel from now on, and is asked for what is lost of it."""
@@ -123,34 +127,35 @@ class Inputs:
             if isinstance(box, ChannelSocket):
                 box.close()
 
-    def wait(self, boxes: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> bool:
-        """Waits until everything visible in `boxes` is here; false if `serve` says that waiting is over.
+    def collect(self, boxes: Sequence[ChannelBuffer]) -> list[ChannelBuffer]:
+        """Takes everything visible in `boxes` from their sockets; returns the boxes that still lack messages."""
+        return [box for box in boxes if not box.collect()]
 
-        `serve` is called whenever the process's own port has something, because who waits must still answer others.
-        In real time a writer that stands still is not waited for: after a while the gateway is asked, and what it does
-        not have is lost.
+    def fetch(self, lacking: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> Steps[bool]:
+        """Fetches until everything visible in `lacking` is here; returns False if `serve` says that waiting is over.
+
+        `serve` is called at every wake-up, because a host that waits must still answer others. In real time a writer
+        that stands still is not waited for: after a while the gateway is asked, and what it does not have is lost.
         """
-        lacking = [box for box in boxes if not box.collect()]
-        if not lacking:
-            return True
-        waiting = Waiting()
-        waiting.add(self._sender.socket)
-        for box in lacking:
-            if isinstance(box, ChannelSocket) and not box.closed:
-                waiting.add(box)
-        began_us = monotonic_us()
+        network = self._network
+        watched = [box for box in lacking if isinstance(box, ChannelSocket) and not box.closed]
+        for box in watched:
+            network.watch(box)
+        began_us = network.now_us()
         next_us, ask_us, asked = SECOND_WAIT_US, began_us + FIRST_WAIT_US, 0
         while lacking:
-            waiting.wait(ask_us - monotonic_us())
+            yield min(ask_us, self._sender.due_us)
+            self._sender.send_due()
             if not serve():
                 break
-            lacking = [box for box in lacking if not box.collect()]
-            if lacking and monotonic_us() >= ask_us:
+            lacking = self.collect(lacking)
+            if lacking and network.now_us() >= ask_us:
                 asked = max(asked, sum(len(box.missing()) for box in lacking))
-                ask_us = monotonic_us() + next_us
+                ask_us = network.now_us() + next_us
                 self._ask(lacking, patient=not self._patience_us or ask_us < began_us + self._patience_us)
                 next_us = min(2 * next_us, LONGEST_WAIT_US)
-        waiting.close()
+        for box in watched:
+            network.unwatch(box)
         self.fetched += asked
         return not lacking
 

@@ -1,8 +1,8 @@
 """What a host tells of its components: their states and figures, and what was refused on their channels."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from fwk.clock import monotonic_us
 from fwk.model.histogram import Histogram
 from lcmtypes.core import component_state_t, histogram_t
 
@@ -14,13 +14,15 @@ class Figures:
     """State and figures of one component."""
 
     name: str
+    now_us: Callable[[], int]
+    """Returns the wall time."""
     state: str = "loaded"
     reason: str = ""
     times: Histogram = field(default_factory=Histogram)
     """Of its iterations."""
 
     def __post_init__(self) -> None:
-        self._since_us = monotonic_us()
+        self._since_us = self.now_us()
 
     def ran(self, duration_us: int) -> None:
         """Counts an iteration."""
@@ -31,7 +33,7 @@ class Figures:
         made = component_state_t()
         made.name, made.state, made.reason = self.name, self.state, self.reason
         made.iterations, made.busy_us, made.worst_us = self.times.count, self.times.total_us, self.times.worst_us
-        made.awake_us = monotonic_us() - self._since_us
+        made.awake_us = self.now_us() - self._since_us
         return made
 
     def histogram(self) -> histogram_t:

@@ -1,9 +1,8 @@
 """What a host sends: its components' messages, and again those that readers lost."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
-from fwk.bus.sockets import Sender
-from fwk.clock import monotonic_us
+from fwk.bus.sender import Sender
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import History, gaps
 from fwk.lcm.messages import tick_and_sequence_of
@@ -25,14 +24,16 @@ class Outputs:
         sender: Sender,
         local: Mapping[str, ChannelBuffer],
         sequences: Mapping[str, int],
+        now_us: Callable[[], int],
     ) -> None:
         self._written = {
             name: (plan.index, name.encode(), ports.channel(plan.index), History()) for name, plan in written.items()
         }
         self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
-        self._repeated: dict[int, tuple[int, int]] = {}  # by channel: a large message, until when it is not sent again
+        self._repeated: dict[tuple[int, int], int] = {}  # channel, number: until when it is not sent again
         self._sender = sender
+        self._now_us = now_us
         self._ports = ports
         self._local = local
 
@@ -99,12 +100,13 @@ class Outputs:
     def _repeat(self, channel: int, sequence: int, data: bytes) -> None:
         """Sends a message again; a large one slowly, and once for all who ask at the same time."""
         name, port, _ = self._by_index[channel]
-        repeated = self._repeated.get(channel)
-        if repeated and sequence == repeated[0] and monotonic_us() < repeated[1]:
+        now_us, this = self._now_us(), (channel, sequence)
+        if now_us < self._repeated.get(this, 0):
             return
-        self._sender.publish_slowly(name, data, port)
+        self._sender.publish_paced(name, data, port)
         if len(data) > LARGE_BYTES:
-            self._repeated[channel] = (sequence, monotonic_us() + SHARED_US)
+            self._repeated = {each: until_us for each, until_us in self._repeated.items() if until_us > now_us}
+            self._repeated[this] = max(now_us, self._sender.paced_until_us) + SHARED_US
 
     def _pass_on(self, fetch: fetch_t, first_sequence: int, last_sequence: int) -> None:
         passed = fetch_t()

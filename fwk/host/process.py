@@ -1,5 +1,6 @@
 """Life of a forked process: dies with its parent, stops politely, leaves a trace when it crashes."""
 
+import contextlib
 import ctypes
 import faulthandler
 import os
@@ -85,6 +86,9 @@ class StopSignal:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the supervisor's business
 
     def __call__(self) -> bool:
+        if self._set:
+            with contextlib.suppress(BlockingIOError):  # a readable wakeup would end every further wait at once
+                os.read(self.wakeup, 1024)
         return self._set
 
     def on_interrupt(self, ends: bool) -> None:

@@ -1,24 +1,35 @@
-"""How a host leaves a run that goes on: not before supervisor and gateway have all that it has sent."""
+"""How a host leaves a run that goes on: not before supervisor and gateway have everything that it has sent."""
 
 from collections.abc import Callable, Mapping
 
 from fwk.bus import sync
-from fwk.bus.sockets import Sender
-from fwk.clock import monotonic_us
+from fwk.bus.network import Network, Steps
+from fwk.bus.sender import Sender
 from fwk.model.ports import Ports
 from lcmtypes.core import done_t
 
 REPEAT_US = 5_000
-PATIENCE_US = 500_000  # a supervisor or gateway that has not answered by then has ended, or will not any more
+TIMEOUT_US = 500_000
+"""A supervisor or gateway that has not answered by then has ended, or will not answer any more."""
 
 
-class Leaving:
+class Shutdown:
     """Repeats the last dones until the supervisor has taken the final one and the gateway holds every message.
 
-    When the process has ended nobody can ask it again. Both send the final done back, each with its own number as host.
+    No process can be asked again once it has ended. Supervisor and gateway send the final done back, each with its own
+    number as host.
     """
 
-    def __init__(self, ports: Ports, sender: Sender, before: bytes, final: done_t, sent: Mapping[int, int]) -> None:
+    def __init__(
+        self,
+        network: Network,
+        ports: Ports,
+        sender: Sender,
+        before: bytes,
+        final: done_t,
+        sent: Mapping[int, int],
+    ) -> None:
+        self._network = network
         self._ports = ports
         self._sender = sender
         self._before = before
@@ -28,28 +39,31 @@ class Leaving:
         everything.tick, everything.stage, everything.next_time_us = final.tick, done_t.FINAL, -1
         everything.n_marks, everything.channel, everything.sequence = len(sent), list(sent), list(sent.values())
         self._everything = sync.encode_done(everything)
-        self._waits_for = {final.host, ports.gateway}
+        self._unanswered = {final.host, ports.gateway}
 
-    def heard(self, done: done_t) -> None:
-        """One of the two has what it needs."""
+    def answered(self, done: done_t) -> None:
+        """Takes a final done that supervisor or gateway sent back."""
         if done.stage == done_t.FINAL:
-            self._waits_for.discard(done.host)
+            self._unanswered.discard(done.host)
 
-    def wait(self, handle_own: Callable[[], object]) -> None:
-        """Until both have; meanwhile `handle_own` answers who lacks something."""
-        end_us = monotonic_us() + PATIENCE_US
+    def wait(self, handle_own: Callable[[], object]) -> Steps[None]:
+        """Waits until both have answered; meanwhile `handle_own` answers fetches."""
+        network = self._network
+        end_us = network.now_us() + TIMEOUT_US
         repeat_us = 0
-        while self._waits_for and (now_us := monotonic_us()) < end_us:
+        while self._unanswered and (now_us := network.now_us()) < end_us:
             if now_us >= repeat_us:
                 self._send()
                 repeat_us = now_us + REPEAT_US
-            self._sender.wait(REPEAT_US)
+            yield min(repeat_us, end_us, self._sender.due_us)
+            self._sender.send_due()
             handle_own()
 
     def _send(self) -> None:
-        if self._ports.gateway in self._waits_for:
-            self._sender.send(sync.DONE, self._everything, self._ports.host(self._ports.gateway))
-        if len(self._waits_for) > 1 or self._ports.gateway not in self._waits_for:
-            if self._before:  # the supervisor takes them in their order
+        gateway = self._ports.gateway
+        if gateway in self._unanswered:
+            self._sender.send(sync.DONE, self._everything, self._ports.host(gateway))
+        if self._unanswered - {gateway}:
+            if self._before:  # the supervisor takes dones in their order
                 self._sender.publish(sync.DONE, self._before, self._ports.sync)
             self._sender.publish(sync.DONE, self._final, self._ports.sync)

@@ -3,7 +3,7 @@
 from collections import deque
 
 from fwk.bus import sync
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports

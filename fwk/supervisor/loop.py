@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.component.log import Logger
 from fwk.engine.visibility import Ledger
 from fwk.model.plan import NOBODY, Plan

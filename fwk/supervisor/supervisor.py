@@ -8,7 +8,7 @@ from typing import Protocol
 
 from fwk.bus.complaints import Complaints
 from fwk.bus.network import Network, Steps
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.clock import US_PER_S
 from fwk.component.images import Ring
 from fwk.component.log import Logger
@@ -75,7 +75,7 @@ class Supervisor:
         self._plan = plan
         self._options = options
         self._ports = Ports.of(plan)
-        self._sender = Sender(self._ports.supervisor, network.own_socket(self._ports.supervisor))
+        self._sender = Sender(self._ports.supervisor, network)
         self.pace = Pace(plan, options.speed)
         self.log = Logger("supervisor", self.pace.clock, self._send_log)
         self._events = EventLoop(network)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports

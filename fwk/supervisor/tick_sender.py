@@ -4,7 +4,7 @@ from collections.abc import Iterable, Sequence
 from collections.abc import Set as AbstractSet
 
 from fwk.bus import sync
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.model.ports import Ports
 from fwk.supervisor.processes.host_process import HostEntry

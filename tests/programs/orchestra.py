@@ -278,7 +278,7 @@ WEATHER = '''
 import os
 import random
 
-from fwk.bus import sockets
+from fwk.bus import network, sockets
 
 loss = float(os.environ.get("FWK_TEST_LOSS", "0"))
 buffer_bytes = int(os.environ.get("FWK_TEST_BUFFER_BYTES", "0"))
@@ -297,13 +297,8 @@ if loss:
         def __getattr__(self, name):
             return getattr(self._real, name)
 
-    _calm = sockets.Sender.__init__
-
-    def _stormy(self, *arguments):
-        _calm(self, *arguments)
-        self.socket = _Lossy(self.socket)
-
-    sockets.Sender.__init__ = _stormy
+    _calm = network.own_socket
+    network.own_socket = lambda port: _Lossy(_calm(port))
 
 if buffer_bytes:
     sockets.multicast_receiver.__defaults__ = (buffer_bytes,)

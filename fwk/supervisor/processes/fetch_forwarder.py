@@ -2,7 +2,7 @@
 
 import contextlib
 
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -16,7 +16,7 @@ class StandIn:
         ports = Ports.of(plan)
         self._gateway = ports.host(ports.gateway)
         self._members = ports.members
-        self._sender = Sender(ports.host(host), events.network.own_socket(ports.host(host)))
+        self._sender = Sender(ports.host(host), events.network)
         self._events = events
         events.watch(self._sender.socket, self._pass_on)
 

@@ -15,9 +15,9 @@ from typing import Any
 from fwk.component.images import Ring
 from fwk.engine.runner import Runner
 from fwk.host.assignment import Assignment, Start
-from fwk.host.continuous import host_of
 from fwk.host.crash_marker import Progress
 from fwk.host.debugger import DebugRequest, debug
+from fwk.host.driver import HostDriver
 from fwk.host.failures import Failure
 from fwk.host.hot_reload import forget_modules
 from fwk.host.memory import limit_memory
@@ -242,13 +242,13 @@ def _serve_host(
     if limit:
         limit_memory(limit)
     profile = Profile(profiled, assignment.start.incarnation) if profiled else None
-    host = host_of(assignment, stop, stop.wakeup, profile.runner if profile else Runner)
-    log_uncaught(host.log)
-    forward_logging(host.log_of_now)
+    driver = HostDriver(assignment, stop, profile.runner if profile else Runner)
+    log_uncaught(driver.host.log)
+    forward_logging(driver.host.log_of_now)
     try:
         if debugged:
-            return debug(debugged, host.serve)
-        host.serve()
+            return debug(debugged, driver.serve)
+        driver.serve()
     except Failure:
         return 1  # logged and reported already
     finally:

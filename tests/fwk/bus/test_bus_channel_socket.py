@@ -5,7 +5,8 @@ from collections.abc import Iterator
 import pytest
 
 from fwk.bus.channel_socket import ChannelSocket
-from fwk.bus.sockets import Sender
+from fwk.bus.network import UdpNetwork
+from fwk.bus.sender import Sender
 from fwk.lcm import wire
 from fwk.model.plan import ChannelPlan
 from lcmtypes.robot import imu_t
@@ -28,10 +29,17 @@ class Wired:
         self.port = port
         self.complaints: list[str] = []
         writers = (port + WRITER,)
+        self.network = UdpNetwork()
         self.inbox = ChannelSocket(
-            PLAN, port, writers, lambda channel, text: self.complaints.append(f"{channel}: {text}")
+            PLAN,
+            self.network.group_socket(port),
+            writers,
+            lambda channel, text: self.complaints.append(f"{channel}: {text}"),
         )
-        self.sender = Sender(port + WRITER)
+        self.sender = Sender(port + WRITER, self.network)
+
+    def _complain(self, channel: str, text: str) -> None:
+        self.complaints.append(f"{channel}: {text}")
 
     def send(self, *sequences: int, writer: str = "cyan1/localization", tick: int = 0) -> None:
         for sequence in sequences:
@@ -144,14 +152,14 @@ def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
     [
         (STRANGER, stranger(pose(2)), "port {}, which is not the writer's"),
         (WRITER, b"rubbish", "no LCM message"),
-        (WRITER, stranger(pose(2))[:30], "no soccer.pose_t"),
-        (WRITER, stranger(imu_t().encode() + bytes(50)), "no soccer.pose_t"),
+        (WRITER, stranger(pose(2))[:30], "not a soccer.pose_t"),
+        (WRITER, stranger(imu_t().encode() + bytes(50)), "not a soccer.pose_t"),
         (WRITER, stranger(pose(2), b"cyan1/other"), "channel 'cyan1/other'"),
     ],
 )
 def test_what_does_not_belong_here_is_refused_and_named(wired: Wired, port: int, datagram: bytes, says: str) -> None:
     wired.send(1)
-    other = wired.sender if port == WRITER else Sender(wired.port + port)
+    other = wired.sender if port == WRITER else Sender(wired.port + port, wired.network)
     other.socket.sendto(datagram, ("239.255.76.67", wired.port))
     if other is not wired.sender:
         other.socket.close()

@@ -1,6 +1,8 @@
 """Senders on one port, one after the other, as those of a host that was started again."""
 
-from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.bus.network import UdpNetwork
+from fwk.bus.sender import Sender
+from fwk.bus.sockets import multicast_receiver
 from fwk.lcm import wire
 from tests.harness.runs import PortBlock
 
@@ -8,7 +10,7 @@ from tests.harness.runs import PortBlock
 def test_halves_of_two_lives_are_no_message(ports: PortBlock) -> None:
     ears, assembler = multicast_receiver(ports.bus), wire.Assembler()
     for life, kept in ((b"1", 0), (b"2", 1)):  # of the first only the beginning arrives, of the second only the end
-        sender = Sender(ports.bus + 1)
+        sender = Sender(ports.bus + 1, UdpNetwork())
         sender.publish(b"a/large", life * 100_000, ports.bus)
         sender.socket.close()
         halves = [ears.recv(wire.DATAGRAM_MAX) for _ in range(2)]

@@ -5,7 +5,9 @@ from collections.abc import Iterator
 
 import pytest
 
-from fwk.bus.sockets import Sender, multicast_receiver
+from fwk.bus.network import UdpNetwork
+from fwk.bus.sender import Sender
+from fwk.bus.sockets import multicast_receiver
 from fwk.gateway.gateway import Gateway
 from fwk.lcm import wire
 from fwk.lcm.messages import sequence_of
@@ -49,7 +51,7 @@ class Followed:
         made = plan(base)
         self.ports = Ports.of(made)
         self.supervisor, self.writer, self.reader = (
-            Sender(port) for port in (self.ports.supervisor, self.ports.host(0), self.ports.host(1))
+            Sender(port, UdpNetwork()) for port in (self.ports.supervisor, self.ports.host(0), self.ports.host(1))
         )
         self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         theirs.setblocking(False)

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 import pytest
 
 from fwk import Component, Reads
+from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.ingress import WAITING_MAX
 from fwk.gateway.ingress_filter import BYTES_MAX
@@ -41,7 +42,7 @@ class Opened:
         self.stranger = PublicBus(ports.public_url)
         self._ours, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._theirs.setblocking(False)
-        self._supervisor = Sender(self.ports.supervisor)
+        self._supervisor = Sender(self.ports.supervisor, UdpNetwork())
         self._bus = PublicBus(ports.public_url)
         self.gateway = Gateway(made, RUN, self._theirs, self._bus)
         self.kept = Kept()

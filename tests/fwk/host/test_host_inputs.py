@@ -1,14 +1,16 @@
 """What a host reads and sends, without its process: waiting, asking, answering, giving up."""
 
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import pytest
 
 from fwk.bus import sockets
 from fwk.bus.channel_socket import ChannelSocket
-from fwk.bus.sockets import Sender
+from fwk.bus.network import UdpNetwork
+from fwk.bus.sender import Sender
+from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import MESSAGES_MAX
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
@@ -29,9 +31,11 @@ class Pair:
         self.ports = Ports.of(made)
         channel = made.channels[0]
         reader_host = made.components[1].host
-        self.writer_socket = Sender(self.ports.host(0))
-        self.reader_socket = self.writer_socket if together else Sender(self.ports.host(reader_host))
-        self.gateway_socket = Sender(self.ports.host(self.ports.gateway))
+        self.network = UdpNetwork()
+        self.writer_socket = Sender(self.ports.host(0), self.network)
+        self.reader_socket = self.writer_socket if together else Sender(self.ports.host(reader_host), self.network)
+        self.gateway_socket = Sender(self.ports.host(self.ports.gateway), self.network)
+        self.network.watch(self.reader_socket.socket)
         self.complaints: list[str] = []
         self.inputs = Inputs(
             made,
@@ -39,11 +43,14 @@ class Pair:
             [channel] if together else [],
             reader_host,
             RUN,
+            self.network,
             self.reader_socket,
             lambda name, text: self.complaints.append(f"{name}: {text}"),
             restarted=restarted,
         )
-        self.outputs = Outputs({IMU: channel}, self.ports, self.writer_socket, self.inputs.local, {IMU: before})
+        self.outputs = Outputs(
+            {IMU: channel}, self.ports, self.writer_socket, self.inputs.local, {IMU: before}, self.network.now_us
+        )
         self.asked: list[fetch_t] = []
 
     def close(self) -> None:
@@ -62,10 +69,14 @@ class Pair:
                     self.inputs.gone(gone_t.decode(message[1]))
         return len(self.asked) < 20
 
+    def wait(self, moved: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> bool:
+        """Waits until everything visible in `moved` is here, or `serve` returns False."""
+        return self.network.run(self.inputs.fetch(self.inputs.collect(moved), serve))
+
     def take(self, mark: int) -> list[int]:
         """The sequence numbers that a reader gets when the mark has come to `mark`."""
         moved = self.inputs.advance([0], [mark], [])
-        assert self.inputs.wait(moved, self.serve)
+        assert self.wait(moved, self.serve)
         return [sequence_of(data) for box in moved for data in box.take()]
 
 
@@ -124,13 +135,14 @@ def test_a_large_message_comes_through_where_there_is_room_for_a_fragment_only(
     moved = pair.inputs.advance([0], [1], [])
 
     def write_again() -> None:
-        for _ in range(20):
-            pause(0.02)
+        for _ in range(100):
+            pause(0.004)
             pair.serve()
+            pair.writer_socket.send_due()
 
     helper = threading.Thread(target=write_again)
     helper.start()
-    assert pair.inputs.wait(moved, lambda: True)
+    assert pair.wait(moved, lambda: True)
     helper.join()
     assert moved[0].take() == [large]
 
@@ -138,7 +150,7 @@ def test_a_large_message_comes_through_where_there_is_room_for_a_fragment_only(
 def test_a_wait_ends_when_the_process_is_to_stop(make: Make) -> None:
     pair = make()
     moved = pair.inputs.advance([0], [1], [])
-    assert not pair.inputs.wait(moved, lambda: False)
+    assert not pair.wait(moved, lambda: False)
 
 
 def test_a_reader_in_the_same_process_needs_no_socket(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +166,7 @@ def test_a_newcomer_takes_the_newest_of_what_is_visible(make: Make) -> None:
     pair.outputs.publish([(IMU, imu(number)) for number in (1, 2, 3)])
     moved = pair.inputs.advance([0], [3], [])
     pair.inputs.newest_only()
-    assert pair.inputs.wait(moved, pair.serve)
+    assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [3]
 
 
@@ -176,7 +188,7 @@ def test_a_restarted_process_hears_what_it_said_before_from_the_gateway_until_it
     moved = pair.inputs.advance([0], [5], [])
     pair.inputs.newest_only()
     pair.gateway_socket.publish(IMU.encode(), imu(5), pair.ports.channel(0))
-    assert pair.inputs.wait(moved, pair.serve)
+    assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [5]
     pair.inputs.forget_predecessor()
     pair.outputs.publish([(IMU, imu(6, "r/senses#2"))])
@@ -189,12 +201,12 @@ def test_the_dead_writers_unfinished_messages_are_dropped_for_its_successors(mak
     void = void_t()
     void.channel, void.above_sequence, void.up_to_tick, void.before_incarnation = 0, 1, 2, 2
     moved = pair.inputs.advance([0], [1], [void])
-    assert pair.inputs.wait(moved, pair.serve)
+    assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [1]
     successor = imu(2, "r/senses#2")
     pair.outputs.publish([(IMU, successor)])
     moved = pair.inputs.advance([0], [2], [])
-    assert pair.inputs.wait(moved, pair.serve)
+    assert pair.wait(moved, pair.serve)
     assert moved[0].take() == [successor]
 
 
@@ -205,13 +217,13 @@ def test_news_that_something_is_gone_does_not_drop_what_is_here(make: Make) -> N
     gone = gone_t()
     gone.run, gone.channel, gone.first_sequence, gone.last_sequence = RUN, 0, 1, 2
     assert pair.inputs.gone(gone) == 0
-    assert pair.inputs.wait(moved, pair.serve)
+    assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [1, 2]
 
 
 def test_a_stranger_cannot_ask_or_answer(make: Make) -> None:
     pair = make()
-    stranger = Sender(pair.ports.end + 1)
+    stranger = Sender(pair.ports.end + 1, pair.network)
     stranger.send(b"fwk/gone", gone_t().encode(), pair.ports.host(1))
     with pytest.raises(MessageError, match=rf"port {pair.ports.end + 1}, which is not of this run"):
         pair.reader_socket.receive(pair.ports.members)

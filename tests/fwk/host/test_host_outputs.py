@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from fwk.bus.sockets import Sender
+from fwk.bus.sender import Sender
 from fwk.host.outputs import Outputs
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t
@@ -27,7 +27,7 @@ class Sent(Sender):
     def send(self, channel: bytes, data: bytes, port: int) -> None:
         self.messages.append((channel, data, port))
 
-    def publish_slowly(self, channel: bytes, data: bytes, port: int) -> None:
+    def publish_paced(self, channel: bytes, data: bytes, port: int) -> None:
         self.messages.append((channel, data, port))
 
 
@@ -52,7 +52,7 @@ def passed_on(sent: Sent, ports: Ports) -> list[tuple[int, int]]:
 
 def test_what_others_wrote_between_is_asked_of_the_gateway_and_the_rest_sent_again(ports: Ports) -> None:
     sent = Sent()
-    outputs = Outputs({}, ports, sent, {}, {})
+    outputs = Outputs({}, ports, sent, {}, {}, lambda: 0)
     outputs.open(INDEX, CHANNEL)
     outputs.publish([(CHANNEL, imu(3)), (CHANNEL, imu(4))])
     outputs.open(INDEX, CHANNEL)  # closed, written by somebody else up to 6, and opened again
@@ -66,6 +66,6 @@ def test_what_others_wrote_between_is_asked_of_the_gateway_and_the_rest_sent_aga
 
 def test_a_channel_that_only_a_predecessor_wrote_is_asked_of_the_gateway(ports: Ports) -> None:
     sent = Sent()
-    Outputs({}, ports, sent, {}, {}).answer(fetch(2, 3))
+    Outputs({}, ports, sent, {}, {}, lambda: 0).answer(fetch(2, 3))
     assert passed_on(sent, ports) == [(2, 3)]
     assert len(sent.messages) == 1

@@ -1,0 +1,59 @@
+"""Receives the LCM messages that arrive at one socket."""
+
+from collections.abc import Callable, Container
+
+from fwk.bus.network import DatagramSocket
+from fwk.bus.sockets import LOOPBACK, told
+from fwk.lcm import wire
+from fwk.lcm.messages import MessageError
+
+Complain = Callable[[str, str], None]
+"""Takes a channel and the reason why a datagram was refused; names and counts it."""
+
+
+class Receiver:
+    """Assembles the messages of one socket and refuses foreign datagrams.
+
+    Args:
+        socket: where the datagrams arrive.
+        senders: ports of this machine from which datagrams are accepted.
+        owner: whose ports these are, as a complaint says: "the supervisor's", "of this run".
+        topic: channel that complaints name.
+        complain: takes each refused datagram.
+    """
+
+    def __init__(
+        self, socket: DatagramSocket, senders: Container[int], owner: str, topic: str, complain: Complain
+    ) -> None:
+        self.socket = socket
+        self._senders = senders
+        self._owner = owner
+        self._topic = topic
+        self._complain = complain
+        self._assembler = wire.Assembler()
+
+    def fileno(self) -> int:
+        """Returns the descriptor of the socket."""
+        return self.socket.fileno()
+
+    def receive(self) -> tuple[bytes, bytes, int] | None:
+        """Returns the next message as (channel, data, port of its sender); None when none waits."""
+        while True:
+            try:
+                datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
+            except OSError:  # no datagram, or the news that an earlier one found no receiver
+                return None
+            host, port = address
+            try:
+                if port not in self._senders or host != LOOPBACK:
+                    raise MessageError(f"datagram from {told(address)}, which is not {self._owner}")
+                message = self._assembler.feed(datagram, port)
+            except MessageError as error:
+                self.refuse(str(error))
+                continue
+            if message is not None:
+                return (*message, port)
+
+    def refuse(self, reason: str) -> None:
+        """Counts and names a message that cannot be used."""
+        self._complain(self._topic, f"{reason}; refused")
