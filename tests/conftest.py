@@ -6,10 +6,14 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NoReturn
 
-import pytest
-from hypothesis import settings
+from fwk.model.linear_algebra import limit_threads
 
-from tests.harness.runs import PortBlock
+limit_threads()  # before numpy: components in the tests' own process compute as they do in a run
+
+import pytest  # noqa: E402
+from hypothesis import settings  # noqa: E402
+
+from tests.harness.runs import PortBlock  # noqa: E402
 
 settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile("long", deadline=None, max_examples=5000)

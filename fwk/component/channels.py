@@ -267,7 +267,7 @@ class WritesEach(Mapping[str, Writes[T]], Generic[T]):
 def channel(name: str = "", *, history: int = 0) -> Any:
     """Names the channel of a reader or writer in the class, where it is not `<namespace>/<attribute>`.
 
-    A name with a slash is used as it is (`world/game_state`), one without belongs to the component's namespace.
+    A name with a slash is used as it is (`cyan1/odometry`), one without belongs to the component's namespace.
     For `ReadsEach` and `WritesEach` it is a pattern with `*` for the namespace (`*/motor`).
     The launch file can say otherwise. A reader keeps as many of the newest messages as `history` says.
     """

@@ -118,6 +118,6 @@ def _sendable(text: object) -> str:
 
 @cache
 def short_path(path: str) -> str:
-    """A source file as it is imported: `procs/simulation/camera.py`."""
+    """A source file as it is imported: `drivers/camera.py`."""
     folders = [folder for folder in sys.path if folder and path.startswith(f"{folder.rstrip('/')}/")]
     return path[len(max(folders, key=len).rstrip("/")) + 1 :] if folders else path.rpartition("/")[2]

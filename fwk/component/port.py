@@ -108,7 +108,7 @@ def declared_port(where: str, attribute: str, kind: PortKind, types: tuple[Any, 
     if not isinstance(given, ChannelDefault) or not isinstance(given.name, str):
         said = f"channel({given.name!r})" if isinstance(given, ChannelDefault) else repr(given)
         raise DeclarationError(
-            f"{where}.{attribute}: {said} names no channel; write = channel('world/ball'), or nothing for '{attribute}'"
+            f"{where}.{attribute}: {said} names no channel; write = channel('cyan1/ball'), or nothing for '{attribute}'"
         )
     made = Port(attribute, kind, types[0], given.name or attribute, history=given.history)
     if given.history < 0 or (given.history and kind not in ("reads", "reads_each")):

@@ -48,7 +48,9 @@ def transform_of(message: transform_t) -> Transform:
     )
 
 
-def message_of(parent: str, child: str, time_us: int, transform: Transform, *, fixed: bool = False) -> transform_t:
+def transform_message(
+    parent: str, child: str, time_us: int, transform: Transform, *, fixed: bool = False
+) -> transform_t:
     """As it is sent."""
     made = transform_t()
     made.parent, made.child, made.time_us, made.fixed = parent, child, time_us, fixed

@@ -11,6 +11,8 @@ Newest = Callable[[str], Any]
 class Scoreboard:
     """Calls the plan's `module:function` for the headline, and `summary` of the same module for the closing lines.
 
+    The module names the channels that it needs in `CHANNELS`, as patterns.
+
     A scoreboard that fails says so in the headline; it is decoration and stops nothing.
     """
 

@@ -10,8 +10,6 @@ import signal
 import sys
 from collections.abc import Callable
 
-import cv2
-
 _PR_SET_PDEATHSIG = 1
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 32 << 20
@@ -99,6 +97,12 @@ class StopSignal:
         self._set = True
 
 
+def _limit_opencv() -> None:
+    """Limits OpenCV to one thread, if the components have imported it."""
+    if opencv := sys.modules.get("cv2"):
+        opencv.setNumThreads(1)
+
+
 def run_forked(work: Callable[[StopSignal], int]) -> None:
     """Runs `work` as the whole rest of a forked child; never returns to the parent's code."""
     code = 1
@@ -106,7 +110,7 @@ def run_forked(work: Callable[[StopSignal], int]) -> None:
         faulthandler.enable()
         allow_core_dumps()
         keep_memory()
-        cv2.setNumThreads(1)
+        _limit_opencv()
         code = work(StopSignal())
     except BaseException as error:
         if not isinstance(error, SystemExit):

@@ -80,12 +80,12 @@ def tick_and_sequence_of(data: bytes) -> tuple[int, int]:
 
 
 def type_name(message_type: type[Message]) -> str:
-    """Name as in the .lcm files: `soccer.pose_t`."""
+    """Name as in the .lcm files: `robot.frame_t`."""
     return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"
 
 
 def type_named(name: str) -> type[Message]:
-    """Finds the generated class of `soccer.pose_t`.
+    """Finds the generated class of `robot.frame_t`.
 
     Raises:
         MessageError: there is no such type.

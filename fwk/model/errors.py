@@ -9,7 +9,7 @@ _LISTED = 12
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: `launch/soccer.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
+    """One mistake: `launch/robot.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
 
     place: str
     """File and line, or the option that was typed."""

@@ -34,7 +34,7 @@ class ComponentPlan:
     config: dict[str, Any]
     """Effective settings, every one."""
     origins: dict[str, str]
-    """Setting, dotted, to where its value comes from: `launch/soccer.yaml:41`, `default`, `--set`."""
+    """Setting, dotted, to where its value comes from: `launch/robot.yaml:41`, `default`, `--set`."""
     channels: dict[str, tuple[str, ...]]
     """Port attribute to channel names."""
     host: int
@@ -151,6 +151,8 @@ class Plan:
     """Channels that may be written on the public bus: name to type."""
     scoreboard: str = ""
     """`module:function` that makes the display's headline of the newest messages."""
+    scoreboard_channels: tuple[str, ...] = ()
+    """Channels whose newest messages the scoreboard gets: those that fit `CHANNELS` of its module."""
     video: str = ""
     """`module:function` that draws the top view of a recording."""
     log: LogPlan = LogPlan()
@@ -194,6 +196,7 @@ class Plan:
         simple = {
             "folders": tuple(data["folders"]),
             "stages": tuple(data["stages"]),
+            "scoreboard_channels": tuple(data.get("scoreboard_channels", ())),
             "log": LogPlan(**data.get("log", {})),
             "runs": RunsPlan(**data.get("runs", {})),
             "record": RecordPlan(tuple(data.get("record", {}).get("frames", ()))),

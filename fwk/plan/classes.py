@@ -1,4 +1,4 @@
-"""Finds the class behind `use: procs.omni_ball`."""
+"""Finds the class that a launch file names with `use`, such as `drivers.wheels`."""
 
 import inspect
 import pkgutil
@@ -16,6 +16,7 @@ from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.port import DeclarationError
 from fwk.model.errors import hint
+from fwk.plan.packages import component_packages
 
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 
@@ -33,9 +34,7 @@ def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
         UnusableError: no such module or class, several components, or the module or the class has a mistake.
     """
     if not _USE.fullmatch(use):
-        raise UnusableError(
-            f"'{use}' is no module; write it as in Python: procs.omni_ball, or procs.omni_ball:OmniBall"
-        )
+        raise UnusableError(f"'{use}' is not a module; write it as in Python: drivers.wheels, or drivers.wheels:Wheels")
     name, _, wanted = use.partition(":")
     module = imported(name, folders)
     try:
@@ -111,7 +110,7 @@ def _neighbours(name: str, folders: Sequence[str]) -> list[str]:
     packages = [path.name for folder in folders for path in Path(folder).glob("*/") if any(path.glob("*.py"))]
     inside = [
         f"{package}.{found.name}"
-        for package in {*packages, "procs"}
+        for package in {*packages, *component_packages()}
         for found in pkgutil.iter_modules([f"{folder}/{package}" for folder in (*folders, *sys.path)])
     ]
     return [found.name for found in pkgutil.iter_modules(list(folders))] + inside

@@ -24,6 +24,7 @@ from fwk.plan.run_section import (
     public_url_of,
     record_of,
     runs_of,
+    scoreboard_channels_of,
 )
 from fwk.plan.stages import stages_of
 from fwk.plan.wiring.needs import check_left_out, granted_by, needs_of
@@ -120,6 +121,7 @@ class _Loading:
             record=RecordPlan(
                 tuple(name for name in recorded.frames if name in {each.name for each in whole.channels})
             ),
+            scoreboard_channels=scoreboard_channels_of(shared["scoreboard"], whole.channels, self.folders),
             **shared,
         )
         check_clock(components, shared["clock"], problems)

@@ -10,7 +10,7 @@ from fwk.model.errors import Problems, hint
 from fwk.model.names import mistake_in
 from fwk.model.plan import ChannelPlan, LogPlan, Plan, RecordPlan, RunsPlan
 from fwk.model.selection import matches
-from fwk.plan.classes import UnusableError, find_object
+from fwk.plan.classes import UnusableError, find_object, imported
 from fwk.plan.files.launch_file import Files
 
 _URL = "udpm://"
@@ -83,6 +83,18 @@ def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Prob
     if use:
         _try(lambda: find_object(use, folders), lambda text: problems.add(_place(files, key), "", f"{key}: {text}"))
     return use
+
+
+def scoreboard_channels_of(use: str, channels: Sequence[ChannelPlan], folders: tuple[str, ...]) -> tuple[str, ...]:
+    """Names of the channels that the scoreboard `use` reads: those that fit `CHANNELS` of its module, or else all.
+
+    Raises:
+        UnusableError: there is no such module.
+    """
+    if not use:
+        return ()
+    patterns = getattr(imported(use.partition(":")[0], folders), "CHANNELS", ("*",))
+    return tuple(each.name for each in channels if any(matches(each.name, pattern) for pattern in patterns))
 
 
 def log_of(files: Files) -> LogPlan:

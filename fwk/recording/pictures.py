@@ -1,4 +1,4 @@
-"""Pictures of cameras in a recording: frames that the recorder wrote, and what components like view.pictures write."""
+"""Pictures of cameras in a recording: frames that the recorder wrote, and pictures that components wrote."""
 
 import math
 from collections.abc import Iterator

@@ -66,7 +66,7 @@ class Display:
 
     def __init__(self, plan: Plan, connection: socket.socket) -> None:
         self._connection = connection
-        self._shown = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._shown = frozenset(plan.scoreboard_channels)
         self._newest: dict[str, bytes] = {}
         self._due_us = 0
 
@@ -107,7 +107,7 @@ class Newest:
 
     def __init__(self, plan: Plan, connection: socket.socket, lost: Callable[[], int]) -> None:
         self._lost = lost
-        self._wanted = {channel.name for channel in plan.channels if channel.name.startswith("world/")}
+        self._wanted = frozenset(plan.scoreboard_channels)
         self._newest: dict[str, bytes] = {}
         self._connection = connection
 

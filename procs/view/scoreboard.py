@@ -10,6 +10,8 @@ Newest = Callable[[str], Any]
 """Gives the newest message of a channel, decoded, or None."""
 
 GAME_STATE = "world/game_state"
+CHANNELS = (GAME_STATE,)
+"""What the display sends here."""
 
 STATES = {
     game_state_t.FROZEN: "frozen",

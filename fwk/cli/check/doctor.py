@@ -8,7 +8,7 @@ from fwk.cli.check.machine_checks import Level, all_checks
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 
-_HOSTS, _CHANNELS = 100, 250  # a soccer match, every component a process
+_HOSTS, _CHANNELS = 100, 250  # of a large system, every component a process
 
 
 def doctor(

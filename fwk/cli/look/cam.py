@@ -40,7 +40,7 @@ def cam(
 ) -> None:
     """Lists cameras, or saves or shows a frame of one.
 
-    Recordings have pictures if the launch file says 'record: {frames: ...}', or has 'use: procs.view.pictures'.
+    Recordings have pictures if the launch file says 'record: {frames: ...}', or has a component that writes some.
     """
     if raw and not save:
         raise typer.BadParameter("--raw says how to save; add --save FILE")

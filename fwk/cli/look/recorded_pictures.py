@@ -27,7 +27,7 @@ class Recorded:
             self._last[picture.camera] = picture
         if not self._counts:
             upto = f" up to tick {tick}" if tick else ""
-            how = "'record: {frames: ...}' in the launch file, or a component 'use: procs.view.pictures', records some"
+            how = "'record: {frames: ...}' in the launch file, or a component that compresses pictures, records some"
             fail(f"{log}: no pictures{upto}; {how}")
 
     def rows(self) -> list[dict[str, Any]]:

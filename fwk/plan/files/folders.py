@@ -9,8 +9,8 @@ from pathlib import Path
 from fwk.lcm.typegen import TypeGenerationError, generate
 from fwk.model.errors import Problems
 from fwk.plan.files.launch_file import FOLDER, INSTALLED, shown
+from fwk.plan.packages import component_packages
 
-PARTS = ("lcmtypes", "procs")
 _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
 _LINE = re.compile(r" : (\d+)$", re.M)
 
@@ -18,14 +18,15 @@ _LINE = re.compile(r" : (\d+)$", re.M)
 def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
     """Where the modules and .lcm files of launch files are looked for, besides the installed ones.
 
-    That is the folder of each launch file, and the folder above, if the one below is called `launch` or if `lcmtypes/`
-    or `procs/` lie there.
+    These are the folder of each launch file, and its parent folder if the folder is called `launch` or if the parent
+    has a folder `lcmtypes` or one named like an installed package of components.
     """
+    parts = ("lcmtypes", *component_packages())
     found = [
         folder
         for beside in launch_folders
         for folder in (beside, beside.parent)
-        if folder == beside or beside.name == FOLDER or any((folder / part).is_dir() for part in PARTS)
+        if folder == beside or beside.name == FOLDER or any((folder / part).is_dir() for part in parts)
     ]
     return tuple(str(folder) for folder in dict.fromkeys(found) if folder not in (INSTALLED, INSTALLED / FOLDER))
 

@@ -11,6 +11,7 @@ from fwk.plan.files.folders import folders_of, join
 from fwk.plan.files.launch_file import Files, find_launch_file, read_files
 from fwk.plan.files.schema import HostFile, LaunchFile
 from fwk.plan.files.templates import Asked, expand
+from fwk.plan.packages import component_packages
 
 Schema = dict[str, Any]
 
@@ -74,9 +75,10 @@ def _uses(files: Files) -> Iterable[str]:
 
 
 def _found(folders: Sequence[str]) -> dict[str, Declaration]:
-    """The components in `procs`, as `use` names them."""
+    """The components of the announced packages, as `use` names them."""
     found = {}
-    for module in _modules(imported("procs", folders).__path__):
+    roots = [root for package in component_packages() for root in imported(package, folders).__path__]
+    for module in _modules(roots):
         if alone := _class(module, folders):
             found[module] = alone
         else:

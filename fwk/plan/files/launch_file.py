@@ -14,7 +14,7 @@ from fwk.plan.files.validation import Path as NodePath
 from fwk.plan.files.validation import validated
 
 INSTALLED = Path(fwk.__file__).resolve().parent.parent
-"""Where `fwk`, `procs`, `lcmtypes` and `launch` lie side by side: site-packages, or a checkout."""
+"""Where `fwk`, `lcmtypes`, `launch` and packages of components lie side by side: site-packages, or a checkout."""
 FOLDER = "launch"
 HOST_SUFFIX = ".host.yaml"
 
@@ -53,7 +53,7 @@ def shown(path: Path) -> str:
 
 
 def host_file(launch_file: Path) -> Path:
-    """The host-specific file beside a launch file: `soccer.host.yaml` beside `soccer.yaml`."""
+    """The host-specific file beside a launch file: `robot.host.yaml` beside `robot.yaml`."""
     return launch_file.with_name(launch_file.stem + HOST_SUFFIX)
 
 

@@ -20,7 +20,7 @@ class Node:
 
     value: Any
     place: str
-    """`launch/soccer.yaml:41`; of a mapping's value, the line of its key."""
+    """`launch/robot.yaml:41`; of a mapping's value, the line of its key."""
 
     def plain(self) -> Any:
         """The value as plain dicts, lists and scalars."""

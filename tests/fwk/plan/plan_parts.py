@@ -181,6 +181,9 @@ class NotAComponent:
     """Just a class."""
 
 
+CHANNELS = ("*/odometry",)
+
+
 def greet() -> str:
     """Just a function."""
     return "hello"

@@ -64,7 +64,7 @@ def test_a_file_says_what_the_run_is_like(load: Load) -> None:
     assert (plan.stage_time_us, plan.stages) == (2_000, ("act_exec", "sensor_acquire"))
     assert (plan.loop_time_us, plan.loop_time_warnings) == (20_000, False)
     assert plan.public_url == "udpm://239.255.76.67:7777?ttl=1&recv_buf_size=4194304"
-    assert plan.scoreboard == "plan_parts:greet"
+    assert (plan.scoreboard, plan.scoreboard_channels) == ("plan_parts:greet", ("it/odometry",))
     only = plan.components[0]
     assert (only.restart.when, only.restart.limit, only.ready_timeout_s, only.stages) == ("never", 2, 3.0, (1,))
 

@@ -37,10 +37,10 @@ ROWS = {
     "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
     "does not begin with 'core.header_t header;'",
-    "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) names no channel; write = channel('world/ball'), "
+    "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) names no channel; write = channel('cyan1/ball'), "
     "or nothing for 'ball'",
     "ball: Reads[odometry_t] = 'world/ball'": "Odd.ball: 'world/ball' names no channel; write = "
-    "channel('world/ball'), or nothing for 'ball'",
+    "channel('cyan1/ball'), or nothing for 'ball'",
     "ball: Reads[odometry_t] = channel(history=-1)": "Odd.ball: history=-1: a history has at least 1 message",
     "ball: Writes[odometry_t] = channel(history=3)": "Odd.ball: history=3: only Reads and ReadsEach keep a history",
     "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "

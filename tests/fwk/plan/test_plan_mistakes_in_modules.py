@@ -29,8 +29,8 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: 'procs/omni_ball.py' is no module; write it as in Python: procs.omni_ball, or "
-        "procs.omni_ball:OmniBall",
+        "it.yaml:1: it/a: 'procs/omni_ball.py' is not a module; write it as in Python: drivers.wheels, or "
+        "drivers.wheels:Wheels",
         "components: {it/a: {use: procs/omni_ball.py}}",
     ),
     Broken(

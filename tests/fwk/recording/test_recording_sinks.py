@@ -1,6 +1,7 @@
 """Where the gateway's messages go, without a gateway."""
 
 import socket
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -21,7 +22,7 @@ class World(Component):
     other: Writes[imu_t] = channel("robot/other")
 
 
-PLAN = plan_of({"world/simulator": World})
+PLAN = replace(plan_of({"world/simulator": World}), scoreboard_channels=("world/truth",))
 
 
 def line(text: str) -> bytes:
