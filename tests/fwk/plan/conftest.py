@@ -15,6 +15,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An empty folder that is the current one."""
     monkeypatch.chdir(tmp_path)
     path, modules = list(sys.path), set(sys.modules)
+    sys.path.insert(0, str(Path(__file__).parent))  # launch files use the components of plan_parts
     yield tmp_path
     sys.path[:] = path
     for name in set(sys.modules) - modules:
