@@ -4,12 +4,8 @@ import math
 from typing import NamedTuple
 
 from procs.behaviour.view import Ball
+from procs.model.ball import ROLLING_M_S2, ROLLING_SHARE, SLIDING_M_S2
 from procs.model.field import Point
-
-SLIDING_M_S2 = 3.0
-ROLLING_M_S2 = 0.4
-ROLLING_SHARE = 0.6
-"""Share of a kick's speed that is left when the ball begins to roll without sliding."""
 
 _STEP_S = 0.1
 _HORIZON_S = 4.0

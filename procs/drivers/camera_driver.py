@@ -12,6 +12,7 @@ from fwk import Clock, Component, Config, Logger, VisionMaster
 from procs.drivers.live_pictures import Backoff, Live, Wanted, check_device, open_device, open_stream
 from procs.drivers.recorded_pictures import Endless, Folder, Recorded, SourceError, Video
 from procs.vision.colours import Picture
+from procs.vision.framing import central_part, scaled
 
 
 class CameraDriverConfig(Config):
@@ -125,10 +126,9 @@ class CameraDriver(Component):
         config = self.config
         if config.grey:
             pixels = np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY), np.uint8)
-        if config.width_px and pixels.shape[:2] != (config.height_px, config.width_px):
-            size, shrinks = (config.width_px, config.height_px), config.width_px < pixels.shape[1]
-            method = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-            pixels = np.asarray(cv2.resize(pixels, size, interpolation=method), np.uint8)
+        if config.width_px:
+            part = central_part(pixels, config.width_px / config.height_px)
+            return scaled(part, config.width_px, config.height_px)
         return pixels
 
 

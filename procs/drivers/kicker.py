@@ -1,4 +1,4 @@
-"""Driver of the kicker: passes a kick on when ball and charge are there, and says what was carried out."""
+"""Driver of the kicker: fires a kick once ball and charge are there, and reports the kicks carried out."""
 
 from pydantic import PositiveFloat
 
@@ -34,12 +34,15 @@ class Kicker(Component):
 
     def init(self) -> None:
         self._kicks = 0
+        self._speeds_m_s: dict[int, float] = {}  # of kicks asked of the hardware and not yet carried out
         self._late = False
 
     def loop(self) -> None:
         for sensor in self.kicker_sensor.fresh:
             if sensor.kick_id != self.kicker_state.value.kick_id:
                 self._kicks += 1
+                self.kicker_state.value.kick_speed_m_s = self._speeds_m_s.get(sensor.kick_id, 0.0)
+                self._speeds_m_s.clear()
             self.kicker_state.value.kick_id = sensor.kick_id
         if self.clock.stage == "act_exec":
             self._act()
@@ -64,6 +67,8 @@ class Kicker(Component):
         fire = wanted and sensor.ball_held and sensor.charged
         drive.kick_id = command.kick_id if fire else sensor.kick_id
         drive.kick_m_s = min(command.speed_m_s, self.config.speed_limit_m_s) if fire else 0.0
+        if fire:
+            self._speeds_m_s[drive.kick_id] = drive.kick_m_s
         drive.dribble = fresh and command.dribble
         self.kicker_drive.write()
 

@@ -6,6 +6,7 @@ from pydantic import Field
 
 from fwk import Config
 from procs.vision.colours import Picture
+from procs.vision.framing import central_part, scaled
 from procs.vision.mirror import Mirror
 
 
@@ -19,15 +20,18 @@ class MirrorConfig(Config):
     view_angle_deg: float = Field(default=92.0, gt=45.0, lt=150.0)
     """Angle from straight down that the picture's edge sees; 90 is the horizon."""
 
-    def check_frame(self, pixels: Picture, component: str) -> None:
-        """Raises ValueError for a frame that the calibration does not fit."""
-        wanted = (self.size_px, self.size_px, 3)
-        if pixels.shape != wanted:
-            raise ValueError(
-                f"{component}: the frame is {' x '.join(map(str, pixels.shape))}, but mirror.size_px says "
-                f"{' x '.join(map(str, wanted))}; give camera and detector the same mirror settings, "
-                "or a camera driver width_px and height_px"
-            )
+    def fitted(self, frame: Picture) -> Picture:
+        """Returns the frame as the calibration describes it: its central square, `size_px` wide.
+
+        The mirror's image is round and lies in the middle of the frame, whatever the shape of the camera's sensor.
+
+        Raises:
+            ValueError: the frame has no colours.
+        """
+        if frame.ndim != 3 or frame.shape[2] != 3:
+            shape = " x ".join(map(str, frame.shape))
+            raise ValueError(f"the frame is {shape}; the detectors need three colours, height x width x 3")
+        return scaled(central_part(frame, 1.0), self.size_px, self.size_px)
 
     def mirror(self, roll_deg: float = 0.0, pitch_deg: float = 0.0) -> Mirror:
         """The mirror itself, tilted about the robot's x and y axis."""

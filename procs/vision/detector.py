@@ -1,8 +1,11 @@
-"""What detectors in the omnidirectional camera's picture have in common."""
+"""Base of the detectors that work on the omnidirectional camera's frames."""
 
 from abc import ABC, abstractmethod
 
+from pydantic import Field
+
 from fwk import Component, Config, Image
+from procs.model.units import US_PER_S
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import Picture
 
@@ -12,10 +15,12 @@ class DetectorConfig(Config):
 
     mirror: MirrorConfig = MirrorConfig()
     """Calibration of the camera."""
+    latency_s: float = Field(default=0.0, ge=0.0, le=1.0)
+    """From the exposure of a frame until its camera publishes it."""
 
 
 class Detector(Component, ABC):
-    """Looks at every frame of its robot's camera once."""
+    """Handles every frame of its robot's camera once."""
 
     stage = "sensor_prepare"
     image: Image
@@ -27,6 +32,11 @@ class Detector(Component, ABC):
     def config_changed(self) -> None:
         self.apply_settings()
 
+    @property
+    def capture_us(self) -> int:
+        """Logical time of the newest frame's exposure; 0 if it is not known."""
+        return max(0, self.image.announcement.header.time_us - round(self.config.latency_s * US_PER_S))
+
     def loop(self) -> None:
         if not self.image.changed:
             return
@@ -34,17 +44,16 @@ class Detector(Component, ABC):
         if pixels is None:
             self.report_nothing()
             return
-        self.config.mirror.check_frame(pixels, self.name)
-        self.detect(pixels)
+        self.detect(self.config.mirror.fitted(pixels))
 
     @abstractmethod
     def apply_settings(self) -> None:
-        """Makes what depends on the settings alone."""
+        """Builds everything that depends on the settings alone."""
 
     @abstractmethod
     def detect(self, pixels: Picture) -> None:
-        """Finds what there is in a frame and writes it."""
+        """Writes the findings of a frame."""
 
     @abstractmethod
     def report_nothing(self) -> None:
-        """Writes that nothing was seen: the frame is lost."""
+        """Writes empty findings for a lost frame."""

@@ -27,7 +27,7 @@ class OmniBallConfig(DetectorConfig):
 
 
 class OmniBall(Detector):
-    """Says where the ball is, or that it sees none."""
+    """Publishes the ball, or that none is visible."""
 
     ball_percept: Writes[ball_percept_t]
     config: OmniBallConfig
@@ -48,6 +48,7 @@ class OmniBall(Detector):
 
     def _write(self, ball: BallSighting | None) -> None:
         percept = self.ball_percept.value = ball_percept_t()
+        percept.capture_us = self.capture_us
         if ball is not None:
             percept.visible = True
             percept.x_m, percept.y_m = ball.x_m, ball.y_m

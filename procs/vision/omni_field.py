@@ -85,6 +85,7 @@ class OmniField(Detector):
     def _write(self, points_m: Floats, obstacles: list[Obstacle]) -> None:
         points, percepts = self.line_points.value, self.obstacle_percepts.value
         points.x_m, points.y_m = points_m.T.tolist()
+        points.capture_us = percepts.capture_us = self.capture_us
         percepts.obstacles = [self._message(obstacle) for obstacle in obstacles]
         self.line_points.write()
         self.obstacle_percepts.write()

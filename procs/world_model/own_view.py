@@ -1,4 +1,4 @@
-"""The robot's own pose and velocity, and what it sees from there, in the world frame."""
+"""The robot's own pose and velocity, and its percepts in the world frame."""
 
 import numpy as np
 
@@ -10,49 +10,75 @@ from procs.world_model.team import Mate
 
 
 class OwnView:
-    """A frame; a robot that does not know where it is sees nothing in the world frame."""
+    """Pose and velocity of a tick; a robot that does not know its place sees nothing in the world frame."""
 
     def __init__(self, pose: pose_t, odometry: odometry_t, known: bool, shake_s_m: float) -> None:
-        """`known` is false if the pose is an old one.
+        """Takes the newest messages.
 
-        At each m/s that the robot drives, its camera shakes by `shake_s_m` times the standing camera's deviation.
+        Args:
+            pose: newest pose.
+            odometry: newest odometry.
+            known: False if the pose is an old one.
+            shake_s_m: growth of the camera's deviation with speed, as a share of the standing camera's for each m/s.
         """
         flat = [value for row in pose.covariance for value in row]
         sound = plausible(pose.x_m, pose.y_m, pose.heading_rad, *flat)
         self.localized = pose.localized and known and sound
         self.pose = np.array((pose.x_m, pose.y_m, pose.heading_rad)) if sound else np.zeros(3)
-        self._covariance = np.array(pose.covariance)
+        self.covariance = np.array(pose.covariance) if sound else np.zeros((3, 3))
         moves = plausible(odometry.vx_m_s, odometry.vy_m_s, odometry.omega_rad_s)
         velocity_m_s = (odometry.vx_m_s, odometry.vy_m_s) if moves else (0.0, 0.0)
         self.velocity_m_s = rotation(float(self.pose[2])) @ velocity_m_s
         self.omega_rad_s = odometry.omega_rad_s if moves else 0.0
         self._shake = 1.0 + (shake_s_m * float(np.hypot(*self.velocity_m_s))) ** 2
 
-    def ball(self, percept: ball_percept_t) -> Seen:
-        """The ball (0 or 1)."""
+    def ball(self, percept: ball_percept_t, age_s: float) -> Seen:
+        """Returns the ball (0 or 1) of a percept captured `age_s` ago."""
         if not (percept.visible and self.localized):
             return Seen.NOTHING
-        return self._from_here(Seen.of([(percept.x_m, percept.y_m)], [percept.covariance_m2], [0.0]))
+        return self._from_here(Seen.of([(percept.x_m, percept.y_m)], [percept.covariance_m2], [0.0]), age_s)
 
-    def obstacles(self, percepts: obstacle_percepts_t) -> Seen:
-        """The obstacles."""
+    def obstacles(self, percepts: obstacle_percepts_t, age_s: float) -> Seen:
+        """Returns the obstacles of percepts captured `age_s` ago."""
         seen = percepts.obstacles
         if not (seen and self.localized):
             return Seen.NOTHING
         places_m = [(one.x_m, one.y_m) for one in seen]
-        return self._from_here(Seen.of(places_m, [one.covariance_m2 for one in seen], [one.radius_m for one in seen]))
+        found = Seen.of(places_m, [one.covariance_m2 for one in seen], [one.radius_m for one in seen])
+        return self._from_here(found, age_s)
 
     def as_mate(self, name: str, now_s: float) -> Mate:
-        """The robot itself, as its mates know it."""
-        return Mate(name, "", now_s, self.pose[:2], float(self.pose[2]), self.velocity_m_s, self.localized)
+        """Returns the robot itself, as its mates know it."""
+        heading_rad = float(self.pose[2])
+        return Mate(
+            name, "", now_s, self.pose[:2], heading_rad, self.velocity_m_s, self.localized, self.covariance[:2, :2]
+        )
 
-    def held_ball(self, mouth_m: float) -> Floats:
-        """State (4) of a ball in the mouth: it moves and turns with the robot."""
+    def held_ball(self, mouth_m: float) -> tuple[Floats, Floats]:
+        """Returns the state (4) of a ball in the mouth, and the covariance (4, 4) that the own pose adds to it.
+
+        The ball moves and turns with the robot; `mouth_m` is from the robot's middle to the ball's.
+        """
         offset_m = rotation(float(self.pose[2])) @ (mouth_m, 0.0)
         turning_m_s = self.omega_rad_s * np.array((-offset_m[1], offset_m[0]))
-        return np.concatenate((self.pose[:2] + offset_m, self.velocity_m_s + turning_m_s))
+        state = np.concatenate((self.pose[:2] + offset_m, self.velocity_m_s + turning_m_s))
+        by_pose = np.array(((1.0, 0.0, -offset_m[1]), (0.0, 1.0, offset_m[0])))
+        covariance = np.zeros((4, 4))
+        covariance[:2, :2] = by_pose @ self.covariance @ by_pose.T
+        return state, covariance
 
-    def _from_here(self, seen: Seen) -> Seen:
+    def kicked_m_s(self, kick_speed_m_s: float, mouth_m: float) -> Floats:
+        """Returns the velocity (2) of a ball that was just kicked, world frame."""
+        heading_rad = float(self.pose[2])
+        away = kick_speed_m_s * np.array((np.cos(heading_rad), np.sin(heading_rad)))
+        return self.held_ball(mouth_m)[0][2:] + away
+
+    def _at(self, age_s: float) -> Floats:
+        """Returns the pose (3) at an exposure `age_s` ago."""
+        return self.pose - age_s * np.array((*self.velocity_m_s, self.omega_rad_s))
+
+    def _from_here(self, seen: Seen, age_s: float) -> Seen:
+        pose = self._at(age_s)
         shaken_m2 = seen.by_sight_m2 * self._shake
-        by_sight_m2, by_pose_m2 = covariance_to_world(self.pose, self._covariance, seen.positions_m, shaken_m2)
-        return Seen(to_world(self.pose, seen.positions_m), by_sight_m2, by_pose_m2, seen.radii_m)
+        by_sight_m2, by_pose_m2 = covariance_to_world(pose, self.covariance, seen.positions_m, shaken_m2)
+        return Seen(to_world(pose, seen.positions_m), by_sight_m2, by_pose_m2, seen.radii_m)

@@ -1,6 +1,9 @@
-"""Follows the robots that are seen as obstacles: one Kalman filter each, all of them computed together."""
+"""Tracks of the robots that are seen as obstacles: a Kalman filter for each."""
+
+import math
 
 import numpy as np
+from filterpy.kalman import predict, update
 from scipy.optimize import linear_sum_assignment
 
 from procs.model.frames import Flags, Floats, Indices
@@ -12,99 +15,143 @@ _FARTHEST_M = 1.5
 _SAME_M = 0.45  # robots are 0.5 m wide
 
 
+class _Track:
+    """Position and velocity of one robot: state x, y (m), vx, vy (m/s)."""
+
+    def __init__(self, position_m: Floats, covariance_m2: Floats, age_s: float) -> None:
+        self.state = np.concatenate((position_m, (0.0, 0.0)))
+        self.covariance = np.eye(4) * _UNKNOWN_SPEED_M_S**2
+        self.covariance[:2, :2] = covariance_m2 + np.eye(2) * (_UNKNOWN_SPEED_M_S * age_s) ** 2
+        self.age_s = age_s
+        self.sightings = 1
+
+    @property
+    def place(self) -> tuple[float, float]:
+        return float(self.state[0]), float(self.state[1])
+
+    def move(self, motion: Floats, noise: Floats) -> None:
+        self.state, self.covariance = predict(self.state, self.covariance, F=motion, Q=noise)
+
+    def see(self, position_m: Floats, covariance_m2: Floats, seen_as: Floats) -> None:
+        self.state, self.covariance = update(self.state, self.covariance, position_m, covariance_m2, H=seen_as)
+        self.sightings += 1
+
+
 class RobotTracks:
     """n tracks of position and velocity in the world frame."""
 
     def __init__(self) -> None:
-        self.states = np.zeros((0, 4))
+        self._tracks: list[_Track] = []
+
+    def __len__(self) -> int:
+        return len(self._tracks)
+
+    @property
+    def states(self) -> Floats:
         """(n, 4): x, y (m), vx, vy (m/s)."""
-        self.covariances = np.zeros((0, 4, 4))
-        self.ages_s = np.zeros(0)
-        """Since each was last seen."""
-        self.sightings = np.zeros(0, dtype=np.int64)
+        return np.array([track.state for track in self._tracks]).reshape(-1, 4)
+
+    @property
+    def covariances(self) -> Floats:
+        """(n, 4, 4) of the states."""
+        return np.array([track.covariance for track in self._tracks]).reshape(-1, 4, 4)
+
+    @property
+    def ages_s(self) -> Floats:
+        """(n): time since each robot was last seen."""
+        return np.array([track.age_s for track in self._tracks])
 
     @property
     def sure(self) -> Indices:
-        """Indices of the tracks that were seen more than once; a single sighting may be a ghost."""
-        return np.flatnonzero(self.sightings > 1)
+        """Indices of the tracks with more than one sighting; a single sighting may be a ghost."""
+        return np.flatnonzero([track.sightings > 1 for track in self._tracks])
 
     def predict(self, duration_s: float, timeout_s: float) -> None:
-        """Lets everybody move on; a track that nobody confirmed for the time-out ends."""
-        self.ages_s = self.ages_s + duration_s
-        self._keep(self.ages_s <= np.where(self.sightings > 1, timeout_s, timeout_s / 4))
-        motion = np.eye(4)
-        motion[0, 2] = motion[1, 3] = duration_s
-        push = np.array((duration_s**2 / 2, duration_s))
-        noise = np.kron(np.outer(push, push), np.eye(2)) * _ACCELERATION_M_S2**2
-        self.states = self.states @ motion.T
-        self.covariances = motion @ self.covariances @ motion.T + noise
+        """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`."""
+        motion, noise = _motion(duration_s)
+        for track in self._tracks:
+            track.age_s += duration_s
+            track.move(motion, noise)
+        self._tracks = [
+            track for track in self._tracks if track.age_s <= (timeout_s if track.sightings > 1 else timeout_s / 4)
+        ]
 
-    def see(self, positions_m: Floats, covariances_m2: Floats) -> None:
-        """One robot's sightings of a frame: positions (m, 2) and covariances (m, 2, 2); each is another robot."""
+    def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0) -> None:
+        """Takes one robot's sightings of a frame, captured `age_s` ago, each of a different robot.
+
+        Args:
+            positions_m: (m, 2), world frame.
+            covariances_m2: (m, 2, 2).
+            age_s: time since the exposure.
+        """
         free = np.ones(len(positions_m), dtype=bool)
-        if len(self.states) and len(positions_m):
-            innovations = positions_m[None] - self.states[:, None, :2]
-            spreads = self.covariances[:, None, :2, :2] + covariances_m2[None]
-            surprises = np.einsum("nmi,nmi->nm", innovations, np.linalg.solve(spreads, innovations[..., None])[..., 0])
+        seen_as = _seen_as(age_s)
+        if self._tracks and len(positions_m):
+            predicted = np.array([seen_as @ track.state for track in self._tracks])
+            spread = np.array([seen_as @ track.covariance @ seen_as.T for track in self._tracks])
+            innovations = positions_m[None] - predicted[:, None]
+            surprises = _surprises(innovations, spread[:, None] + covariances_m2[None])
             near = (surprises <= _GATE) & (np.hypot(innovations[..., 0], innovations[..., 1]) <= _FARTHEST_M)
-            tracks, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
-            fits = near[tracks, seen]
-            tracks, seen = tracks[fits], seen[fits]
-            self._correct(tracks, innovations[tracks, seen], spreads[tracks, seen])
-            free[seen] = False
-        self._begin(positions_m[free], covariances_m2[free])
+            rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
+            for row, column in zip(rows[near[rows, columns]], columns[near[rows, columns]], strict=True):
+                track = self._tracks[row]
+                track.see(positions_m[column], covariances_m2[column], seen_as)
+                track.age_s = min(track.age_s, age_s)
+                free[column] = False
+        for position_m, covariance_m2 in zip(positions_m[free], covariances_m2[free], strict=True):
+            self._tracks.append(_Track(position_m, covariance_m2, age_s))
         self._join()
 
-    def _correct(self, tracks: Indices, innovations: Floats, spreads: Floats) -> None:
-        covariances = self.covariances[tracks]
-        gains = np.linalg.solve(spreads, covariances[:, :2]).transpose(0, 2, 1)
-        self.states[tracks] += (gains @ innovations[..., None])[..., 0]
-        corrected = covariances - gains @ covariances[:, :2]
-        self.covariances[tracks] = (corrected + corrected.transpose(0, 2, 1)) / 2
-        self.ages_s[tracks] = 0.0
-        self.sightings[tracks] += 1
-
-    def _begin(self, positions_m: Floats, covariances_m2: Floats) -> None:
-        count = len(positions_m)
-        if not count:
-            return
-        covariances = np.tile(np.eye(4) * _UNKNOWN_SPEED_M_S**2, (count, 1, 1))
-        covariances[:, :2, :2] = covariances_m2
-        self.states = np.vstack((self.states, np.hstack((positions_m, np.zeros((count, 2))))))
-        self.covariances = np.concatenate((self.covariances, covariances))
-        self.ages_s = np.append(self.ages_s, np.zeros(count))
-        self.sightings = np.append(self.sightings, np.ones(count, dtype=np.int64))
-
     def _join(self) -> None:
-        """Two tracks in one place are one robot; the one that was seen more often stays, of equals the older."""
-        apart_m = np.hypot(*(self.states[:, None, :2] - self.states[None, :, :2]).transpose(2, 0, 1))
-        number = np.arange(len(self.states))
-        more = (self.sightings[None] > self.sightings[:, None]) | (
-            (self.sightings[None] == self.sightings[:, None]) & (number[None] < number[:, None])
-        )
-        self._keep(~((apart_m < _SAME_M) & more).any(axis=1))
-
-    def _keep(self, which: Flags) -> None:
-        if not which.all():
-            self.states, self.covariances = self.states[which], self.covariances[which]
-            self.ages_s, self.sightings = self.ages_s[which], self.sightings[which]
+        """Drops the less seen of two tracks in one place; of equals, the younger."""
+        kept: list[_Track] = []
+        for track in sorted(self._tracks, key=lambda each: -each.sightings):
+            if all(math.dist(track.place, other.place) >= _SAME_M for other in kept):
+                kept.append(track)
+        self._tracks = [track for track in self._tracks if track in kept]
 
 
 def without_known(
     positions_m: Floats, covariances_m2: Floats, known_m: Floats, known_m2: Floats, within_m: float
 ) -> Flags:
-    """Which (m) of the sightings remain when each known robot (k, 2) takes away the one that it is.
+    """Flags (m) of the sightings that remain when each known robot takes away the one that it is.
 
-    A robot takes away one at most, so that an opponent beside a team mate stays. It is the one that fits best by
-    the covariances of sightings (m, 2, 2) and known robots (k, 2, 2); two robots that are seen by their near sides only
-    and at different times count as the same up to `within_m`, whatever the covariances say.
+    A known robot takes away one sighting at most, so that an opponent beside a mate stays. Robots are seen by their
+    near sides only and at different times, so a sighting within `within_m` of a known robot is that robot whatever
+    the covariances say.
+
+    Args:
+        positions_m: (m, 2) of the sightings, world frame.
+        covariances_m2: (m, 2, 2) of the sightings.
+        known_m: (k, 2) of the known robots.
+        known_m2: (k, 2, 2) of the known robots.
+        within_m: distance between a known robot and its sighting.
     """
     remain = np.ones(len(positions_m), dtype=bool)
     if len(positions_m) and len(known_m):
-        offsets_m = positions_m[None] - known_m[:, None]
         spreads = covariances_m2[None] + known_m2[:, None] + np.eye(2) * (within_m / 3) ** 2
-        surprises = np.einsum("kmi,kmi->km", offsets_m, np.linalg.solve(spreads, offsets_m[..., None])[..., 0])
+        surprises = _surprises(positions_m[None] - known_m[:, None], spreads)
         near = surprises <= _GATE
         known, seen = linear_sum_assignment(np.where(near, surprises, 1e3))
         remain[seen[near[known, seen]]] = False
     return remain
+
+
+def _motion(duration_s: float) -> tuple[Floats, Floats]:
+    """Transition matrix (4, 4) and process noise (4, 4) of a robot that accelerates at random."""
+    motion = np.eye(4)
+    motion[0, 2] = motion[1, 3] = duration_s
+    push = np.array((duration_s**2 / 2, duration_s))
+    noise = np.kron(np.outer(push, push), np.eye(2)) * _ACCELERATION_M_S2**2
+    return motion, np.asarray(noise, np.float64)
+
+
+def _seen_as(age_s: float) -> Floats:
+    """Measurement matrix (2, 4) of a position that was seen `age_s` ago."""
+    return np.array(((1.0, 0.0, -age_s, 0.0), (0.0, 1.0, 0.0, -age_s)))
+
+
+def _surprises(innovations: Floats, spreads: Floats) -> Floats:
+    """Squared Mahalanobis distances (n, m) of innovations (n, m, 2) with covariances (n, m, 2, 2)."""
+    weighted = np.linalg.solve(spreads, innovations[..., None])[..., 0]
+    return np.asarray((innovations * weighted).sum(axis=-1))

@@ -1,4 +1,4 @@
-"""Things that a robot saw in one frame: where, and how surely."""
+"""Things that a robot saw in one frame, with their covariances."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -8,14 +8,14 @@ from numpy.typing import ArrayLike
 
 from procs.model.frames import BOUND, Flags, Floats
 
-_LEAST_M2 = 1e-6  # nobody sees better than to a millimetre; it keeps filters regular
+_LEAST_M2 = 1e-6  # a millimetre: least variance of a sighting, which keeps filters regular
 
 
 @dataclass(frozen=True)
 class Seen:
     """n things in one frame of reference: positions (n, 2) in m, covariances (n, 2, 2) in m² in two parts.
 
-    The first part comes from the sight itself and is new in each picture; the second from the pose of who saw it.
+    The first part comes from the sight itself and is new in each picture; the second from the observer's pose.
     """
 
     NOTHING: ClassVar["Seen"]
@@ -28,7 +28,7 @@ class Seen:
 
     @classmethod
     def of(cls, positions_m: ArrayLike, covariances_m2: ArrayLike, radii_m: ArrayLike) -> "Seen":
-        """Things with the covariance of the sight; those with values that cannot be are left out."""
+        """Returns things with the covariance of the sight, without those that have impossible values."""
         places = np.asarray(positions_m, dtype=np.float64).reshape(-1, 2)
         spreads = np.asarray(covariances_m2, dtype=np.float64).reshape(-1, 2, 2)
         sizes = np.asarray(radii_m, dtype=np.float64)
@@ -45,16 +45,15 @@ class Seen:
         return self.by_sight_m2 + self.by_pose_m2
 
     def only(self, which: Flags) -> "Seen":
-        """Some of them."""
+        """Returns those with a true flag (n)."""
         return Seen(self.positions_m[which], self.by_sight_m2[which], self.by_pose_m2[which], self.radii_m[which])
 
-    def widened(self, sight: float, pose: float, moved_m: float = 0.0) -> "Seen":
-        """For a filter that takes every frame for new, though errors last several frames: so many each.
+    def widened(self, sight: float, pose: float) -> "Seen":
+        """Returns the same with wider covariances, for filters that take the errors of all frames for independent.
 
-        What moves may also have gone `moved_m` since it was seen.
+        `sight` and `pose` are the numbers of frames that share one error of the sight and of the own pose.
         """
-        by_sight_m2 = self.by_sight_m2 * sight + np.eye(2) * moved_m**2
-        return Seen(self.positions_m, by_sight_m2, self.by_pose_m2 * pose, self.radii_m)
+        return Seen(self.positions_m, self.by_sight_m2 * sight, self.by_pose_m2 * pose, self.radii_m)
 
 
 Seen.NOTHING = Seen(np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros((0, 2, 2)), np.zeros(0))

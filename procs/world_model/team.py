@@ -1,14 +1,18 @@
-"""What the team mates last said of themselves."""
+"""The newest message of each team mate about itself."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from procs.model.frames import Floats
 
-_TOLD_M = 0.05  # accuracy of a mate's position when it was told
-_DRIFT_M_S = 0.5  # and how fast it gets worse
-_EXTRAPOLATED_S = 0.5  # a velocity is not believed for longer
+_LEAST_M = 0.02  # deviation of a position whose sender claims less
+_DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
+_EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
+
+
+def _least_m2() -> Floats:
+    return np.eye(2) * _LEAST_M**2
 
 
 @dataclass(frozen=True)
@@ -22,24 +26,28 @@ class Mate:
     heading_rad: float
     velocity_m_s: Floats
     localized: bool
+    covariance_m2: Floats = field(default_factory=_least_m2)
+    """(2, 2) of the position at `told_s`, as the mate stated it."""
 
-    def position_at(self, now_s: float) -> Floats:
-        """Where it probably is now (2)."""
-        return self.position_m + self.velocity_m_s * min(now_s - self.told_s, _EXTRAPOLATED_S)
+    def position_at(self, time_s: float) -> Floats:
+        """Returns the probable position (2) at a time near `told_s`."""
+        passed_s = min(_EXTRAPOLATED_S, max(-_EXTRAPOLATED_S, time_s - self.told_s))
+        return self.position_m + self.velocity_m_s * passed_s
 
-    def covariance_at(self, now_s: float) -> Floats:
-        """Covariance (2, 2) of that, in m²."""
-        return np.eye(2) * (_TOLD_M + _DRIFT_M_S * (now_s - self.told_s)) ** 2
+    def covariance_at(self, time_s: float) -> Floats:
+        """Returns the covariance (2, 2) in m² of `position_at`."""
+        drift_m = _DRIFT_M_S * abs(time_s - self.told_s)
+        return self.covariance_m2 + np.eye(2) * (_LEAST_M + drift_m) ** 2
 
 
 class Team:
-    """The newest word of each mate, until the time-out."""
+    """The newest message of each mate, until the time-out."""
 
     def __init__(self) -> None:
         self._mates: dict[str, Mate] = {}
 
     def tell(self, mate: Mate) -> bool:
-        """A mate spoke; false if it is older than what is known: radio may change the order."""
+        """Takes a mate's message; returns False if a newer one is known, as radio may change the order."""
         known = self._mates.get(mate.name)
         if known is not None and known.told_s >= mate.told_s:
             return False
@@ -47,6 +55,6 @@ class Team:
         return True
 
     def localized(self, now_s: float, timeout_s: float) -> list[Mate]:
-        """Mates that spoke within the time-out and know where they are, by name."""
+        """Returns the mates, by name, that know their place and sent a message within the time-out."""
         self._mates = {name: mate for name, mate in self._mates.items() if now_s - mate.told_s <= timeout_s}
         return [mate for _, mate in sorted(self._mates.items()) if mate.localized]

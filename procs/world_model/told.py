@@ -1,4 +1,4 @@
-"""Reads what a mate told the team."""
+"""Reads the messages of team mates."""
 
 import numpy as np
 
@@ -9,11 +9,13 @@ from procs.world_model.team import Mate
 
 
 def mate_of(message: team_message_t, now_s: float) -> Mate | None:
-    """What the message says of its sender; nothing if it comes from the future or says what cannot be."""
+    """Returns the state of the sender; None if the message is from the future or holds impossible values."""
     values = (message.x_m, message.y_m, message.heading_rad, message.vx_m_s, message.vy_m_s)
     told_s = message.header.time_us / 1e6
     if told_s > now_s or not plausible(*values):
         return None
+    covariance_m2 = np.array(message.pose_covariance)[:2, :2]
+    proper = plausible(*covariance_m2.ravel()) and bool((np.linalg.eigvalsh(covariance_m2) >= 0).all())
     return Mate(
         name=message.robot,
         role=message.role,
@@ -22,18 +24,27 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         heading_rad=wrap(message.heading_rad),
         velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
         localized=message.localized,
+        covariance_m2=covariance_m2 if proper else np.zeros((2, 2)),
     )
 
 
 def ball_of(message: team_message_t) -> Seen:
-    """The ball (0 or 1) that the sender saw, world frame."""
+    """Returns the ball (0 or 1) that the sender saw, world frame."""
     if not message.ball_visible:
         return Seen.NOTHING
     return Seen.of([(message.ball_x_m, message.ball_y_m)], [message.ball_covariance_m2], [0.0])
 
 
+def held_ball_of(message: team_message_t, mate: Mate, mouth_m: float) -> Seen:
+    """Returns the ball (0 or 1) in the sender's mouth, world frame; `mouth_m` is from its middle to the ball's."""
+    if not (message.ball_held and mate.localized):
+        return Seen.NOTHING
+    ahead_m = mouth_m * np.array((np.cos(mate.heading_rad), np.sin(mate.heading_rad)))
+    return Seen.of([mate.position_m + ahead_m], [mate.covariance_m2 + np.eye(2) * 0.03**2], [0.0])
+
+
 def obstacles_of(message: team_message_t) -> Seen:
-    """The robots that the sender saw, world frame; its team is not among them."""
+    """Returns the robots that the sender saw, world frame, without those of its team."""
     seen = message.obstacles
     if not seen:
         return Seen.NOTHING

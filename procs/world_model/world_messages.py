@@ -1,4 +1,4 @@
-"""Puts what the world model believes into its messages."""
+"""Fills the messages of the world model."""
 
 from collections.abc import Sequence
 
@@ -20,7 +20,7 @@ def fill_world_model(
     opponents: RobotTracks,
     now_s: float,
 ) -> None:
-    """Everything that the robot believes at `now_s`."""
+    """Fills in the beliefs of the robot at `now_s`."""
     message.localized = view.localized
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
@@ -31,7 +31,8 @@ def fill_world_model(
 
 
 def fill_team_message(message: team_message_t, view: OwnView, ball: Seen, obstacles: Seen) -> None:
-    """The robot's own pose and what it sees itself: ball (0 or 1) and obstacles that are none of the team."""
+    """Fills in the own pose and the own sightings: ball (0 or 1), and obstacles without robots of the team."""
+    message.pose_covariance = view.covariance.tolist()
     message.x_m, message.y_m, message.heading_rad = view.pose.tolist()
     message.vx_m_s, message.vy_m_s = view.velocity_m_s.tolist()
     message.localized = view.localized

@@ -1,11 +1,11 @@
-"""What the robot believes of the world: itself, ball, mates, opponents; and what it tells its team.
+"""World model of a robot: itself, the ball, mates and opponents; and its messages to the team.
 
-Where each comes from: the ball from its own mouth, its own camera, then the team's cameras (`ball_tracker`);
-mates from their own messages; opponents from obstacles that the robot and its mates see and that are none of the team.
-A mate that does not know where it is appears nowhere. While the robot itself does not know, only the sight of its mates
-counts.
+Sources: the ball from its own mouth, its own camera, then the team's cameras (`ball_tracker`); mates from their own
+messages; opponents from obstacles that the robot and its mates see and that are not robots of the team. A mate that
+does not know its place is left out. While the robot itself does not know its place, only its mates' sightings count.
 """
 
+import numpy as np
 from pydantic import Field as Setting
 
 from fwk import Clock, Component, Config, Reads, Writes
@@ -20,16 +20,18 @@ from lcmtypes.soccer import (
     world_model_t,
 )
 from procs.model.field import Field
+from procs.model.frames import plausible
+from procs.model.units import US_PER_S
 from procs.world_model.ball_tracker import BallTracker, Sighting
-from procs.world_model.opponents import Opponents, OpponentSettings, strangers
+from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
+from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Team
-from procs.world_model.told import ball_of, mate_of, obstacles_of
+from procs.world_model.team import Mate, Team
+from procs.world_model.told import ball_of, held_ball_of, mate_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
-_ROBOT_SPEED_M_S = 1.0  # how far an obstacle may have moved since a mate saw it
 
 
 class WorldModelConfig(Config):
@@ -38,29 +40,29 @@ class WorldModelConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     ball_timeout_s: float = Setting(default=2.0, gt=0.0)
-    """The ball is unknown when nobody has seen it for longer."""
+    """The ball is unknown after that time without a sighting."""
     ball_rolling_m_s2: float = Setting(default=0.4, ge=0.0)
     """Deceleration of the rolling ball."""
     mouth_m: float = Setting(default=0.33, gt=0.0)
     """From the robot's middle to the middle of a ball that it holds."""
     opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
-    """An opponent is forgotten when nobody has seen it for longer."""
+    """An opponent is forgotten after that time without a sighting."""
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
-    """A mate is forgotten when it has said nothing for longer."""
+    """A mate is forgotten after that time without a message."""
     mate_radius_m: float = Setting(default=0.5, gt=0.0)
     """An obstacle this near to a mate is that mate; further away only if it was seen so poorly."""
     obstacle_deviation_m: float = Setting(default=0.4, gt=0.0)
     """Obstacles seen with a larger standard deviation are not used."""
     border_m: float = Setting(default=0.7, ge=0.0)
-    """Obstacles further outside the field than that are no robots of the match."""
+    """Obstacles further outside the field than that are not robots of the match."""
     use_team_sight: bool = True
-    """Whether what mates see counts."""
-    message_period: int = Setting(default=2, ge=1)
-    """Ticks from one message to the team to the next."""
+    """Use the sightings of mates."""
+    message_period_s: float = Setting(default=0.1, gt=0.0)
+    """Time from one message to the team to the next."""
     sight_correlation: float = Setting(default=1.5, ge=1.0)
     """Frames that share one error of the camera; the filters widen sightings by it."""
     shake_s_m: float = Setting(default=0.7, ge=0.0)
-    """How much more the camera shakes with each m/s that the robot drives, as a part of the percepts' deviation."""
+    """Growth of the camera's deviation with speed, as a share of the percepts' deviation for each m/s."""
     pose_correlation: float = Setting(default=6.0, ge=1.0)
     """Frames that share one error of the own pose."""
     team_correlation: float = Setting(default=2.0, ge=1.0)
@@ -68,7 +70,7 @@ class WorldModelConfig(Config):
 
 
 class WorldModel(Component):
-    """Publishes the world model in each tick, and ten times a second the robot's word to its team."""
+    """Publishes the world model in each tick, and every `message_period_s` a message to the team."""
 
     stage = "worldstate"
 
@@ -87,10 +89,13 @@ class WorldModel(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallTracker()
-        self._opponents = Opponents()
+        self._opponents = RobotTracks()
         self._team = Team()
         self._kicks = 0
+        self._mates_kicks: dict[str, int] = {}
         self._last_us = 0
+        self._sent_us = 0
+        self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
 
     def loop(self) -> None:
         config, now_s = self.config, self.clock.now_s
@@ -99,59 +104,100 @@ class WorldModel(Component):
         view = OwnView(self.pose.value, self.odometry.value, self.pose.refreshed, config.shake_s_m)
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
-        ball = view.ball(self.ball_percept.value) if self.ball_percept.refreshed else Seen.NOTHING
-        self._follow_ball(view, ball, told, passed_s)
-        obstacles = view.obstacles(self.obstacle_percepts.value) if self.obstacle_percepts.refreshed else Seen.NOTHING
-        rules = self._opponent_settings()
-        obstacles = strangers(obstacles, mates, now_s, rules)
-        self._opponents.advance(passed_s, rules)
-        self._opponents.see(obstacles.widened(config.sight_correlation, config.pose_correlation))
-        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
-        for message in told if config.use_team_sight else []:
-            seen = obstacles_of(message).widened(config.team_correlation, 1.0, _ROBOT_SPEED_M_S * self._age_s(message))
-            self._opponents.see(strangers(seen, team, now_s, rules))
-        fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents.tracks, now_s)
+        self._follow_ball(view, told, passed_s)
+        self._follow_opponents(view, mates, told, passed_s)
+        fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
         self.world_model.write()
-        if self.clock.tick % config.message_period == 0:
-            self._tell_team(view, ball, obstacles)
+        # Half a tick early is nearer to the period than half a tick late.
+        if self.clock.since_s(self._sent_us) + self.clock.period_s / 2 >= config.message_period_s:
+            self._tell_team(view)
 
-    def _listen(self, now_s: float) -> list[team_message_t]:
-        """This tick's messages from mates, without those that are too old to tell where something is."""
-        heard = [message for inbox in self.team_inbox.fresh for message in inbox.messages]
+    def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
+        """Returns the messages of mates that arrived in this tick and are not older than known ones."""
         told = []
-        for message in heard:
+        for message in (message for inbox in self.team_inbox.fresh for message in inbox.messages):
             mate = mate_of(message, now_s)
             if mate is not None and mate.name != self._robot and self._team.tell(mate):
-                told.append(message)
-        return [message for message in told if self._age_s(message) <= _STALE_S]
+                told.append((message, mate))
+        return told if self.config.use_team_sight else []
 
-    def _follow_ball(self, view: OwnView, own: Seen, told: list[team_message_t], passed_s: float) -> None:
+    def _follow_ball(self, view: OwnView, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
         config, kicker = self.config, self.kicker_state.value
-        if kicker.kicks != self._kicks:
+        kicked = kicker.kicks != self._kicks
+        if kicked:
             self._kicks = kicker.kicks
-            self._ball.kick(float(view.pose[2]))
+            velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, config.mouth_m)
+            self._ball.kick(velocity_m_s)
+            message = self.team_message.value
+            message.kicks, message.kick_us = kicker.kicks, self.clock.now_us
+            message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
+        self._take_mates_kicks(told)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball_rolling_m_s2)
-        if kicker.ball_held and view.localized:
-            self._ball.hold(self._robot, view.held_ball(config.mouth_m))
-        sightings = [(self._robot, own.widened(config.sight_correlation, config.pose_correlation), 0.0)]
-        for message in told if config.use_team_sight else []:
-            sightings.append(
-                (message.robot, ball_of(message).widened(config.team_correlation, 1.0), self._age_s(message))
-            )
-        for robot, seen, age_s in sightings:
-            for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
-                self._ball.see(Sighting(robot, robot == self._robot, position_m, covariance_m2, age_s))
+        if kicker.ball_held and view.localized and not kicked:
+            self._ball.hold(self._robot, *view.held_ball(config.mouth_m))
+        if self.ball_percept.refreshed:
+            percept = self.ball_percept.value
+            age_s = self._age_s(percept.capture_us)
+            seen = self._untold_ball = view.ball(percept, age_s)
+            self.team_message.value.ball_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
+        for message, mate in told:
+            seen = ball_of(message).widened(config.team_correlation, 1.0)
+            self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
+            held = held_ball_of(message, mate, config.mouth_m)
+            self._see(mate.name, held, self.clock.since_s(message.header.time_us))
 
-    def _tell_team(self, view: OwnView, ball: Seen, obstacles: Seen) -> None:
+    def _see(self, robot: str, seen: Seen, age_s: float) -> None:
+        """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
+        if not 0.0 <= age_s <= _STALE_S:
+            return
+        for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
+            self._ball.see(Sighting(robot, robot == self._robot, position_m, covariance_m2, age_s))
+
+    def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]]) -> None:
+        for message, mate in told:
+            known = self._mates_kicks.get(mate.name, message.kicks)
+            self._mates_kicks[mate.name] = message.kicks
+            age_s = self.clock.since_s(message.kick_us)
+            sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s) and 0.0 <= age_s <= _STALE_S
+            if message.kicks != known and sound:
+                self._ball.kick(np.array((message.kick_vx_m_s, message.kick_vy_m_s)), age_s)
+
+    def _follow_opponents(
+        self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
+    ) -> None:
+        config, rules, now_s = self.config, self._opponent_settings(), self.clock.now_s
+        self._opponents.predict(passed_s, config.opponent_timeout_s)
+        if self.obstacle_percepts.refreshed:
+            percepts = self.obstacle_percepts.value
+            age_s = self._age_s(percepts.capture_us)
+            seen = strangers(view.obstacles(percepts, age_s), mates, now_s - age_s, rules)
+            self._untold_obstacles = seen
+            self.team_message.value.obstacles_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            seen = seen.widened(config.sight_correlation, config.pose_correlation)
+            self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
+        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
+        for message, _ in told:
+            age_s = self._age_s(message.obstacles_capture_us or message.header.time_us)
+            if 0.0 <= age_s <= _STALE_S:
+                seen = obstacles_of(message).widened(config.team_correlation, 1.0)
+                seen = strangers(seen, team, now_s - age_s, rules)
+                self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
+
+    def _tell_team(self, view: OwnView) -> None:
+        """Sends the own state with the newest own sightings, each once."""
         message = self.team_message.value
         message.robot = self._robot
         message.role, message.intention = self.role.value.role, self.role.value.intention
         message.ball_held = self.kicker_state.value.ball_held
-        fill_team_message(message, view, ball, obstacles)
+        fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
+        self._untold_ball = self._untold_obstacles = Seen.NOTHING
+        self._sent_us = self.clock.now_us
         self.team_message.write()
 
-    def _age_s(self, message: team_message_t) -> float:
-        return self.clock.since_s(message.header.time_us)
+    def _age_s(self, capture_us: int) -> float:
+        """Returns the time since an exposure; 0 stands for an exposure in this tick."""
+        return self.clock.since_s(capture_us) if capture_us else 0.0
 
     def _opponent_settings(self) -> OpponentSettings:
         config = self.config
@@ -160,5 +206,4 @@ class WorldModel(Component):
             half_width_m=config.field.half_width_m + config.border_m,
             deviation_m=config.obstacle_deviation_m,
             mate_radius_m=config.mate_radius_m,
-            timeout_s=config.opponent_timeout_s,
         )

@@ -1,6 +1,10 @@
 """Physical properties of ball, robots and kickers; the defaults are those of the middle size league."""
 
-from pydantic import BaseModel, ConfigDict, PositiveFloat
+from typing import Annotated
+
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
+
+from procs.model import ball
 
 
 class _Settings(BaseModel):
@@ -10,13 +14,13 @@ class _Settings(BaseModel):
 class BallSettings(_Settings):
     """A football of size 5 on short carpet."""
 
-    radius_m: PositiveFloat = 0.11
-    mass_kg: PositiveFloat = 0.43
-    sliding_m_s2: PositiveFloat = 3.0
+    radius_m: PositiveFloat = ball.RADIUS_M
+    mass_kg: PositiveFloat = ball.MASS_KG
+    sliding_m_s2: PositiveFloat = ball.SLIDING_M_S2
     """Deceleration while the ball slides, as it does after a kick."""
-    rolling_m_s2: PositiveFloat = 0.4
+    rolling_m_s2: PositiveFloat = ball.ROLLING_M_S2
     """Deceleration while it rolls."""
-    inertia: PositiveFloat = 2 / 3
+    inertia: PositiveFloat = ball.INERTIA
     """Moment of inertia divided by mass and squared radius: 2/3 for a thin shell, 2/5 for a solid ball."""
 
 
@@ -68,5 +72,6 @@ class PhysicsSettings(_Settings):
     robot: RobotSettings = RobotSettings()
     handling: HandlingSettings = HandlingSettings()
     kicker: KickerSettings = KickerSettings()
-    step_s: PositiveFloat = 0.005
-    """Longest step of the integration; a tick is cut into equal steps no longer than this."""
+    step_s: Annotated[float, Field(gt=0.0, le=0.005)] = 0.005
+    """Longest step of the integration; a tick is cut into equal steps no longer than this. In longer steps than 5 ms
+    the force of a wheel, which is steep in its slip, oscillates."""

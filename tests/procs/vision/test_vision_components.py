@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -15,9 +16,10 @@ from lcmtypes.soccer import ground_truth_t
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
+from tests.procs.launched import launched_settings
 from tests.procs.vision.picture_parts import frame_of, robot, system
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def test_from_truth_to_percepts() -> None:
@@ -75,12 +77,41 @@ def test_without_a_new_frame_nothing_is_said() -> None:
     assert bench.port("ball_percept").sent == []
 
 
-def test_a_frame_of_another_size_is_refused_with_both_sizes() -> None:
+def test_whole_robot_of_the_launch_file_takes_a_4_to_3_camera() -> None:
+    """A frame of 640 x 480 pixels: the square in the middle shows the mirror."""
+    square = cv2.resize(frame_of(system(shake_px=0.0, noise_levels=0.0)), (480, 480), interpolation=cv2.INTER_AREA)
+    wide = np.zeros((480, 640, 3), np.uint8)
+    wide[:, 80:560] = square
+    places = []
+    for frame in (square, wide):
+        bench = Bench(OmniBall, **launched_settings("soccer.yaml", "cyan1/omni_ball"))
+        bench.show("image", frame)
+        bench.iterate()
+        (percept,) = bench.port("ball_percept").sent
+        assert percept.visible
+        places.append((percept.x_m, percept.y_m))
+    assert places[0] == places[1]
+    field = Bench(OmniField, **launched_settings("soccer.yaml", "cyan1/omni_field"))
+    field.show("image", wide)
+    field.iterate()
+    assert field.port("line_points").sent[-1].n > 40
+
+
+def test_grey_frame_is_refused_with_its_shape() -> None:
     for component in (OmniBall, OmniField):
-        bench = Bench(component, name="cyan1/detector")
-        bench.show("image", np.zeros((480, 640, 3), np.uint8))
-        with pytest.raises(ValueError, match=r"cyan1/detector: the frame is 480 x 640 x 3, .*400 x 400 x 3"):
+        bench = Bench(component)
+        bench.show("image", np.zeros((400, 400), np.uint8))
+        with pytest.raises(ValueError, match=r"the frame is 400 x 400.* need three colours, height x width x 3"):
             bench.iterate()
+
+
+def test_percepts_state_the_exposure() -> None:
+    run = system()
+    run.tick(3)
+    exposed_us = run.newest("cyan1/image").header.time_us
+    assert exposed_us > 0
+    for channel in ("ball_percept", "line_points", "obstacle_percepts"):
+        assert run.newest(f"cyan1/{channel}").capture_us == exposed_us
 
 
 def test_a_camera_without_its_robot_says_so_once_and_goes_on() -> None:

@@ -95,13 +95,14 @@ def test_kicked_ball_has_the_right_velocity_after_150_ms() -> None:
     assert np.median(np.hypot(*np.array(speeds).T)) < 0.8, "10 % of 8 m/s"
 
 
-def test_own_kick_is_believed_with_the_first_sighting() -> None:
+def test_own_kick_is_believed_before_any_sighting() -> None:
     tracker = BallTracker()
     for _ in range(10):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("a", np.array((0.33, 0.0, 0.0, 0.0)))
-    tracker.kick(0.0)
+        tracker.hold("a", np.array((0.33, 0.0, 0.0, 0.0)), np.zeros((4, 4)))
+    tracker.kick(np.array((8.0, 0.0)))
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    assert tracker.track.state[2] == pytest.approx(8.0, rel=0.1)
     assert tracker.see(Sighting("a", True, np.array((0.73, 0.0)), np.eye(2) * 0.02**2))
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.25)
 
@@ -227,6 +228,42 @@ def test_a_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
     tracker = BallTracker()
     for frame in range(5):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("me", np.array((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0)))
+        tracker.hold("me", np.array((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0)), np.zeros((4, 4)))
         assert not tracker.see(Sighting("mate", False, np.array((3.0, 3.0)), np.eye(2) * 0.01**2))
     assert tracker.track.state == pytest.approx((0.53, 0.0, 1.0, 0.0), abs=0.06)
+
+
+def test_cameras_outrank_the_kickers_old_sighting() -> None:
+    """A mate saw the ball sharply, then kicked it; the own camera gives a frame every second tick."""
+    tracker = BallTracker()
+    for _ in range(6):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(Sighting("kicker", False, np.array((1.0, 0.0)), np.eye(2) * 0.005**2))
+    for frame in range(1, 5):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        ball_m = np.array((1.0 + 8.0 * frame * PERIOD_S, 0.0))
+        if frame % 2 == 0:
+            tracker.see(Sighting("me", True, ball_m, np.eye(2) * 0.06**2))
+    assert np.hypot(*(tracker.track.state[:2] - ball_m)) < 0.1
+    assert tracker.track.state[2] == pytest.approx(8.0, rel=0.1)
+
+
+def test_older_second_sighting_gives_place_and_velocity() -> None:
+    tracker = BallTracker()
+    for _ in range(10):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        tracker.see(Sighting("me", True, np.array((0.0, 0.0)), np.eye(2) * 0.02**2))
+    tracker.advance(PERIOD_S, 2.0, 0.0)
+    tracker.see(Sighting("me", True, np.array((2.0, 0.0)), np.eye(2) * 0.02**2))
+    tracker.see(Sighting("mate", False, np.array((1.8, 0.0)), np.eye(2) * 0.02**2, age_s=0.04))
+    assert tracker.track.state[0] == pytest.approx(2.0, abs=0.05)
+    assert tracker.track.state[2] == pytest.approx(5.0, abs=1.0)
+
+
+def test_held_ball_is_as_uncertain_as_the_own_pose() -> None:
+    tracker = BallTracker()
+    covariance = np.diag((0.1**2, 0.2**2, 0.0, 0.0))
+    for _ in range(3):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), covariance)
+    assert np.sqrt(np.diag(tracker.track.covariance)[:2]) == pytest.approx((0.08, 0.13), rel=0.5)

@@ -323,3 +323,54 @@ def test_sightings_with_impossible_covariances_are_left_out() -> None:
     seen = Seen.of(np.array([[1.0, 0.0], [2.0, 0.0], [3.0, 0.0], [4.0, 0.0]]), spreads, np.zeros(4))
     assert seen.positions_m[:, 0].tolist() == [1.0, 4.0]
     assert (np.linalg.eigvalsh(seen.covariances_m2) > 0).all()
+
+
+@pytest.mark.parametrize("parity", [0, 1])
+def test_frames_of_every_second_tick_are_told(parity: int) -> None:
+    """Cameras give frames in even or in odd ticks, and messages are sent in every second tick."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for tick in range(20):
+        robot.sense(np.array((2.0, 1.0)), [np.array((0.0, 2.0))])
+        if tick % 2 != parity:
+            for sensor in ("ball_percept", "obstacle_percepts"):
+                robot.bench.port(sensor).waiting.clear()
+        robot.bench.iterate()
+    told = robot.bench.port("team_message").sent
+    assert len(told) == 10
+    assert sum(message.ball_visible for message in told) >= 9
+    assert sum(len(message.obstacles) == 1 for message in told) >= 9
+    ages_us = {message.header.time_us - message.ball_capture_us for message in told if message.ball_visible}
+    assert ages_us <= {0, round(PERIOD_S * 1e6)}
+
+
+def test_mates_sight_counts_from_its_exposure() -> None:
+    """A fast ball, seen by one mate 0.1 s before its message: without the age it is half a metre behind."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(12):
+        now_us = robot.bench.time_us + round(PERIOD_S * 1e6)
+        message = team_message_t()
+        message.robot, message.localized, message.ball_visible = "cyan2", True, True
+        message.header.time_us, message.ball_capture_us = now_us, max(1, now_us - 100_000)
+        message.ball_x_m = -4.0 + 5.0 * message.ball_capture_us / 1e6
+        message.ball_covariance_m2 = [[1e-4, 0.0], [0.0, 1e-4]]
+        robot.sense(None, [])
+        robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+    true_x_m = -4.0 + 5.0 * robot.bench.time_us / 1e6
+    assert robot.world.ball.x_m == pytest.approx(true_x_m, abs=0.15)
+
+
+def test_mate_counts_as_precisely_as_it_says() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    deviations_m = []
+    for claimed_m in (0.01, 0.5):
+        for _ in range(3):
+            message = team_message_t()
+            message.robot, message.localized = "cyan2", True
+            message.header.time_us = robot.bench.time_us
+            message.pose_covariance = np.diag((claimed_m**2, claimed_m**2, 0.01)).tolist()
+            robot.bench.port("team_inbox").put(messages=[message])
+            robot.bench.iterate()
+        deviations_m.append(math.sqrt(robot.world.mates[0].covariance_m2[0][0]))
+    assert deviations_m[0] < 0.1
+    assert deviations_m[1] > 0.4
