@@ -1,19 +1,18 @@
 """Follows the main loop by its tick records, collects each tick's messages and hands them on in one fixed order."""
 
-import select
-import socket
 import struct
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, Protocol
 
 from fwk.bus import sync
 from fwk.bus.complaints import Complaints
-from fwk.bus.network import UdpNetwork
-from fwk.bus.public import PublicBus
+from fwk.bus.network import DatagramSocket, Network, Steps
 from fwk.bus.sender import Sender
-from fwk.bus.sockets import multicast_receiver, port_of, told
+from fwk.bus.sockets import port_of, told
+from fwk.bus.waiting import Source
 from fwk.clock import Clock
 from fwk.component.log import Logger
+from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import gaps
 from fwk.engine.runner import AWAY_TICKS
 from fwk.gateway.ingress import Outside
@@ -32,6 +31,10 @@ SUPERVISOR_CHANNEL = -1
 HEARD_AT_ONCE = 256  # messages of other programs, before the run's own have their turn again
 
 
+IDLE_US = 100_000
+"""Wall time without any event after which the supervisor may have lost what it was told."""
+
+
 class Sink(Protocol):
     """Takes everything that the gateway sees."""
 
@@ -45,10 +48,40 @@ class Sink(Protocol):
         """The run is over."""
 
 
-class Gateway:
-    """Collects; `serve` returns when the supervisor has closed its end of `control` and everything is written."""
+class SupervisorConnection(Protocol):
+    """The connection that the supervisor closes when the run is over."""
 
-    def __init__(self, plan: Plan, run: int, control: socket.socket, public: PublicBus | None) -> None:
+    def fileno(self) -> int:
+        """Returns the descriptor that is readable when the connection is closed."""
+        ...
+
+    def recv(self, size: int, /) -> bytes:
+        """Returns what the supervisor sent; nothing when the connection is closed.
+
+        Raises:
+            BlockingIOError: nothing waits.
+        """
+        ...
+
+
+class Outsiders(Protocol):
+    """The programs outside, heard on the public bus."""
+
+    def fileno(self) -> int:
+        """Returns the descriptor that is readable when a message waits."""
+        ...
+
+    def receive(self) -> tuple[str, bytes, int] | None:
+        """Returns the next message as (channel, data, port of its sender); None when none waits."""
+        ...
+
+
+class Gateway:
+    """Collects, as a participant; `serve` ends when the supervisor has closed `control` and everything is written."""
+
+    def __init__(
+        self, plan: Plan, run: int, network: Network, control: SupervisorConnection, public: Outsiders | None
+    ) -> None:
         self.sinks: list[Sink] = []
         self.instances = Instances(plan)
         """Which channels there are, those too that were opened while the run goes on."""
@@ -59,21 +92,20 @@ class Gateway:
         self._control = control
         self._public = public
         self._ports = Ports.of(plan)
-        self._network = UdpNetwork()
-        self._sender = Sender(self._ports.host(self._ports.gateway), self._network)
-        self._network.watch(self._sender.socket)
+        self._network = network
+        self._sender = Sender(self._ports.host(self._ports.gateway), network)
         self.clock = Clock(plan.period_us)
         self.log = Logger("gateway", self.clock, self._log_line)
         self._complaints = Complaints(self.log)
         self._inputs = Inputs(
-            plan, plan.channels, [], self._ports.gateway, run, self._network, self._sender, self._complaints
+            plan, plan.channels, [], self._ports.gateway, run, network, self._sender, self._complaints
         )
         opened = [each for each in plan.channels if each.of_tools or each.name in plan.outside or each.name == LINES]
         self._outside = Outside(opened, self._ports, self._sender, self._inputs, self.clock)
         self._strangers = Strangers(plan, self.take_in, self._complaints)
-        self._records = multicast_receiver(self._ports.record)
-        self._lines = multicast_receiver(self._ports.log)
-        self._status = multicast_receiver(self._ports.status)
+        self._records = network.group_socket(self._ports.record)
+        self._lines = network.group_socket(self._ports.log)
+        self._status = network.group_socket(self._ports.status)
         # Of each channel the newest message and all of the last ticks that a reader may still want one of.
         self._kept_ticks = AWAY_TICKS if plan.clock == "wall" else 1
         self._recent: dict[int, list[tuple[int, int, bytes]]] = {}  # tick, sequence number, message
@@ -83,11 +115,10 @@ class Gateway:
         self._open = True
         self._handlers: list[Callable[[], None]] = []
         self._assembler = wire.Assembler()
-        self._poller = select.poll()
-        for source in (self._records, self._lines, self._status, self._sender.socket, control):
-            self._poller.register(source, select.POLLIN)
-        if public:
-            self._poller.register(public, select.POLLIN)
+        self._sources: list[Source] = [self._records, self._lines, self._status]
+        self._sources += [public] if public else []
+        for source in (*self._sources, self._sender.socket, control):
+            network.watch(source)
 
     @property
     def lost(self) -> int:
@@ -96,22 +127,22 @@ class Gateway:
 
     def watch(self, descriptor: int, handler: Callable[[], None]) -> None:
         """Calls `handler`, which must not wait, whenever something happens, also when there is something to read."""
-        self._poller.register(descriptor, select.POLLIN)
+        self._network.watch(descriptor)
+        self._sources.append(descriptor)
         self._handlers.append(handler)
 
-    def serve(self) -> None:
+    def serve(self) -> Steps[None]:
         """Says that it hears everything from now on, and works until the supervisor closes the control connection."""
         self._acknowledge()
         while self._open:
-            wait_us = max(0, min(100_000, self._sender.due_us - self._network.now_us()))
-            happened = self._poller.poll(wait_us / 1000)
+            happened = yield min(self._network.now_us() + IDLE_US, self._sender.due_us)
             self._sender.send_due()
             if not happened and (self._outside.marks or self._next == 1):
                 self._acknowledge()  # the main loop may have lost what it was told
             self._handle_own()
             self._hear_strangers()
             self._receive_lines()
-            self._receive_records()
+            yield from self._receive_records()
             for handle in self._handlers:
                 handle()
             if self._next in self._waiting or not self._waiting:
@@ -135,7 +166,7 @@ class Gateway:
         self._acknowledge()
         return sequence
 
-    def _receive_records(self) -> None:
+    def _receive_records(self) -> Steps[None]:
         for channel, data in self._drain(self._records, sync.RECORD, sync.OPENS):
             record = sync.decode_record(data)
             if record.run == self._run and channel == sync.OPENS:
@@ -149,19 +180,19 @@ class Gateway:
                 self._acknowledge()
         while self._next in self._waiting:
             record, data = self._waiting.pop(self._next)
-            if not self._take(record, data):
+            if not (yield from self._take(record, data)):
                 return
             self._next += 1
             self._acknowledge()
 
-    def _take(self, record: tick_record_t, recorded: bytes) -> bool:
+    def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
         self.clock.tick, self.clock.now_us = record.tick, record.time_us
         for change in record.changes:
             if change.component == NOBODY:
                 self._open_channels(change)
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         lacking = self._inputs.collect(moved)
-        if lacking and not self._network.run(self._inputs.fetch(lacking, self._handle_own)):
+        if lacking and not (yield from self._fetch(lacking)):
             return False
         collected = []
         for box in moved:
@@ -182,6 +213,15 @@ class Gateway:
             sink.message("fwk/record", recorded, record.time_us)
             sink.tick()
         return True
+
+    def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
+        """Fetches what is visible and not here; all other sources would end every wait at once."""
+        for source in self._sources:
+            self._network.unwatch(source)
+        complete = yield from self._inputs.fetch(lacking, self._handle_own)
+        for source in self._sources:
+            self._network.watch(source)
+        return complete
 
     def _open_channels(self, change: change_t) -> None:
         """What components opened at run time is collected as everything else."""
@@ -319,12 +359,12 @@ class Gateway:
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
 
-    def _drain(self, source: socket.socket, *channels: bytes, anybody: bool = False) -> list[tuple[bytes, bytes]]:
+    def _drain(self, source: DatagramSocket, *channels: bytes, anybody: bool = False) -> list[tuple[bytes, bytes]]:
         found: list[tuple[bytes, bytes]] = []
         while True:
             try:
                 datagram, address = source.recvfrom(wire.DATAGRAM_MAX)
-            except BlockingIOError:
+            except OSError:  # no datagram
                 return found
             try:
                 known = self._ports.members if anybody else (self._ports.supervisor,)

@@ -4,6 +4,7 @@ import signal
 import socket
 from collections.abc import Mapping
 
+from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
 from fwk.component.images import Ring
 from fwk.gateway.channel_server import Board
@@ -32,7 +33,8 @@ def run_gateway(
     )  # ends when the supervisor's end of `control` is closed, also by its death
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
-    gateway = Gateway(plan, run, control, public)
+    network = UdpNetwork()
+    gateway = Gateway(plan, run, network, control, public)
     calls = Calls(plan, gateway.take_in, gateway.clock)
     board = Board(plan, gateway.instances, calls.call)
     gateway.watch(board.fileno(), board.handle)
@@ -63,5 +65,5 @@ def run_gateway(
             gateway.sinks.insert(0, targets.above(Apart(recorder, plain, gateway.opened_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
-    gateway.serve()
+    network.run(gateway.serve())
     return 0

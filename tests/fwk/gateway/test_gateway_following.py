@@ -56,7 +56,8 @@ class Followed:
         self._ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         theirs.setblocking(False)
         self._control = theirs
-        self.gateway = Gateway(made, RUN, theirs, None)
+        self._network = UdpNetwork()
+        self.gateway = Gateway(made, RUN, self._network, theirs, None)
         self.kept = Kept()
         self.gateway.sinks.append(self.kept)
 
@@ -78,7 +79,11 @@ class Followed:
     def serve(self) -> None:
         """Lets it deal with what has been sent so far, and end."""
         self._ours.close()
-        self.gateway.serve()
+        self._network.run(self.gateway.serve())
+
+    def receive(self) -> None:
+        """Lets it deal with the records that have been sent so far."""
+        self._network.run(self.gateway._receive_records())
 
     def ask(self, host: int, first: int, last: int) -> None:
         """A fetch passed on by the writer in whose place the gateway shall answer."""
@@ -91,6 +96,7 @@ class Followed:
             each.socket.close()
         for end in (self._ours, self._control):
             end.close()
+        self._network.close()
 
 
 @pytest.fixture
@@ -156,7 +162,7 @@ def test_it_answers_for_a_writer_that_is_gone_with_all_of_two_ticks_and_all_sinc
     followed.publish(1, 2, 3, 4)  # in the ticks of these numbers
     for tick in range(1, 5):
         followed.record(tick, mark=tick)
-    followed.gateway._receive_records()
+    followed.receive()
     followed.publish(5)
     ears = multicast_receiver(followed.ports.channel(0))
     followed.ask(host=1, first=1, last=6)
@@ -173,7 +179,7 @@ def test_it_keeps_the_newest_of_who_has_not_written_for_long(followed: Followed)
     followed.publish(1)
     for tick in range(1, 9):
         followed.record(tick, mark=1)
-    followed.gateway._receive_records()
+    followed.receive()
     followed.ask(host=1, first=1, last=1)
     followed.serve()
     assert followed.reader.receive(followed.ports.members) is None
@@ -183,7 +189,7 @@ def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) ->
     followed.publish(2)
     followed.record(1, mark=2)
     followed.ask(host=followed.ports.gateway, first=1, last=1)
-    followed.gateway._receive_records()
+    followed.receive()
     followed.serve()
     (line,) = [log_t.decode(data).text for channel, data in followed.kept.messages if channel == "fwk/log"]
     assert followed.kept.sequences == [2]

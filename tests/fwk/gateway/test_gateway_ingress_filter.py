@@ -44,7 +44,8 @@ class Opened:
         self._theirs.setblocking(False)
         self._supervisor = Sender(self.ports.supervisor, UdpNetwork())
         self._bus = PublicBus(ports.public_url)
-        self.gateway = Gateway(made, RUN, self._theirs, self._bus)
+        self._network = UdpNetwork()
+        self.gateway = Gateway(made, RUN, self._network, self._theirs, self._bus)
         self.kept = Kept()
         self.gateway.sinks += [self.kept, Mirror(made, self._bus)]
 
@@ -62,7 +63,7 @@ class Opened:
             pass
 
     def follow(self) -> None:
-        self.gateway._receive_records()
+        self._network.run(self.gateway._receive_records())
 
     @property
     def wishes(self) -> list[bytes]:
@@ -74,9 +75,10 @@ class Opened:
 
     def close(self) -> None:
         self._ours.close()
-        self.gateway.serve()
+        self._network.run(self.gateway.serve())
         for each in (self._supervisor.socket, self.stranger, self._bus, self._theirs):
             each.close()
+        self._network.close()
 
 
 @pytest.fixture
