@@ -1,46 +1,52 @@
-"""Ticks, dones and tick records to bytes and back: most of the framework's own traffic."""
+"""Encoders, decoders and channels of the framework's own most frequent messages."""
 
-import struct
-from collections.abc import Sequence
-
-from fwk.lcm.messages import MessageError, decoder, encoder
-from lcmtypes.core import done_t, tick_record_t, tick_t
+from fwk.lcm.messages import decoder, encoder
+from lcmtypes.core import (
+    announcement_t,
+    done_t,
+    fetch_records_t,
+    header_t,
+    leaving_t,
+    recorded_t,
+    taken_t,
+    tick_record_t,
+    tick_t,
+)
 
 TICK = b"fwk/tick"
 DONE = b"fwk/done"
+TAKEN = b"fwk/taken"
+LEAVING = b"fwk/leaving"
 RECORD = b"fwk/record"
-OPENS = b"fwk/opens"
-DONE_START = DONE + b"\0"  # what follows the number of its datagram
+RECORDED = b"fwk/recorded"
+ANNOUNCE = b"fwk/announce"
+FETCH_RECORDS = b"fwk/fetch_records"
+DONE_START = DONE + b"\0"  # follows the number of a done's datagram
 
 encode_tick = encoder(tick_t, "fwk/tick")
 decode_tick = decoder(tick_t, "fwk/tick")
 encode_done = encoder(done_t, "fwk/done")
 decode_done = decoder(done_t, "fwk/done")
-
-_COUNT = struct.Struct(">i")
-_EVENT = struct.Struct(">biqh")
-_EVENTS_AT = 32  # where a tick record's count of events stands
-
-Event = tuple[int, int, int, int]
-"""Kind, index, tick and stage, as in core.tick_event_t."""
-
-
-def encode_record(record: tick_record_t, events: Sequence[Event]) -> bytes:
-    """The bytes of a tick record with these events, several times faster than from objects; `record` has none."""
-    data = record.encode()
-    packed = [_EVENT.pack(*event) for event in events]
-    return b"".join([data[:_EVENTS_AT], _COUNT.pack(len(events)), *packed, data[_EVENTS_AT + _COUNT.size :]])
+encode_record = encoder(tick_record_t, "fwk/record")
+decode_record = decoder(tick_record_t, "fwk/record")
+encode_recorded = encoder(recorded_t, "fwk/recorded")
+decode_recorded = decoder(recorded_t, "fwk/recorded")
+decode_taken = decoder(taken_t, "fwk/taken")
+decode_leaving = decoder(leaving_t, "fwk/leaving")
+decode_announcement = decoder(announcement_t, "fwk/announce")
+decode_fetch_records = decoder(fetch_records_t, "fwk/fetch_records")
 
 
-def decode_record(data: bytes) -> tick_record_t:
-    """A tick record without its events, which only replay wants to know.
+def place_of(done: done_t) -> int:
+    """Returns what the headers of the messages that a done speaks for have as `stage`."""
+    if done.kind == done_t.FINAL:
+        return header_t.FINAL
+    return done.iteration if done.kind == done_t.ITERATION else done.step
 
-    Raises:
-        MessageError: the bytes are no tick record, or end too early.
-    """
-    try:
-        (events,) = _COUNT.unpack_from(data, _EVENTS_AT)
-        rest = data[_EVENTS_AT + _COUNT.size + events * _EVENT.size :]
-        return tick_record_t.decode(data[:_EVENTS_AT] + _COUNT.pack(0) + rest)
-    except (struct.error, ValueError, OverflowError) as error:
-        raise MessageError(f"{len(data)} bytes that are no core.tick_record_t") from error
+
+def taken(done: done_t, taker: int) -> bytes:
+    """Returns the encoded answer to a done: `taker` has taken it."""
+    made = taken_t()
+    made.run, made.taker, made.incarnation = done.run, taker, done.incarnation
+    made.kind, made.tick, made.iteration = done.kind, done.tick, done.iteration
+    return made.encode()

@@ -27,12 +27,12 @@ from fwk.component.sending import Outbox, Sends, SendsEach
 from fwk.component.services_each import CommandsEach, ServesEach
 from fwk.lcm import envelope
 from fwk.lcm.messages import Message, has_header
-from lcmtypes.core import done_t, log_t
+from lcmtypes.core import header_t, log_t
 
 AWAY_TICKS = 16
 """Who took no part for longer is like a newcomer, because writers may no longer have everything."""
-MISSED_FRAMES = "missed_frames"
-"""Under this name a done says which frames its components did not get."""
+LOST_FRAMES = "lost_frames"
+"""Key in what `Runner.wishes` returns: frames that the component did not get."""
 NOTHING: list[bytes] = []
 """No message came. Readers do not change what they are given."""
 
@@ -189,7 +189,7 @@ class Runner:
         """After the last iteration: lets the component finalize; returns what it wrote, stamped with that tick."""
         self.clock.tick = self.stamp.tick = tick
         self.clock.now_us = self.stamp.time_us = time_us
-        self.stamp.stage = done_t.FINAL
+        self.stamp.stage = header_t.FINAL
         self.component.finalize()
         for port in self._command_ports:
             port.end()
@@ -212,7 +212,7 @@ class Runner:
         asked = {
             "plugins": self.plugins.take(),
             "blackboard": self.blackboard.take(),
-            MISSED_FRAMES: self.missed_frames(),
+            LOST_FRAMES: self.missed_frames(),
         }
         made: dict[str, Any] = {aspect: wishes for aspect, wishes in asked.items() if wishes}
         return made if order is None else {**made, "main_loop": order}

@@ -20,14 +20,25 @@ from fwk.gateway.ingress_filter import Strangers
 from fwk.host.inputs import Inputs
 from fwk.lcm import envelope, wire
 from fwk.lcm.messages import Header, MessageError
-from fwk.model.channel_table import Fact, Instances, facts_of
+from fwk.model.channel_table import Fact, Instances, facts_in
 from fwk.model.names import LINES
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.ports import Ports
-from lcmtypes.core import change_t, done_t, fetch_t, gone_t, log_t, tick_record_t
+from lcmtypes.core import (
+    announcement_t,
+    channels_change_t,
+    done_t,
+    fetch_records_t,
+    fetch_t,
+    gone_t,
+    leaving_t,
+    log_t,
+    protocol_t,
+    recorded_t,
+    taken_t,
+    tick_record_t,
+)
 
-SUPERVISOR_CHANNEL = -1
-"""In a fetch: the tick records themselves, numbered by tick."""
 HEARD_AT_ONCE = 256  # messages of other programs, before the run's own have their turn again
 
 
@@ -167,17 +178,14 @@ class Gateway:
         return sequence
 
     def _receive_records(self) -> Steps[None]:
-        for channel, data in self._drain(self._records, sync.RECORD, sync.OPENS):
-            record = sync.decode_record(data)
-            if record.run == self._run and channel == sync.OPENS:
-                for change in record.changes:
-                    self._listen(facts_of(change.settings))
-                    self._announced = change.number
-                self._acknowledge()
-            elif record.run == self._run and record.tick >= self._next:
-                self._waiting[record.tick] = (record, data)
-            elif record.run == self._run:
-                self._acknowledge()
+        for channel, data in self._drain(self._records, sync.RECORD, sync.ANNOUNCE):
+            try:
+                if channel == sync.ANNOUNCE:
+                    self._hear_announcement(sync.decode_announcement(data))
+                else:
+                    self._hear_record(sync.decode_record(data), data)
+            except (MessageError, ValueError) as error:
+                self._complaints("fwk/record", f"{error}; refused")
         while self._next in self._waiting:
             record, data = self._waiting.pop(self._next)
             if not (yield from self._take(record, data)):
@@ -185,11 +193,38 @@ class Gateway:
             self._next += 1
             self._acknowledge()
 
+    def _hear_announcement(self, announcement: announcement_t) -> None:
+        if announcement.run == self._run:
+            self._listen(facts_in(announcement.change))
+            self._announced = announcement.change.number
+            self._acknowledge()
+
+    def _hear_record(self, record: tick_record_t, data: bytes) -> None:
+        if record.run != self._run:
+            return
+        self._check(record)
+        if record.tick >= self._next:
+            self._waiting[record.tick] = (record, data)
+        else:
+            self._acknowledge()
+
+    def _check(self, record: tick_record_t) -> None:
+        """Raises ValueError or MessageError for a record that names what the plan does not have."""
+        channels = len(self._plan.channels) + self._plan.spare_channels
+        facts = [fact for change in record.channels for fact in facts_in(change)]
+        named = [*record.channel, *(each.channel for each in record.voids)]
+        named += [fact.opening.channel for fact in facts if fact.opening]
+        if record.version != protocol_t.VERSION:
+            raise MessageError(f"protocol version {record.version}, this gateway has {protocol_t.VERSION}")
+        if any(not 0 <= channel < channels for channel in named):
+            raise MessageError("a tick record with a channel that the plan does not have")
+        if any(not 0 <= fact.component < len(self._plan.components) for fact in facts):
+            raise MessageError("a tick record with a component that the plan does not have")
+
     def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
         self.clock.tick, self.clock.now_us = record.tick, record.time_us
-        for change in record.changes:
-            if change.component == NOBODY:
-                self._open_channels(change)
+        for change in record.channels:
+            self._open_channels(change)
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         lacking = self._inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
@@ -223,9 +258,9 @@ class Gateway:
             self._network.watch(source)
         return complete
 
-    def _open_channels(self, change: change_t) -> None:
+    def _open_channels(self, change: channels_change_t) -> None:
         """What components opened at run time is collected as everything else."""
-        facts = facts_of(change.settings)
+        facts = facts_in(change)
         self.instances.apply(facts)
         self._listen(facts)
         opened = [fact for fact in facts if fact.opening and fact.opening.channel >= len(self._plan.channels)]
@@ -245,18 +280,16 @@ class Gateway:
                 self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
 
     def _acknowledge(self) -> None:
-        done = done_t()
-        done.run, done.host, done.incarnation = self._run, self._ports.gateway, self._announced
-        done.tick, done.stage, done.next_time_us = self._next - 1, -1, -1
+        recorded = recorded_t()
+        recorded.run, recorded.tick, recorded.change = self._run, self._next - 1, self._announced
         marks = self._outside.marks
-        done.n_marks, done.channel, done.sequence = len(marks), list(marks), list(marks.values())
-        self._sender.publish(sync.DONE, sync.encode_done(done), self._ports.sync)
+        recorded.channel, recorded.sequence = list(marks), list(marks.values())
+        self._sender.publish(sync.RECORDED, sync.encode_recorded(recorded), self._ports.sync)
 
     def _ask_for_records(self) -> None:
-        fetch = fetch_t()
-        fetch.run, fetch.host, fetch.channel = self._run, self._ports.gateway, SUPERVISOR_CHANNEL
-        fetch.first_sequence, fetch.last_sequence = self._next, min(self._waiting) - 1
-        self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.supervisor)
+        fetch = fetch_records_t()
+        fetch.run, fetch.first_tick, fetch.last_tick = self._run, self._next, min(self._waiting) - 1
+        self._sender.send(sync.FETCH_RECORDS, fetch.encode(), self._ports.supervisor)
 
     def _receive_lines(self) -> None:
         for _, data in self._drain(self._lines, b"fwk/log", anybody=True):
@@ -295,14 +328,14 @@ class Gateway:
                     gone = gone_t.decode(data)
                     if gone.run == self._run:
                         self._give_up(gone)
-                elif name == sync.DONE:
-                    self._see_off(sync.decode_done(data))
+                elif name == sync.LEAVING:
+                    self._see_off(sync.decode_leaving(data))
                 elif name == b"fwk/fetch":
                     fetch = fetch_t.decode(data)
                     if fetch.run == self._run and fetch.channel in self._inputs:
                         self._answer_for(fetch)
                 else:
-                    raise MessageError("neither gone, fetch nor done")
+                    raise MessageError("neither gone, fetch nor leaving")
             except (MessageError, ValueError, struct.error) as error:
                 self._complaints("fwk/fetch", f"{error}; refused")
         try:
@@ -314,17 +347,16 @@ class Gateway:
             self._open = False
         return self._open
 
-    def _see_off(self, done: done_t) -> None:
+    def _see_off(self, leaving: leaving_t) -> None:
         """A host leaves as soon as everything that it has sent is here; it repeats itself until it is."""
-        if done.run != self._run or not 0 <= done.host < len(self._plan.hosts):
+        if leaving.run != self._run or not 0 <= leaving.host < len(self._plan.hosts):
             return
-        marks = [
-            pair for pair in zip(done.channel, done.sequence, strict=True) if 0 <= pair[0] < len(self._plan.channels)
-        ]
-        if self._inputs.have(marks):
-            port = self._ports.host(done.host)
-            done.host = self._ports.gateway
-            self._sender.send(sync.DONE, sync.encode_done(done), port)
+        marks = zip(leaving.channel, leaving.sequence, strict=True)
+        if self._inputs.have([pair for pair in marks if 0 <= pair[0] < len(self._plan.channels)]):
+            taken = taken_t()
+            taken.run, taken.taker, taken.incarnation = self._run, self._ports.gateway, leaving.incarnation
+            taken.kind, taken.tick = done_t.FINAL, leaving.tick
+            self._sender.send(sync.TAKEN, taken.encode(), self._ports.host(leaving.host))
 
     def _answer_for(self, fetch: fetch_t) -> None:
         """Answers in place of a writer that has left the run, or was started again and asked for what was before.

@@ -9,9 +9,9 @@ from fwk.host.inputs import Inputs
 from fwk.lcm import envelope, messages
 from fwk.model.plan import ChannelPlan
 from fwk.model.ports import Ports
-from lcmtypes.core import tick_record_t
+from lcmtypes.core import header_t, tick_record_t
 
-STAGE = -1
+STAGE = header_t.OUTSIDE
 """In the header of what came from outside: it is visible from the beginning of a tick on."""
 WRITER = "outside"
 WAITING_MAX = 64

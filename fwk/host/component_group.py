@@ -1,7 +1,7 @@
 """The components of a process: what each gets, their iterations, and what they wrote."""
 
 import json
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib import import_module
 
 from pydantic import ValidationError
@@ -10,15 +10,17 @@ from fwk.component.declaration import declaration
 from fwk.component.log import Logger
 from fwk.component.port import DeclarationError
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.engine.runner import MISSED_FRAMES, Runner, Surroundings
+from fwk.engine.runner import LOST_FRAMES, Runner, Surroundings
 from fwk.host.assignment import Assignment
 from fwk.host.failures import Blame
 from fwk.host.hot_reload import check_unchanged
 from fwk.host.metrics import Figures
-from fwk.model.channel_table import Fact, Instances, Opening, facts_of
+from fwk.model.channel_table import Fact, Instances, Opening, facts_in, facts_of
+from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
+from fwk.model.requests import channel_request, lost_frame, main_loop_request, plugin_request
 from fwk.plan.wiring.start_order import start_order
-from lcmtypes.core import change_t, log_t, tick_t
+from lcmtypes.core import channels_change_t, done_t, log_t, settings_change_t, tick_t
 
 
 class Members:
@@ -95,21 +97,19 @@ class Members:
                 waiting = self._waiting[name]
                 waiting[channel] = waiting[channel] + arrived if channel in waiting else arrived
 
-    def configure(self, changes: Sequence[change_t]) -> None:
-        """Takes over changes of settings, each once."""
-        for change in changes:
-            if change.component == NOBODY:
-                continue
+    def configure(self, settings: Sequence[settings_change_t], channels: Sequence[channels_change_t]) -> None:
+        """Takes over changes of settings, each once; those of channels have been taken over by then."""
+        for change in settings:
             plan = self._plan.components[change.component]
             if plan.name in self.runners and change.number > self._configured:
                 with self._blame.guard(plan.name, "config_changed"):
-                    self.runners[plan.name].configure(json.loads(change.settings))
-        self._configured = max(self._configured, *(change.number for change in changes))
+                    self.runners[plan.name].configure(value_of(change.values))
+        newest = [change.number for change in settings] + [change.number for change in channels]
+        self._configured = max([self._configured, *newest])
 
-    def news(self, changes: Sequence[change_t]) -> list[Fact]:
-        """What changed on the blackboard and was not taken over yet."""
-        new = [change for change in changes if change.component == NOBODY and change.number > self._configured]
-        return [fact for change in new for fact in facts_of(change.settings)]
+    def news(self, changes: Sequence[channels_change_t]) -> list[Fact]:
+        """Returns the decisions about channels that were not taken over yet."""
+        return [fact for change in changes if change.number > self._configured for fact in facts_in(change)]
 
     def take_over(self, fact: Fact) -> bool:
         """Takes over what was decided on the blackboard; whether somebody here reads the fact's channel after that."""
@@ -142,8 +142,13 @@ class Members:
             for runner in self._takers:
                 runner.main_loop.holder = name
 
-    def run(self, names: Sequence[str], stage: str, tick: tick_t) -> tuple[list[tuple[str, bytes]], int, int]:
-        """One iteration of each of these: what they wrote, when the next tick is (or -1), how long it took."""
+    def run(
+        self, names: Sequence[str], stage: str, tick: tick_t, place: int
+    ) -> tuple[list[tuple[str, bytes]], int, int]:
+        """One iteration of each of these: what they wrote, when the next tick is (or -1), how long it took.
+
+        `place` is the `stage` in the headers of what they write.
+        """
         written: list[tuple[str, bytes]] = []
         next_us = -1
         began_us = start_us = self._now_us()
@@ -153,7 +158,7 @@ class Members:
                 self._works(self._index[name])
             self._waiting[name] = {}
             try:
-                written += runner.iterate(tick.tick, tick.stage, stage, tick.time_us, waiting)
+                written += runner.iterate(tick.tick, place, stage, tick.time_us, waiting)
             except BaseException as error:
                 self._blame.make_room(error)
                 self._blame.put(name, f"loop, tick {tick.tick}", error)
@@ -166,20 +171,29 @@ class Members:
             self._works(NOBODY)
         return written, next_us, start_us - began_us
 
-    def wishes(self, names: Sequence[str]) -> str:
-        """What the iterations of these asked for, in a done's words; mostly empty."""
-        asked: dict[str, dict[str, object]] = {}
+    def put_requests(self, names: Sequence[str], done: done_t) -> None:
+        """Writes what the iterations of these components requested, and the frames that they lost, into a done."""
         for runner in self._wishing:
             if runner.name not in names:  # its stage comes later, as it would alone in its process
                 continue
-            for aspect, wish in runner.wishes().items():
-                asked.setdefault(aspect, {})[runner.name] = wish
-        return json.dumps(asked) if asked else ""
+            component, asked = self._index[runner.name], runner.wishes()
+            if (order := asked.get("main_loop")) is not None:
+                schedule = [self._plan.stages.index(stage) for stage in order]
+                done.main_loop.append(main_loop_request(component, schedule))
+            done.plugins += [plugin_request(component, *request) for request in asked.get("plugins", ())]
+            done.channels += [channel_request(component, request) for request in asked.get("blackboard", ())]
+            self._put_lost_frames(component, asked.get(LOST_FRAMES, {}), done)
 
-    def missed_frames(self) -> str:
-        """Frames that they did not get while they finalized, as in `wishes`."""
-        missed = {name: lost for name, runner in self.runners.items() if (lost := runner.missed_frames())}
-        return json.dumps({MISSED_FRAMES: missed}) if missed else ""
+    def put_lost_frames(self, done: done_t) -> None:
+        """Writes the frames that the components lost while they finalized into a done."""
+        for name, runner in self.runners.items():
+            self._put_lost_frames(self._index[name], runner.missed_frames(), done)
+
+    def _put_lost_frames(self, component: int, lost: Mapping[str, Sequence[int]], done: done_t) -> None:
+        cameras = {channel.name: channel.index for channel in self._plan.channels if channel.images} if lost else {}
+        done.lost_frames += [
+            lost_frame(component, cameras[channel], frame) for channel, frames in lost.items() for frame in frames
+        ]
 
     def finalize(self) -> tuple[list[tuple[str, bytes]], int]:
         """Finalizes them; returns what they wrote, and the tick that it is stamped with."""

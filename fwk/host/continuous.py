@@ -11,13 +11,14 @@ from fwk.host.assignment import Assignment
 from fwk.host.dynamic_channels import Opened
 from fwk.host.hooks import ProcessHooks
 from fwk.host.host import Host
-from lcmtypes.core import change_t, done_t, tick_t
+from fwk.lcm.messages import MessageError
+from lcmtypes.core import channels_change_t, done_t, header_t, protocol_t, settings_change_t, tick_t
 
 REPEAT_US = 2_000  # a done that was not taken is sent again after so long, later less and less often
 REPEAT_LONGEST_US = 100_000
 TAKEN_TIMEOUT_US = US_PER_S
 """How long a host that is stopped waits until its last iteration was taken."""
-_MOST = done_t.FINAL - 1  # iterations on the same marks
+_MOST = header_t.FINAL - 1  # iterations on the same marks
 
 
 class ContinuousHost(Host):
@@ -38,7 +39,9 @@ class ContinuousHost(Host):
         self._told: list[tick_t] = []  # not taken over yet
         self._tick: tick_t | None = None  # the newest one that was taken over
         self._moved: dict[int, ChannelBuffer] = {}  # in which something became visible since the last iteration
-        self._changes: dict[int, change_t] = {}  # of settings and of the blackboard by number, for the next iteration
+        # Changes by number, for the next iteration.
+        self._settings: dict[int, settings_change_t] = {}
+        self._channels: dict[int, channels_change_t] = {}
         self._runs = 0  # iterations on the marks of that tick
         self._due_us = 0  # wall time of the next iteration; who is late catches up one period at the most
         self._repeat_us = REPEAT_US
@@ -79,13 +82,16 @@ class ContinuousHost(Host):
     def _handle_message(self, channel: bytes, data: bytes) -> None:
         if channel == sync.TICK:
             tick: tick_t = sync.decode_tick(data)
+            if tick.version != protocol_t.VERSION:
+                raise MessageError(f"protocol version {tick.version}, this host has {protocol_t.VERSION}")
             if tick.run == self._assignment.run:
                 self._told.append(tick)
-        elif channel == sync.DONE:
-            done: done_t = sync.decode_done(data)
-            self._taken = self._taken or (done.tick, done.stage) == self._answered
+        elif channel == sync.TAKEN:
+            taken = sync.decode_taken(data)
+            is_last = taken.kind == done_t.ITERATION and (taken.tick, taken.iteration) == self._answered
+            self._taken = self._taken or is_last
             if self._shutdown:
-                self._shutdown.answered(done)
+                self._shutdown.answered(taken)
         else:
             super()._handle_message(channel, data)
 
@@ -108,16 +114,19 @@ class ContinuousHost(Host):
                 self.inputs.newest_only()
             for box in self._moved.values():
                 box.collect()
-            self._changes |= {change.number: change for change in tick.changes}  # told again until they are taken over
+            # Changes are told again until they are taken over.
+            self._settings |= {change.number: change for change in tick.settings}
+            self._channels |= {change.number: change for change in tick.channels}
             self._tick, self._runs = tick, 0
 
     def _run(self) -> Steps[None]:
         tick = self._tick
         assert tick
-        changes = [self._changes[number] for number in sorted(self._changes)]
-        self._changes = {}
-        if self._opened and changes:
-            self._open(self._opened, changes, tick)
+        settings = [self._settings[number] for number in sorted(self._settings)]
+        channels = [self._channels[number] for number in sorted(self._channels)]
+        self._settings, self._channels = {}, {}
+        if self._opened and channels:
+            self._open(self._opened, channels, tick)
         moved = list(self._moved.values())
         lacking = self.inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
@@ -126,20 +135,22 @@ class ContinuousHost(Host):
             self.inputs.forget_predecessor()
         self._moved = {}
         self._members.deliver(moved)
-        if changes:
-            self._members.configure(changes)
+        if settings or channels:
+            self._members.configure(settings, channels)
         self._members.tell_holder(tick.main_loop)
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         self._runs += 1
-        tick.stage = self._runs
+        number = self._runs  # a tick that comes meanwhile begins to count anew
         self._due_us = self._period_us + max(self._due_us, self._now_us() - self._period_us)
         with self._hooks.background(self._own, self._serve_in_background):
-            ran = self._members.run(self._names, "", tick)
-        self._answered, self._taken = (tick.tick, tick.stage), False
+            ran = self._members.run(self._names, "", tick, number)
+        self._answered, self._taken = (tick.tick, number), False
+        done = self._message
+        done.kind, done.tick, done.step, done.iteration = done_t.ITERATION, tick.tick, -1, number
         self._sent_us, self._repeat_us = self._now_us(), REPEAT_US
-        self._finish(tick, self._names, *ran)
+        self._finish(self._names, *ran)
 
-    def _open(self, opened: Opened, changes: Sequence[change_t], tick: tick_t) -> None:
+    def _open(self, opened: Opened, changes: Sequence[channels_change_t], tick: tick_t) -> None:
         """Before an iteration: what is open from now on. Of what is new it wants the newest alone, as of the tick."""
         new = opened.take_over(changes)
         self.inputs.advance(tick.channel, tick.sequence, tick.voids)

@@ -8,7 +8,7 @@ from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
 from fwk.model.channel_table import Instances, Opening
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
-from lcmtypes.core import change_t
+from lcmtypes.core import channels_change_t
 
 
 class Opened:
@@ -29,7 +29,7 @@ class Opened:
             if instance.writer
         }
 
-    def take_over(self, changes: Sequence[change_t]) -> list[ChannelBuffer]:
+    def take_over(self, changes: Sequence[channels_change_t]) -> list[ChannelBuffer]:
         """Before an iteration: what changed on the blackboard; returns boxes that are new."""
         new: list[ChannelBuffer] = []
         for fact in self._members.news(changes):

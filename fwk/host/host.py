@@ -1,6 +1,5 @@
 """The host process: answers each tick with one iteration of each of its components and one done."""
 
-import json
 import struct
 from collections.abc import Sequence
 
@@ -22,7 +21,8 @@ from fwk.host.outputs import Outputs
 from fwk.host.shutdown import Shutdown
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
-from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, tick_t
+from fwk.model.requests import clear_requests, lost_message
+from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, protocol_t, tick_t
 
 READY_REPORT_US = 100_000
 """How often a host reports that it is ready until its first tick comes."""
@@ -136,8 +136,12 @@ class Host:
         self._ignore_ticks(True)
         written, tick = self._members.finalize()
         before = self._done
-        self._publish(written, tick, done_t.FINAL, -1, 0, self._members.missed_frames())
-        self._shutdown = Shutdown(self._network, self._ports, self._sender, before, self._message, self._outputs.sent)
+        done = self._message
+        clear_requests(done)
+        done.kind, done.tick, done.step, done.iteration = done_t.FINAL, tick, -1, 0
+        self._members.put_lost_frames(done)
+        self._publish(written, -1, 0)
+        self._shutdown = Shutdown(self._network, self._ports, self._sender, before, done, self._outputs.sent)
         yield from self._shutdown.wait(self._handle_own)
 
     def _receive_tick(self, receiver: Receiver) -> tick_t | None:
@@ -149,6 +153,9 @@ class Host:
         except MessageError as error:
             receiver.refuse(str(error))
             return None
+        if tick.version != protocol_t.VERSION:
+            receiver.refuse(f"protocol version {tick.version}, this host has {protocol_t.VERSION}")
+            return None
         return tick if tick.run == self._assignment.run else None
 
     def _ignore_ticks(self, ignored: bool) -> None:
@@ -159,13 +166,13 @@ class Host:
     def _answer(self, tick: tick_t, stage: int) -> Steps[None]:
         if self._assignment.host in tick.absent:
             return
-        this = (tick.tick, tick.stage)
+        this = (tick.tick, tick.step)
         if this <= self._answered:
             if this == self._answered:
                 self._sender.publish(sync.DONE, self._done, self._ports.sync)
             return
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
-        new = self._opened.take_over(tick.changes) if self._opened and tick.changes else ()
+        new = self._opened.take_over(tick.channels) if self._opened and tick.channels else ()
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
         for box in new:
             box.skip_to(box.mark - 1)
@@ -177,11 +184,13 @@ class Host:
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
         self._members.deliver(moved)
-        if tick.changes:
-            self._members.configure(tick.changes)
+        if tick.settings or tick.channels:
+            self._members.configure(tick.settings, tick.channels)
         self._members.tell_holder(tick.main_loop)
         names = self._takes_part[stage]
-        self._finish(tick, names, *self._members.run(names, self._plan.stages[stage], tick))
+        done = self._message
+        done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, tick.step, 0
+        self._finish(names, *self._members.run(names, self._plan.stages[stage], tick, tick.step))
         self._answered = this
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
@@ -191,27 +200,19 @@ class Host:
         self._ignore_ticks(False)
         return complete
 
-    def _finish(
-        self, tick: tick_t, names: Sequence[str], written: list[tuple[str, bytes]], next_us: int, busy_us: int
-    ) -> None:
-        """Sends what these components wrote, and the done."""
-        wishes = self._members.wishes(names)
+    def _finish(self, names: Sequence[str], written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
+        """Sends what these components wrote, and the done, with their requests and what this host never got."""
+        done = self._message
+        clear_requests(done)
+        self._members.put_requests(names, done)
         if self.inputs.lost:
-            wishes = self._with_missed(wishes)
-        self._publish(written, tick.tick, tick.stage, next_us, busy_us, wishes)
+            done.lost = [lost_message(channel, sequence) for channel, sequence in self.inputs.missed()]
+        self._publish(written, next_us, busy_us)
 
-    def _with_missed(self, wishes: str) -> str:
-        """The recording says what this host never saw, so that a replay keeps it from its components, too."""
-        missed = self.inputs.missed()
-        return json.dumps({**json.loads(wishes or "{}"), "missed": missed}) if missed else wishes
-
-    def _publish(
-        self, written: list[tuple[str, bytes]], tick: int, stage: int, next_us: int, busy_us: int, wishes: str
-    ) -> None:
+    def _publish(self, written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
         marks = self._outputs.publish(written)
         done = self._message
-        done.tick, done.stage, done.next_time_us, done.busy_us = tick, stage, next_us, busy_us
-        done.wishes = wishes
+        done.next_time_us, done.busy_us = next_us, busy_us
         done.channel, done.sequence = list(marks), list(marks.values())
         self._done = sync.encode_done(done)
         self._sender.publish(sync.DONE, self._done, self._sync_port)
@@ -230,8 +231,8 @@ class Host:
             fetch = fetch_t.decode(data)
             if fetch.run == self._assignment.run:
                 self._outputs.answer(fetch)
-        elif channel == sync.DONE and self._shutdown:
-            self._shutdown.answered(sync.decode_done(data))
+        elif channel == sync.TAKEN and self._shutdown:
+            self._shutdown.answered(sync.decode_taken(data))
         elif channel == b"fwk/gone":
             gone = gone_t.decode(data)
             if gone.run == self._assignment.run:

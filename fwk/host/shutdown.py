@@ -6,7 +6,7 @@ from fwk.bus import sync
 from fwk.bus.network import Network, Steps
 from fwk.bus.sender import Sender
 from fwk.model.ports import Ports
-from lcmtypes.core import done_t
+from lcmtypes.core import done_t, leaving_t, taken_t
 
 REPEAT_US = 5_000
 TIMEOUT_US = 500_000
@@ -16,8 +16,8 @@ TIMEOUT_US = 500_000
 class Shutdown:
     """Repeats the last dones until the supervisor has taken the final one and the gateway holds every message.
 
-    No process can be asked again once it has ended. Supervisor and gateway send the final done back, each with its own
-    number as host.
+    No process can be asked again once it has ended. Supervisor and gateway answer with a `taken_t`, each with its own
+    number.
     """
 
     def __init__(
@@ -34,17 +34,17 @@ class Shutdown:
         self._sender = sender
         self._before = before
         self._final = sync.encode_done(final)
-        everything = done_t()
+        everything = leaving_t()
         everything.run, everything.host, everything.incarnation = final.run, final.host, final.incarnation
-        everything.tick, everything.stage, everything.next_time_us = final.tick, done_t.FINAL, -1
-        everything.n_marks, everything.channel, everything.sequence = len(sent), list(sent), list(sent.values())
-        self._everything = sync.encode_done(everything)
-        self._unanswered = {final.host, ports.gateway}
+        everything.tick, everything.n_marks = final.tick, len(sent)
+        everything.channel, everything.sequence = list(sent), list(sent.values())
+        self._everything = everything.encode()
+        self._unanswered = {taken_t.SUPERVISOR, ports.gateway}
 
-    def answered(self, done: done_t) -> None:
-        """Takes a final done that supervisor or gateway sent back."""
-        if done.stage == done_t.FINAL:
-            self._unanswered.discard(done.host)
+    def answered(self, taken: taken_t) -> None:
+        """Takes an answer to the final done."""
+        if taken.kind == done_t.FINAL:
+            self._unanswered.discard(taken.taker)
 
     def wait(self, handle_own: Callable[[], object]) -> Steps[None]:
         """Waits until both have answered; meanwhile `handle_own` answers fetches."""
@@ -62,8 +62,8 @@ class Shutdown:
     def _send(self) -> None:
         gateway = self._ports.gateway
         if gateway in self._unanswered:
-            self._sender.send(sync.DONE, self._everything, self._ports.host(gateway))
-        if self._unanswered - {gateway}:
+            self._sender.send(sync.LEAVING, self._everything, self._ports.host(gateway))
+        if taken_t.SUPERVISOR in self._unanswered:
             if self._before:  # the supervisor takes dones in their order
                 self._sender.publish(sync.DONE, self._before, self._ports.sync)
             self._sender.publish(sync.DONE, self._final, self._ports.sync)

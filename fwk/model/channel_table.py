@@ -5,11 +5,13 @@ from bisect import insort
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 from fwk.lcm import envelope, messages
 from fwk.model.plan import NOBODY, Plan
+from lcmtypes.core import channel_fact_t, channels_change_t
 
+FactKind = Literal["read", "write", "close", "refuse", "come", "go"]
 EventKind = Literal[
     "instance_created", "instance_destroyed", "writer_added", "writer_removed", "reader_added", "reader_removed"
 ]
@@ -53,7 +55,7 @@ class Fact:
     component takes part in the run, or does not any more, and with it goes everything that it had opened.
     """
 
-    kind: Literal["read", "write", "close", "refuse", "come", "go"]
+    kind: FactKind
     component: int
     handle: int = 0
     opening: Opening | None = None
@@ -256,7 +258,7 @@ def _opening(component: int, handle: int, instance: Instance) -> Opening:
 
 
 def facts_of(text: str) -> list[Fact]:
-    """Facts as they travel.
+    """Reads facts from the text that a starting host gets.
 
     Raises:
         ValueError, TypeError, LookupError: the text is something else.
@@ -265,5 +267,73 @@ def facts_of(text: str) -> list[Fact]:
 
 
 def text_of(facts: Iterable[Fact]) -> str:
-    """Facts, to travel."""
+    """Writes facts as the text that a starting host gets."""
     return json.dumps([fact.plain() for fact in facts], separators=(",", ":"))
+
+
+_KINDS: dict[str, int] = {
+    "read": channel_fact_t.READ,
+    "write": channel_fact_t.WRITE,
+    "close": channel_fact_t.CLOSE,
+    "refuse": channel_fact_t.REFUSE,
+    "come": channel_fact_t.COME,
+    "go": channel_fact_t.GO,
+}
+_KIND_NAMES = {number: name for name, number in _KINDS.items()}
+
+
+def change_message(number: int, facts: Iterable[Fact]) -> channels_change_t:
+    """Returns the facts of one boundary as they are sent and recorded."""
+    made = channels_change_t()
+    made.number, made.facts = number, [_fact_message(fact) for fact in facts]
+    made.n = len(made.facts)
+    return made
+
+
+def facts_in(change: channels_change_t) -> list[Fact]:
+    """Returns the facts of a change.
+
+    Raises:
+        ValueError: a fact is of an unknown kind.
+    """
+    return [_fact_in(message) for message in change.facts]
+
+
+def fingerprint_number(text: str) -> int:
+    """Returns the fingerprint of a type, given as 16 hexadecimal digits, as a signed number."""
+    return int.from_bytes(bytes.fromhex(text), "big", signed=True)
+
+
+def fingerprint_text(number: int) -> str:
+    """Returns a fingerprint as 16 hexadecimal digits."""
+    return number.to_bytes(8, "big", signed=True).hex()
+
+
+def _fact_message(fact: Fact) -> channel_fact_t:
+    made = channel_fact_t()
+    made.kind, made.component, made.handle, made.channel = _KINDS[fact.kind], fact.component, fact.handle, -1
+    made.reason = fact.reason
+    if opening := fact.opening:
+        made.channel, made.name, made.type_name = opening.channel, opening.name, opening.type_name
+        made.sequence = opening.sequence
+        made.fingerprint = fingerprint_number(opening.fingerprint) if opening.fingerprint else 0
+    return made
+
+
+def _fact_in(message: channel_fact_t) -> Fact:
+    kind = _KIND_NAMES.get(message.kind)
+    if kind is None:
+        raise ValueError(f"channel fact of the unknown kind {message.kind}")
+    opening = None
+    if kind in ("read", "write", "close"):
+        fingerprint = fingerprint_text(message.fingerprint) if message.fingerprint else ""
+        opening = Opening(
+            message.component,
+            message.handle,
+            message.channel,
+            message.name,
+            message.type_name,
+            fingerprint,
+            message.sequence,
+        )
+    return Fact(cast(FactKind, kind), message.component, message.handle, opening, message.reason)

@@ -9,7 +9,7 @@ from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.lcm.event_log import LogWriter
 from fwk.model.plan import Plan
-from lcmtypes.core import plan_t
+from lcmtypes.core import plan_t, protocol_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
 
@@ -20,6 +20,7 @@ class Recorder:
     def __init__(self, plan: Plan, path: Path, report: Callable[[str], None]) -> None:
         self._writer = LogWriter(path, report)
         first = plan_t()
+        first.version = protocol_t.VERSION
         first.json = json.dumps(plan.to_json())
         self._writer.append("fwk/plan", first.encode(), 0)
         self._report = report

@@ -1,22 +1,26 @@
 """What components ask of the blackboard on its way into the run: decided between two ticks, told, recorded."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
+from fwk.bus.sync import place_of
 from fwk.component.log import Logger
 from fwk.engine.channel_grants import Openings
 from fwk.engine.visibility import Ledger
 from fwk.model.channel_table import Fact, text_of
 from fwk.model.plan import Plan
+from fwk.model.requests import channel_request_of
 from fwk.supervisor.processes.host_process import Change, HostEntry
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.requests import Wishes
 from lcmtypes.core import done_t
 
 
 class Opening:
     """Of a run in which components may open channels; `change` makes a decision part of the tick that is to begin."""
 
-    def __init__(self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[str], Change], log: Logger) -> None:
+    def __init__(
+        self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[Sequence[Fact]], Change], log: Logger
+    ) -> None:
         self._plan = plan
         self._hosts = hosts
         self._ledger = ledger
@@ -34,10 +38,13 @@ class Opening:
         """The blackboard as it is, for a host that starts."""
         return text_of(self._openings.instances.snapshot())
 
-    def ask(self, done: done_t, wishes: Wishes) -> None:
-        """Takes what components of a host ask for."""
-        for name, asked in wishes.get("blackboard", {}).items():
-            self._openings.ask(done.tick, done.stage, name, asked)
+    def ask(self, done: done_t) -> None:
+        """Takes the requests for dynamic channels in a done."""
+        asked: dict[str, list[list[Any]]] = {}
+        for request in done.channels:
+            asked.setdefault(self._plan.components[request.component].name, []).append(channel_request_of(request))
+        for name, requests in asked.items():
+            self._openings.ask(done.tick, place_of(done), name, requests)
 
     def came(self, entry: HostEntry) -> None:
         """A host takes part in the run from now on."""
@@ -55,7 +62,7 @@ class Opening:
         announced = None
         if facts:
             written = {fact.opening.channel for fact in facts if fact.kind == "write" and fact.opening}
-            change = self._change(text_of(map(self._numbered, facts)))
+            change = self._change([self._numbered(fact) for fact in facts])
             announced = None if written <= self._written else change
             self._written |= written
             self._ledger.opened(self._openings.instances)

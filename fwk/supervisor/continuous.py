@@ -7,9 +7,10 @@ from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from fwk.model.tick_events import TickTold
 from fwk.supervisor.processes.host_process import HostEntry
-from fwk.supervisor.tick_log import Records, change_message, void_messages
-from lcmtypes.core import done_t, tick_event_t, tick_t
+from fwk.supervisor.tick_log import Records, put_changes, void_messages
+from lcmtypes.core import done_t, protocol_t, taken_t, tick_t
 
 _TICKS_KEPT = 4096
 
@@ -40,17 +41,17 @@ class Continuous:
         """A tick begins: from now on these marks count."""
         step = self._ledger.begin()
         self._steps.append((tick, step))
-        self._records.event(tick_event_t.TOLD, 0)
+        self._records.event(TickTold())
         for entry in self.entries:
             if entry.state == "running":
                 self._sender.send(sync.TICK, self._message(entry, tick, time_us, main_loop), self._port(entry))
 
     def take(self, entry: HostEntry, done: done_t) -> bool:
         """An iteration has ended; false if it is known already, or no continuous one's."""
-        if entry.index not in self.hosts:
+        if entry.index not in self.hosts or done.kind != done_t.ITERATION:
             return False
-        self._sender.send(sync.DONE, sync.encode_done(done), self._port(entry))
-        this = (done.incarnation, done.tick, done.stage)
+        self._sender.send(sync.TAKEN, sync.taken(done, taken_t.SUPERVISOR), self._port(entry))
+        this = (done.incarnation, done.tick, done.iteration)
         if this <= self._taken.get(entry.index, (0, 0, 0)):
             return False
         self._taken[entry.index] = this
@@ -62,11 +63,9 @@ class Continuous:
 
     def _message(self, entry: HostEntry, tick: int, time_us: int, main_loop: int) -> bytes:
         made = tick_t()
-        made.run, made.tick, made.time_us, made.main_loop = self._run, tick, time_us, main_loop
+        made.version, made.run, made.tick, made.step = protocol_t.VERSION, self._run, tick, -1
+        made.time_us, made.main_loop = time_us, main_loop
         made.channel, made.sequence = self._ledger.news_of(entry.index, entry.seen)
-        made.n_marks = len(made.channel)
         made.voids = void_messages(self._ledger, entry.seen)
-        made.n_voids = len(made.voids)
-        made.changes = [change_message(change) for change in entry.changes]
-        made.n_changes = len(made.changes)
+        put_changes(made, entry.changes)
         return sync.encode_tick(made)

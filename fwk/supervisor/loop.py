@@ -1,15 +1,30 @@
 """The main loop: one barrier a stage, in lockstep or in real time."""
 
-import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
 from fwk.bus.sender import Sender
 from fwk.component.log import Logger
 from fwk.engine.visibility import Ledger
+from fwk.lcm.messages import MessageError
+from fwk.model.channel_table import Fact
 from fwk.model.plan import NOBODY, Plan
 from fwk.model.ports import Ports
+from fwk.model.requests import mistake_in
+from fwk.model.tick_events import (
+    ChannelsChanged,
+    FinalDone,
+    HostLate,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    IterationDone,
+    MainLoopGiven,
+    OutsideTaken,
+    StageBegun,
+    StageDone,
+)
 from fwk.supervisor.channel_requests import Opening
 from fwk.supervisor.continuous import Continuous
 from fwk.supervisor.event_loop import EventLoop
@@ -17,14 +32,13 @@ from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.loss_report import Missed
 from fwk.supervisor.processes.host_process import Change, HostEntry
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.requests import Wishes
 from fwk.supervisor.retransmission_timeout import Patience
 from fwk.supervisor.run_clock import Pace
 from fwk.supervisor.schedule import Turns
 from fwk.supervisor.sync_receiver import SyncReceiver
 from fwk.supervisor.tick_log import Records, void_messages
 from fwk.supervisor.tick_sender import Telling
-from lcmtypes.core import done_t, tick_event_t
+from lcmtypes.core import done_t, recorded_t, taken_t
 
 REPEAT_LONGEST_US = 100_000
 LOOK_US = 20_000  # how often to look after hosts that are being started again, while a stage waits
@@ -58,8 +72,8 @@ class MainLoop:
         self.late = 0
         self.stands = False
         """Whether the run is paused and its newest tick has ended."""
-        self.on_wishes: Callable[[done_t, Wishes], None] = lambda _done, _wishes: None
-        """Called with a done in which components ask for something, and with what they ask."""
+        self.on_requests: Callable[[done_t], None] = lambda _: None
+        """Called with each done that is taken."""
         self.on_boundary: Callable[[int], None] = lambda _: None
         """Called with the number of the tick that is about to begin; it may change settings, start and stop hosts."""
         self.on_wait: Callable[[], None] = lambda: None
@@ -74,7 +88,6 @@ class MainLoop:
         self._log = log
         self._interrupted = interrupted
         self._ports = Ports.of(plan)
-        self._gateway = self._ports.gateway
         self._lockstep = plan.clock == "simulated"
         self._window = WINDOW if self._lockstep else max(WINDOW, REAL_TIME_WINDOW_US // plan.period_us)
         self._stage_time_us = plan.stage_time_us or plan.period_us
@@ -93,16 +106,18 @@ class MainLoop:
         self._came_in: dict[int, int] = {}  # marks of messages from outside, visible from the next tick on
         self.records = Records(self._ports, run, sender, events)
         self._telling = Telling(run, self._ports, ledger, sender)
-        self._missed = Missed(plan, self.records)
+        self._missed = Missed(self.records)
         continuous = Continuous(plan, run, hosts.table, ledger, sender, self.records)
         self._continuous = continuous if continuous.entries else None
         opens = any(component.opens for component in plan.components)
         self.opening = Opening(plan, hosts, ledger, self._change_blackboard, log) if opens else None
         if self.opening:
             hosts.blackboard = self.opening.snapshot
+        self._sizes = len(plan.components), len(plan.channels) + plan.spare_channels, len(plan.stages)
         self.newest_change = 0
         """Number of the newest change of settings, or of the blackboard."""
         receiver.on_done = self._on_done
+        receiver.on_recorded = self._on_recorded
         hosts.on_started = self._on_started
         hosts.on_lost = self._on_lost
         hosts.on_stopped = self._on_stopped
@@ -125,16 +140,16 @@ class MainLoop:
         """At a tick boundary: new settings of a component, which its next iteration has."""
         self._tell(component, settings, [self._hosts.table[self._plan.components[component].host]])
 
-    def _change_blackboard(self, facts: str) -> Change:
+    def _change_blackboard(self, facts: Sequence[Fact]) -> Change:
         """At a tick boundary: what is open from the next tick on."""
         concerned = [self._hosts.table[host] for host in {each.host for each in self._plan.components if each.opens}]
-        change = self._tell(NOBODY, facts, concerned)
-        self.records.event(tick_event_t.OPENED, 0, self.newest_change)
+        change = self._tell(NOBODY, "", concerned, facts)
+        self.records.event(ChannelsChanged(self.newest_change))
         return change
 
-    def _tell(self, component: int, text: str, concerned: list[HostEntry]) -> Change:
+    def _tell(self, component: int, settings: str, concerned: list[HostEntry], facts: Sequence[Fact] = ()) -> Change:
         self.newest_change += 1
-        change = Change(component, self.newest_change, text, self._ledger.step + 1)
+        change = Change(component, self.newest_change, settings, self._ledger.step + 1, facts)
         self.records.change(change)
         for entry in concerned:
             if entry.alive:
@@ -193,9 +208,7 @@ class MainLoop:
     def _decide(self) -> None:
         """At the boundary: who has the main loop from the next tick on."""
         if self.turns.decide(self.tick + 1):
-            component = self.turns.holder
-            host = self._plan.components[component].host if component != NOBODY else 0
-            self.records.event(tick_event_t.MAIN_LOOP, host, component)
+            self.records.event(MainLoopGiven(self.turns.holder))
 
     def _members(self, entry: HostEntry) -> tuple[int, ...]:
         return self._plan.hosts[entry.index].components
@@ -207,7 +220,7 @@ class MainLoop:
         if moved:
             for channel, number in moved.items():
                 self.records.mark(channel, number)
-            self.records.event(tick_event_t.DONE, self._gateway, self.tick, -1)
+            self.records.event(OutsideTaken())
 
     def _run_stage(self, stage: int, members: list[HostEntry], time_us: int) -> Steps[None]:
         self._step = self._ledger.begin()
@@ -216,7 +229,7 @@ class MainLoop:
             self._outstanding = {entry.index for entry in members if entry.expected}
         else:
             self._outstanding = {entry.index for entry in members if entry.state == "running" and not entry.busy}
-        self.records.event(tick_event_t.STAGE, stage, 0, self._place)
+        self.records.event(StageBegun(stage, self._place))
         self._broadcast(members, time_us)
         began_us = sent_us = self._began_us = self._events.now_us()
         first_us = self._patience[stage].wait_us
@@ -278,25 +291,27 @@ class MainLoop:
                 self._log.warning(f"{entry.name}: shall stop, but {entry.reason}")
                 self._hosts.kill(entry)
 
+    def _on_recorded(self, recorded: recorded_t) -> None:
+        self.records.taken = max(self.records.taken, recorded.tick)
+        self.records.heard = max(self.records.heard, recorded.change)
+        for channel, sequence in zip(recorded.channel, recorded.sequence, strict=True):
+            self._came_in[channel] = max(sequence, self._came_in.get(channel, 0))
+
     def _on_done(self, done: done_t) -> None:
-        if done.host == self._gateway:
-            self.records.taken = max(self.records.taken, done.tick)
-            self.records.heard = max(self.records.heard, done.incarnation)
-            for channel, sequence in zip(done.channel, done.sequence, strict=True):
-                self._came_in[channel] = max(sequence, self._came_in.get(channel, 0))
-            return
+        if mistake := mistake_in(done, *self._sizes):
+            raise MessageError(f"done of host {done.host}: {mistake}")
         entry = self._hosts.table[done.host]
-        if done.stage == done_t.FINAL:
+        if done.kind == done_t.FINAL:
             self._on_final_done(entry, done)
             return
         if done.incarnation != entry.incarnation or not entry.alive:  # what the dead have sent is void already
             if done.incarnation == entry.incarnation and entry.state == "stopping":
                 self._on_last_done(entry, done)
             return
-        if entry.busy == (done.tick, done.stage):
+        if entry.busy and entry.busy == _step_of(done):
             entry.busy = None
             self.times.on_time_again(entry, done.tick, done.busy_us)
-        elif (done.tick, done.stage) == (self.tick, self._place) and done.host in self._outstanding:
+        elif _step_of(done) == (self.tick, self._place) and done.host in self._outstanding:
             self._outstanding.discard(done.host)
             entry.seen = self._step
             self.times.answered(done.host, self._stage, done.busy_us, self.tick)
@@ -308,7 +323,7 @@ class MainLoop:
 
     def _on_last_done(self, entry: HostEntry, done: done_t) -> None:
         """Of one that leaves the loop: of the iteration that it was late with."""
-        if entry.busy == (done.tick, done.stage):
+        if entry.busy and entry.busy == _step_of(done):
             entry.busy = None
         elif not self._continuous or not self._continuous.take(entry, done):
             return
@@ -321,7 +336,7 @@ class MainLoop:
         """
         if done.incarnation != entry.incarnation or (entry.busy and entry.busy[0] <= done.tick):
             return
-        self._sender.send(sync.DONE, sync.encode_done(done), self._ports.host(entry.index))
+        self._sender.send(sync.TAKEN, sync.taken(done, taken_t.SUPERVISOR), self._ports.host(entry.index))
         if entry.state == "stopping" and entry.index in self._hosts.leaving:
             self._hosts.leaving.discard(entry.index)
             self._take(done)
@@ -333,27 +348,30 @@ class MainLoop:
             self.records.mark(channel, sequence)
         if done.next_time_us >= 0:
             self.pace.source(done.next_time_us)
-        if done.wishes:
-            wishes = json.loads(done.wishes)
-            self._missed.take(done, wishes)
-            self.turns.ask(done, wishes)
-            if self.opening:
-                self.opening.ask(done, wishes)
-            self.on_wishes(done, wishes)
-        self.records.event(tick_event_t.DONE, done.host, done.tick, done.stage)
+        self._missed.take(done)
+        self.turns.ask(done)
+        if self.opening:
+            self.opening.ask(done)
+        self.on_requests(done)
+        if done.kind == done_t.FINAL:
+            self.records.event(FinalDone(done.host, done.tick))
+        elif done.kind == done_t.ITERATION:
+            self.records.event(IterationDone(done.host, done.tick, done.iteration))
+        else:
+            self.records.event(StageDone(done.host, done.tick, done.step))
 
     def _leave_behind(self, members: list[HostEntry], stage: int) -> None:
         for entry in members:
             if entry.index in self._outstanding:
                 entry.busy, entry.seen = (self.tick, self._place), self._step
                 self._telling.owe(entry, members, stage)
-                self.records.event(tick_event_t.LATE, entry.index)
+                self.records.event(HostLate(entry.index))
                 self.late += not entry.held
                 self.times.late(entry, stage, self.tick, self._stage_time_us)
         self._outstanding = set()
 
     def _on_started(self, entry: HostEntry) -> None:
-        self.records.event(tick_event_t.STARTED, entry.index, entry.started_with, entry.incarnation)
+        self.records.event(HostStarted(entry.index, entry.incarnation, entry.started_with))
         if entry.incarnation > 1:
             self._log.info(f"{entry.name} runs again, start number {entry.incarnation}")
         self._again = True
@@ -361,13 +379,13 @@ class MainLoop:
             self.opening.came(entry)
 
     def _on_lost(self, entry: HostEntry) -> None:
-        self.records.event(tick_event_t.LOST, entry.index)
+        self.records.event(HostLost(entry.index))
         self._left(entry)
         if not self._lockstep or not entry.expected:
             self._outstanding.discard(entry.index)
 
     def _on_stopped(self, entry: HostEntry) -> None:
-        self.records.event(tick_event_t.STOPPED, entry.index)
+        self.records.event(HostStopped(entry.index))
         self._left(entry)
 
     def _left(self, entry: HostEntry) -> None:
@@ -383,3 +401,8 @@ class MainLoop:
         while not self._interrupted() and not self.pace.stands and begin_us > now_us():
             yield from self._events.wait_on_time(begin_us)
             begin_us = self.pace.begin_us(now_us())
+
+
+def _step_of(done: done_t) -> tuple[int, int] | None:
+    """Tick and step that a done of a stage answers; None for other dones."""
+    return (done.tick, done.step) if done.kind == done_t.STAGE else None

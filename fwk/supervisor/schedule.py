@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from fwk.bus.sync import place_of
 from fwk.component.log import Logger
 from fwk.component.main_loop import Holding
 from fwk.model.plan import NOBODY, Plan
 from fwk.supervisor.processes.host_process import HostEntry
-from fwk.supervisor.requests import Wishes
 from lcmtypes.core import done_t
 
 
@@ -46,10 +46,12 @@ class Turns:
         """Whether there is something to decide."""
         return self._holding.asked
 
-    def ask(self, done: done_t, wishes: Wishes) -> None:
-        """Takes what components of a host ask for."""
-        for name, order in wishes.get("main_loop", {}).items():
-            self._holding.ask(done.tick, done.stage, name, order)
+    def ask(self, done: done_t) -> None:
+        """Takes the requests for the main loop in a done."""
+        for request in done.main_loop:
+            order = [self._plan.stages[stage] for stage in request.schedule]
+            name = self._plan.components[request.component].name
+            self._holding.ask(done.tick, place_of(done), name, order)
 
     def left(self, host: int) -> None:
         """A host ended or leaves the loop."""

@@ -9,7 +9,7 @@ from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
 from fwk.supervisor.event_loop import EventLoop
-from lcmtypes.core import actual_t, done_t
+from lcmtypes.core import actual_t, done_t, recorded_t
 
 
 class SyncReceiver:
@@ -17,8 +17,9 @@ class SyncReceiver:
 
     def __init__(self, events: EventLoop, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
         self.on_done: Callable[[done_t], None] = lambda _: None
+        self.on_recorded: Callable[[recorded_t], None] = lambda _: None
         self.on_actual: Callable[[actual_t], None] = lambda _: None
-        self._first_host = ports.host(0)
+        self._first_host, self._gateway_port = ports.host(0), ports.host(ports.gateway)
         self._members = ports.members
         self._assembler = wire.Assembler()
         self._run = run
@@ -48,6 +49,8 @@ class SyncReceiver:
         channel, data = self._assembler.feed(datagram, source) or (b"", b"")
         if channel == sync.DONE:
             self._take_done(data, source)
+        elif channel == sync.RECORDED:
+            self._take_recorded(sync.decode_recorded(data), source)
         elif channel == b"fwk/actual":
             actual = actual_t.decode(data)
             self._check(actual, source)
@@ -62,6 +65,12 @@ class SyncReceiver:
         if done.run == self._run:
             self.on_done(done)
 
+    def _take_recorded(self, recorded: recorded_t, source: int) -> None:
+        if source != self._gateway_port:
+            raise MessageError(f"datagram from port {source}, which is not the gateway's")
+        if recorded.run == self._run:
+            self.on_recorded(recorded)
+
     def _check(self, message: done_t | actual_t, source: int) -> None:
-        if source - self._first_host != message.host:
+        if source - self._first_host != message.host or source == self._gateway_port:
             raise MessageError(f"datagram from port {source}, which is not host {message.host}'s")

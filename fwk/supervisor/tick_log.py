@@ -1,20 +1,23 @@
 """What the main loop decides in each tick, on its way to the gateway: kept, and sent again to who lacks it."""
 
 import contextlib
-import struct
+import json
 import sys
 from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
 from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.lcm.messages import MessageError
+from fwk.model.channel_table import change_message
+from fwk.model.plain_values import value_messages
 from fwk.model.ports import Ports
+from fwk.model.tick_events import TickEvent, events_message
 from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.processes.host_process import Change
-from lcmtypes.core import change_t, fetch_t, tick_record_t, void_t
+from lcmtypes.core import announcement_t, protocol_t, settings_change_t, tick_record_t, tick_t, void_t
 
 KEPT = 64  # ticks at the least: all that the gateway has not taken yet
 FIRST_WAIT_US = 20_000
@@ -35,14 +38,14 @@ class Records:
         self._sender = sender
         self._loop = events
         self._kept: deque[tuple[int, bytes]] = deque()
-        self._events: list[sync.Event] = []
+        self._events: list[TickEvent] = []
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
         events.watch(sender.socket, self._on_asked)
 
-    def event(self, kind: int, index: int, tick: int = 0, stage: int = 0) -> None:
-        """Something happened, as in core.tick_event_t."""
-        self._events.append((kind, index, tick, stage))
+    def event(self, event: TickEvent) -> None:
+        """Adds an event to the record of the running tick."""
+        self._events.append(event)
 
     def mark(self, channel: int, sequence: int) -> None:
         """A mark moves."""
@@ -57,14 +60,14 @@ class Records:
 
         It learns of them from the tick's record, too, but by then a writer may have sent something and died.
         """
-        record = tick_record_t()
-        record.run, record.changes, record.n_changes = self._run, [change_message(change)], 1
-        data = record.encode()
+        announcement = announcement_t()
+        announcement.run, announcement.change = self._run, change_message(change.number, change.facts)
+        data = announcement.encode()
         until_us = self._loop.now_us() + patience_us if patience_us else sys.maxsize
         wait_us, due_us = FIRST_WAIT_US, 0
         while self.heard < change.number and not interrupted() and (now_us := self._loop.now_us()) < until_us:
             if now_us >= due_us:
-                self._sender.publish(sync.OPENS, data, self._ports.record)
+                self._sender.publish(sync.ANNOUNCE, data, self._ports.record)
                 due_us = now_us + wait_us
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
             yield from self._loop.wait(min(due_us, until_us))
@@ -72,13 +75,12 @@ class Records:
     def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
         """Sends the record of a tick that has ended, and keeps it for a while."""
         record = tick_record_t()
-        record.run, record.tick, record.time_us = self._run, tick, time_us
+        record.version, record.run, record.tick, record.time_us = protocol_t.VERSION, self._run, tick, time_us
         record.channel, record.sequence = list(self._marks), list(self._marks.values())
-        record.n_marks = len(record.channel)
-        record.voids, record.n_voids = list(voids), len(voids)
-        record.changes = [change_message(change) for change in self._changes]
-        record.n_changes = len(record.changes)
-        data = sync.encode_record(record, self._events)
+        record.voids = list(voids)
+        put_changes(record, self._changes)
+        record.events = events_message(self._events)
+        data = sync.encode_record(record)
         self._events, self._marks, self._changes = [], {}, []
         self._kept.append((tick, data))
         while len(self._kept) > KEPT and self._kept[0][0] <= self.taken:
@@ -105,18 +107,28 @@ class Records:
                 self._sender.publish(sync.RECORD, data, self._ports.record)
 
     def _on_asked(self) -> None:
-        with contextlib.suppress(MessageError, ValueError, struct.error):  # a stranger's; hosts' complaints name it
+        with contextlib.suppress(MessageError):  # a stranger's; hosts' complaints name it
             message = self._sender.receive(self._ports.members)
-            if message and message[0] == b"fwk/fetch":
-                fetch = fetch_t.decode(message[1])
+            if message and message[0] == sync.FETCH_RECORDS:
+                fetch = sync.decode_fetch_records(message[1])
                 if fetch.run == self._run:
-                    self.repeat(fetch.first_sequence, fetch.last_sequence)
+                    self.repeat(fetch.first_tick, fetch.last_tick)
 
 
-def change_message(change: Change) -> change_t:
-    """New settings of a component, as they are told and recorded."""
-    made = change_t()
-    made.component, made.number, made.settings = change.component, change.number, change.settings
+def put_changes(message: tick_t | tick_record_t, changes: Iterable[Change]) -> None:
+    """Writes changes of settings and of channels into a tick or a tick record."""
+    message.settings, message.channels = [], []
+    for change in changes:
+        if change.facts:
+            message.channels.append(change_message(change.number, change.facts))
+        else:
+            message.settings.append(_settings_message(change))
+
+
+def _settings_message(change: Change) -> settings_change_t:
+    made = settings_change_t()
+    made.number, made.component = change.number, change.component
+    made.values = value_messages(json.loads(change.settings))
     return made
 
 

@@ -8,8 +8,8 @@ from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.model.ports import Ports
 from fwk.supervisor.processes.host_process import HostEntry
-from fwk.supervisor.tick_log import change_message, void_messages
-from lcmtypes.core import tick_t
+from fwk.supervisor.tick_log import put_changes, void_messages
+from lcmtypes.core import protocol_t, tick_t
 
 
 class Telling:
@@ -39,17 +39,13 @@ class Telling:
             return
         since = min(entry.seen for entry in told)
         tick = tick_t()
-        tick.run, tick.tick, tick.stage, tick.time_us = self._run, number, place, time_us
-        tick.main_loop = main_loop
+        tick.version, tick.run, tick.tick, tick.step = protocol_t.VERSION, self._run, number, place
+        tick.time_us, tick.main_loop = time_us, main_loop
         tick.channel, tick.sequence = self._ledger.news(stage, since)
-        tick.n_marks = len(tick.channel)
         tick.voids = void_messages(self._ledger, since)
-        tick.n_voids = len(tick.voids)
         tick.absent = [entry.index for entry in members if entry not in told]
-        tick.n_absent = len(tick.absent)
         changes = {change.number: change for entry in told for change in entry.changes}
-        tick.changes = [change_message(changes[number]) for number in sorted(changes)]
-        tick.n_changes = len(tick.changes)
+        put_changes(tick, [changes[number] for number in sorted(changes)])
         self._told = sync.encode_tick(tick)
         self._sender.publish(sync.TICK, self._told, self._ports.stage(stage))
 
@@ -60,7 +56,6 @@ class Telling:
         """
         tick: tick_t = sync.decode_tick(self._told)
         tick.absent = [other.index for other in members if other is not entry]
-        tick.n_absent = len(tick.absent)
         self._owed[entry.index] = (sync.encode_tick(tick), stage)
 
     def remind(self, table: Iterable[HostEntry]) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import psutil
 import pytest
 
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import MessageLost
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
 from tests.harness.fixtures import Launch
@@ -186,5 +186,5 @@ def test_in_real_time_it_is_lost_and_told_and_the_run_goes_on_and_replays(
     assert "f/player: d/note: 1 messages of 5 to 5 lost" in run.text
     assert re.search(r"messages and ticks: lost [1-9]", run.text), run.text
     assert re.search(r"recording: .*log.lcm; \d messages were lost on their way there", run.text), run.text
-    missed = [event for record in recording.records for event in record.events if event.kind == tick_event_t.MISSED]
-    assert {(event.index, event.tick) for event in missed} >= {(host, 5) for host in (0, 1, 2, 4, 5)}
+    lost = [event for _, event in recording.events if isinstance(event, MessageLost)]
+    assert {(event.host, event.sequence) for event in lost} >= {(host, 5) for host in (0, 1, 2, 4, 5)}

@@ -8,7 +8,11 @@ from hypothesis import strategies as some
 from fwk.bus import sync
 from fwk.lcm import messages
 from fwk.lcm.type_registry import by_fingerprint
-from lcmtypes.core import change_t, done_t, tick_event_t, tick_record_t, tick_t, void_t
+from fwk.model.channel_table import Fact, Opening, change_message
+from fwk.model.plain_values import value_messages
+from fwk.model.requests import channel_request, lost_frame, lost_message, main_loop_request, plugin_request
+from fwk.model.tick_events import HostLost, StageBegun, StageDone, TickTold, events_message
+from lcmtypes.core import channels_change_t, done_t, settings_change_t, tick_record_t, tick_t, void_t
 
 HOSTILE_TEXT = [
     "",
@@ -64,15 +68,21 @@ def all_types() -> list[type[messages.Message]]:
 
 def sync_messages() -> dict[type[messages.Message], bytes]:
     """A tick, a done and a record with something in every list."""
-    void, change, event = void_t(), change_t(), tick_event_t()
-    change.settings = '{"gain": 1}'
+    void, settings = void_t(), settings_change_t()
+    settings.values = value_messages({"gain": 1.0, "names": ["a", None, True]})
+    opening = Opening(0, 1, 2, "r/note", "robot.imu_t", "00" * 8)
+    channels: channels_change_t = change_message(3, [Fact("come", 0), Fact("write", 0, 1, opening)])
     tick, done, record = tick_t(), done_t(), tick_record_t()
-    tick.run, tick.tick, tick.stage = 5, 7, 3
+    tick.run, tick.tick, tick.step = 5, 7, 3
     for each in (tick, done, record):
         each.channel, each.sequence = [1, 2], [3, 4]
     tick.absent = [1]
-    tick.voids, tick.changes = [void], [change, change]
-    record.voids, record.changes, record.events = [void], [change], [event, event]
+    done.main_loop, done.plugins = [main_loop_request(1, [0, 0])], [plugin_request(1, "stop", ["r/*", "q"])]
+    done.channels, done.lost = [channel_request(1, ["close", 1])], [lost_message(1, 2)]
+    done.lost_frames = [lost_frame(1, 2, 3)]
+    tick.voids, tick.settings, tick.channels = [void], [settings, settings], [channels]
+    record.voids, record.settings, record.channels = [void], [settings], [channels]
+    record.events = events_message([StageBegun(1, 1), StageDone(0, 7, 1), HostLost(1), TickTold()])
     made: tuple[Any, ...] = (tick, done, record)
     return {type(each): messages.encode(each, "fwk") for each in made}
 

@@ -7,6 +7,7 @@ from typing import Any
 from fwk.lcm import type_registry as types
 from fwk.lcm.event_log import LogReader
 from fwk.lcm.messages import Header
+from fwk.model.tick_events import TickEvent, events_of
 from fwk.recording.compare import Comparison
 from lcmtypes.core import tick_record_t
 
@@ -18,9 +19,13 @@ class Recording:
         self.messages: dict[str, list[bytes]] = defaultdict(list)
         """By channel, without the framework's own."""
         self.records: list[tick_record_t] = []
+        self.events: list[tuple[int, TickEvent]] = []
+        """Tick events with their tick, in their order."""
         for event in LogReader(path):
             if event.channel == "fwk/record":
-                self.records.append(tick_record_t.decode(event.data))
+                record = tick_record_t.decode(event.data)
+                self.records.append(record)
+                self.events += [(record.tick, each) for each in events_of(record.events)]
             elif not event.channel.startswith("fwk/"):
                 self.messages[event.channel].append(event.data)
 

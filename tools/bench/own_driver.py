@@ -17,7 +17,7 @@ from typing import Any
 from fwk.bus.sockets import multicast_receiver
 from fwk.lcm import wire
 from fwk.model.ports import Ports
-from lcmtypes.core import status_t, tick_event_t, tick_record_t
+from lcmtypes.core import status_t, tick_record_t
 from tools.bench import accounting, fwk_launch_file, namespace
 from tools.bench.driver import RunFailed
 from tools.bench.environments import CORE, REPOSITORY
@@ -133,7 +133,7 @@ def _message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str)
 
 
 def _has_started(record: tick_record_t, host: int) -> bool:
-    return any(event.kind == tick_event_t.STARTED and event.index == host for event in record.events)
+    return host in record.events.started.host
 
 
 @contextmanager

@@ -1,7 +1,5 @@
 """A recording as the main loop saw it: ticks with their events, and the messages that each made visible."""
 
-import json
-import struct
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,16 +9,33 @@ from fwk.lcm.event_log import Event
 from fwk.lcm.messages import fingerprint
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import header_of
-from fwk.model.channel_table import facts_of
+from fwk.model.channel_table import Fact, facts_in
 from fwk.model.names import LINES
+from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, Plan
+from fwk.model.tick_events import (
+    ChannelsChanged,
+    FinalDone,
+    FrameLost,
+    HostLate,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    IterationDone,
+    MainLoopGiven,
+    MessageLost,
+    StageBegun,
+    StageDone,
+    TickEvent,
+    events_of,
+)
 from fwk.recording.pictures import FRAME, RecordedPicture, picture_of
-from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t
+from fwk.recording.versions import BROKEN, read_plan, read_record, record_type
+from lcmtypes.core import settings_change_t, tick_record_t
 
 PLAN = "fwk/plan"
 RECORD = "fwk/record"
-_BROKEN = (ValueError, struct.error, LookupError, TypeError, AttributeError, RecursionError)
-"""What reading plain data raises that is not what it should be."""
+_OF_A_HOST = (StageDone, IterationDone, FinalDone, HostStarted, HostLost, HostLate, HostStopped, MessageLost)
 
 
 class RecordingError(Exception):
@@ -32,6 +47,7 @@ class RecordedTick:
     """One tick: what the main loop did, and the messages that became visible in it."""
 
     record: tick_record_t
+    events: list[TickEvent]
     messages: dict[tuple[str, int, int], list[bytes]]
     """By channel and the (tick, stage) in which they were written, oldest first."""
     frames: list[RecordedPicture]
@@ -44,7 +60,7 @@ class Recording:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._reader = StampedLog(path)
-        self.plan = self._plan()
+        self.plan, self.version = self._plan()
         self._cameras = {channel.index for channel in self.plan.channels if channel.images}
         self._channels = {channel.index for channel in self.plan.channels}  # and those opened while the run went on
 
@@ -62,7 +78,7 @@ class Recording:
         """
         messages: dict[tuple[str, int, int], list[bytes]] = {}
         frames: list[RecordedPicture] = []
-        types = {RECORD: fingerprint(tick_record_t), **(types or {})}
+        types = {RECORD: fingerprint(record_type(self.version)), **(types or {})}
         tick = 0
         for number, event in enumerate(self._reader):
             if event.number != number:
@@ -70,8 +86,8 @@ class Recording:
             if event.data[:8] != types.get(event.channel, event.data[:8]):
                 raise RecordingError(self._other_type(event, types[event.channel]))
             if event.channel == RECORD:
-                record = self._record(event)
-                yield RecordedTick(record, messages, frames)
+                record, events = self._record(event)
+                yield RecordedTick(record, events, messages, frames)
                 tick, messages, frames = record.tick, {}, []
                 if to_tick is not None and tick >= to_tick:
                     return
@@ -105,52 +121,62 @@ class Recording:
         types = {channel.name: channel.type_name for channel in self.plan.channels}
         return types.get(name, "core.tick_record_t")
 
-    def _record(self, event: Event) -> tick_record_t:
+    def _record(self, event: Event) -> tuple[tick_record_t, list[TickEvent]]:
         try:
-            record = tick_record_t.decode(event.data)
-            told = {change.number for change in record.changes if self._readable(change)}
+            record = read_record(event.data, self.plan, self.version)
+            for settings in record.settings:
+                self._check_settings(settings)
+            changed = {change.number for change in record.channels}
+            for change in record.channels:
+                self._open(facts_in(change))
+            events = events_of(record.events)
             sound = self._channels.issuperset(record.channel)
-            sound &= all(self._possible(event, told) for event in record.events)
-        except _BROKEN:
+            sound &= all(self._possible(event, changed) for event in events)
+        except BROKEN:
             sound = False
         if not sound:
             raise RecordingError(
                 f"{self.path}: damaged: event {event.number}, a record of the main loop, cannot be read; "
                 "replay what is before it with --to-tick"
             )
-        return record
+        return record, events
 
-    def _readable(self, change: change_t) -> bool:
-        """Whether it is a change of the blackboard; what cannot be read raises."""
-        if change.component != NOBODY:
-            json.loads(change.settings)
-            return False
-        for fact in facts_of(change.settings):
-            self.plan.components[fact.component].name  # noqa: B018 - it raises if there is none
+    def _check_settings(self, change: settings_change_t) -> None:
+        """Raises one of `BROKEN` if the settings of a component cannot be read."""
+        if not 0 <= change.component < len(self.plan.components):
+            raise ValueError(f"settings of component {change.component}")
+        value_of(change.values)
+
+    def _open(self, facts: list[Fact]) -> None:
+        """Adds the channels of these facts; raises one of `BROKEN` for a component that the plan does not have."""
+        for fact in facts:
+            if not 0 <= fact.component < len(self.plan.components):
+                raise ValueError(f"a channel of component {fact.component}")
             if fact.opening:
                 self._channels.add(fact.opening.channel)
+
+    def _possible(self, event: TickEvent, changed: set[int]) -> bool:
+        plan = self.plan
+        if isinstance(event, ChannelsChanged):
+            return event.change in changed
+        if isinstance(event, MainLoopGiven):
+            return NOBODY <= event.component < len(plan.components)
+        if isinstance(event, FrameLost):
+            return 0 <= event.component < len(plan.components) and event.channel in self._cameras
+        if isinstance(event, StageBegun):
+            return 0 <= event.stage < len(plan.stages)
+        if isinstance(event, MessageLost) and event.channel not in self._channels:
+            return False
+        if isinstance(event, _OF_A_HOST):
+            return 0 <= event.host < len(plan.hosts)
         return True
 
-    def _possible(self, event: tick_event_t, told: set[int]) -> bool:
-        plan = self.plan
-        if event.kind == tick_event_t.OPENED:
-            return event.tick in told
-        if event.kind == tick_event_t.MAIN_LOOP and not NOBODY <= event.tick < len(plan.components):
-            return False
-        if event.kind == tick_event_t.FRAME_MISSED:
-            return 0 <= event.index < len(plan.components) and event.stage in self._cameras
-        if event.kind == tick_event_t.DONE and event.stage < 0:
-            return event.index == len(plan.hosts)  # the gateway: messages from outside
-        if event.kind == tick_event_t.MISSED and event.stage not in self._channels:
-            return False
-        return 0 <= event.index < len(plan.stages if event.kind == tick_event_t.STAGE else plan.hosts)
-
-    def _plan(self) -> Plan:
+    def _plan(self) -> tuple[Plan, int]:
         for event in self._reader:
             if event.channel == PLAN:
                 try:
-                    return Plan.from_json(json.loads(plan_t.decode(event.data).json))
-                except _BROKEN as error:
+                    return read_plan(event.data)
+                except BROKEN as error:
                     raise RecordingError(
                         f"{self.path}: its plan cannot be read ({type(error).__name__}: {error}); the log is damaged, "
                         "or of another version"

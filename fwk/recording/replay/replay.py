@@ -1,9 +1,7 @@
 """Replays a recording tick by tick and compares what the components write with what they wrote."""
 
-import json
 import traceback
 from bdb import BdbQuit
-from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -12,14 +10,32 @@ from fwk.component.images import Ring
 from fwk.engine.runner import is_new
 from fwk.lcm.envelope import fingerprint
 from fwk.lcm.messages import MessageError, sequence_of, type_named
-from fwk.model.channel_table import Fact, Instances, facts_of
+from fwk.model.channel_table import Fact, Instances, facts_in
+from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
+from fwk.model.tick_events import (
+    ChannelsChanged,
+    FinalDone,
+    FrameLost,
+    HostLate,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    IterationDone,
+    MainLoopGiven,
+    MessageLost,
+    OutsideTaken,
+    StageBegun,
+    StageDone,
+    TickEvent,
+    TickTold,
+)
 from fwk.recording.difference import Difference, changed, missing
 from fwk.recording.replay.actors import Actor, ContinuousActor, Newest, Written
 from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.recording.replay.recording import RecordedTick, Recording, RecordingError
 from fwk.recording.replay.selection import choose, unrepeatable
-from lcmtypes.core import change_t, done_t, tick_event_t
+from lcmtypes.core import header_t, settings_change_t
 
 Made = list[tuple[Actor, Written]]
 Iteration = Callable[[], Written | None]
@@ -101,56 +117,60 @@ class Replay:
             if picture.camera in self._recorded:
                 self._recorded[picture.camera].add(picture)
         record, stage, place = tick.record, -1, -1
-        decided = {each.number: facts_of(each.settings) for each in record.changes if each.component == NOBODY}
+        decided = {each.number: facts_in(each) for each in record.channels}
         for facts in decided.values():
             self._names |= {fact.opening.channel: fact.opening.name for fact in facts if fact.opening}
         self._lose(tick)
-        for change in record.changes:
-            if change.component != NOBODY:
-                self._change(change, record.tick)
-        events = deque(record.events)
-        while events:
-            event = events.popleft()
-            if event.kind == tick_event_t.STAGE:
-                stage, place = event.index, event.stage
+        for change in record.settings:
+            self._change(change, record.tick)
+        for event in tick.events:
+            if isinstance(event, StageBegun):
+                stage, place = event
                 self._show()
-            elif event.kind == tick_event_t.MAIN_LOOP:
-                self._holder = self._plan.components[event.tick].name if event.tick != NOBODY else ""
-            elif event.kind == tick_event_t.OPENED:
-                self._open(decided[event.tick])
-            elif event.kind == tick_event_t.STARTED:
-                self._start(event.index, event.stage, event.tick)
-            elif event.kind == tick_event_t.STOPPED:
-                self._leaving[event.index] = self._actors.pop(event.index, [])
-                for actor in self._leaving[event.index]:
-                    actor.hold_last_frames()
-            elif event.kind == tick_event_t.LOST:
-                self._end(event.index)
-            elif event.kind == tick_event_t.LATE:
-                for actor in self._actors.get(event.index, []):
+            elif isinstance(event, StageDone):
+                self._on_stage_done(event, stage, record.time_us)
+            elif isinstance(event, IterationDone):
+                self._done(event.host, event.tick, event.iteration, self._iterate_on(*event))
+            elif isinstance(event, FinalDone):
+                self._done(event.host, event.tick, header_t.FINAL, self._finalize(*event))
+            elif isinstance(event, HostLate):
+                for actor in self._actors.get(event.host, []):
                     actor.hold_newest_frames()
-                self._begin(event.index, record.tick, place, stage, record.time_us)
-            elif event.kind == tick_event_t.MISSED:
-                for actor in self._living(event.index):
-                    actor.miss(self._names[event.stage], event.tick)
-            elif event.kind == tick_event_t.FRAME_MISSED:
-                self._miss_frame(self._plan.components[event.index], self._plan.channels[event.stage].name, event.tick)
-            elif event.kind == tick_event_t.TOLD:
+                self._begin(event.host, record.tick, place, stage, record.time_us)
+            elif isinstance(event, TickTold):
                 self._show()
                 for actor in self._continuous():
                     actor.tell_tick(record.tick, record.time_us, self._holder, self._newest)
-            elif event.kind == tick_event_t.DONE and event.index == len(self._plan.hosts):
+            elif isinstance(event, OutsideTaken):
                 self._come_in()
-            elif event.kind == tick_event_t.DONE:
-                if event.stage == done_t.FINAL:
-                    made = self._finalize(event.index, event.tick)
-                elif self._plan.components[self._plan.hosts[event.index].components[0]].rate_hz is not None:
-                    made = self._iterate_on(event.index, event.tick, event.stage)
-                else:
-                    if (event.index, event.tick, event.stage) not in self._owed:
-                        self._begin(event.index, event.tick, event.stage, stage, record.time_us)
-                    made = self._run(event.index, event.tick, event.stage)
-                self._done(event.index, event.tick, event.stage, made)
+            elif isinstance(event, ChannelsChanged):
+                self._open(decided[event.change])
+            elif isinstance(event, MainLoopGiven):
+                self._holder = self._plan.components[event.component].name if event.component != NOBODY else ""
+            else:
+                self._on_host_event(event)
+
+    def _on_stage_done(self, event: StageDone, stage: int, time_us: int) -> None:
+        host, tick, step = event
+        if (host, tick, step) not in self._owed:
+            self._begin(host, tick, step, stage, time_us)
+        self._done(host, tick, step, self._run(host, tick, step))
+
+    def _on_host_event(self, event: TickEvent) -> None:
+        if isinstance(event, HostStarted):
+            self._start(event.host, event.incarnation, event.change)
+        elif isinstance(event, HostStopped):
+            self._leaving[event.host] = self._actors.pop(event.host, [])
+            for actor in self._leaving[event.host]:
+                actor.hold_last_frames()
+        elif isinstance(event, HostLost):
+            self._end(event.host)
+        elif isinstance(event, MessageLost):
+            for actor in self._living(event.host):
+                actor.miss(self._names[event.channel], event.sequence)
+        elif isinstance(event, FrameLost):
+            component, channel = self._plan.components[event.component], self._plan.channels[event.channel]
+            self._miss_frame(component, channel.name, event.frame)
 
     def _lose(self, tick: RecordedTick) -> None:
         """Finds out which messages became visible and are not there: the gateway never got them."""
@@ -168,8 +188,8 @@ class Replay:
             if len(here.get(channel, ())) < mark - before:
                 self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
 
-    def _change(self, change: change_t, tick: int) -> None:
-        settings = json.loads(change.settings)
+    def _change(self, change: settings_change_t, tick: int) -> None:
+        settings = value_of(change.values)
         self._check(change.component, settings, tick)
         self._changes.setdefault(change.component, []).append((change.number, settings))
         for actor in self._actors.get(self._plan.components[change.component].host, []):

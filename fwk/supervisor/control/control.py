@@ -62,8 +62,8 @@ class Control:
         self._log = log
         self._places = places
         self._steering = Steering(plan, hosts.table)
-        self._directing = Directing(hosts, self._steering, events.now_us, log)
-        loop.on_wishes = self._directing.ask
+        self._directing = Directing(plan, hosts, self._steering, events.now_us, log)
+        loop.on_requests = self._directing.ask
         self._clock = ClockControl(loop, log)
         self._status = status_t()
         self._status_us = 0

@@ -1,12 +1,15 @@
 """What components ask to be done with other components: collected during a tick, granted between two."""
 
 from collections.abc import Callable
+from typing import cast
 
+from fwk.bus.sync import place_of
 from fwk.component.log import Logger
 from fwk.control.requests import Action, RequestError
+from fwk.model.plan import Plan
+from fwk.model.requests import PLUGIN_ACTIONS
 from fwk.supervisor.control.lifecycle import Steering
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.requests import Wishes
 from lcmtypes.core import done_t
 
 _Wish = tuple[tuple[int, int, str, int], Action, list[str]]
@@ -16,18 +19,20 @@ _Wish = tuple[tuple[int, int, str, int], Action, list[str]]
 class Directing:
     """Grants wishes in one order, whichever came first: by tick, place in the tick, and name."""
 
-    def __init__(self, hosts: Hosts, steering: Steering, now_us: Callable[[], int], log: Logger) -> None:
+    def __init__(self, plan: Plan, hosts: Hosts, steering: Steering, now_us: Callable[[], int], log: Logger) -> None:
+        self._names = [component.name for component in plan.components]
         self._hosts = hosts
         self._steering = steering
         self._now_us = now_us
         self._log = log
         self._wishes: list[_Wish] = []
 
-    def ask(self, done: done_t, wishes: Wishes) -> None:
-        """Takes what components of a host ask for."""
-        for name, asked in wishes.get("plugins", {}).items():
-            for number, (action, names) in enumerate(asked):
-                self._wishes.append(((done.tick, done.stage, name, number), action, names))
+    def ask(self, done: done_t) -> None:
+        """Takes the requests to start and stop components in a done."""
+        for number, request in enumerate(done.plugins):
+            name = self._names[request.component]
+            key = (done.tick, place_of(done), name, number)
+            self._wishes.append((key, cast(Action, PLUGIN_ACTIONS[request.action]), list(request.names)))
 
     def decide(self) -> None:
         """At a boundary: what can be granted is begun, the rest is refused in the log."""

@@ -1,10 +1,12 @@
 """The process table: every host, its state, and when it is started again. Knows no clock and no processes."""
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from fwk.clock import US_PER_S
 from fwk.host.debugger import LEFT
+from fwk.model.channel_table import Fact
 from fwk.model.plan import Plan, RestartPolicy
 from lcmtypes.core import component_state_t, histogram_t
 
@@ -13,13 +15,15 @@ NOT_STARTED = "does not start with the run"
 
 @dataclass(frozen=True)
 class Change:
-    """New settings of a component: all of them, as JSON."""
+    """New settings of a component: all of them, as JSON; or decisions about channels."""
 
     component: int
     number: int
     settings: str
     step: int
     """Step of the main loop from which on they are told."""
+    facts: Sequence[Fact] = ()
+    """Decisions about channels; then there is no component and there are no settings."""
 
 
 @dataclass

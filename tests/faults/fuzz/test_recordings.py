@@ -14,13 +14,14 @@ from typer.testing import CliRunner
 from fwk import Component, Reads, Writes
 from fwk.cli.commands import app as fwk
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
+from fwk.model.tick_events import FrameLost, HostLost, HostStarted, StageBegun, StageDone, TickEvent, events_message
 from fwk.recording.compare import Comparison
 from fwk.recording.log_info import log_info
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from fwk.testing import MemorySystem
 from fwk.testing.plans import plan_of
-from lcmtypes.core import change_t, plan_t, tick_event_t, tick_record_t
+from lcmtypes.core import plan_t, protocol_t, settings_change_t, tick_events_t, tick_record_t
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
 from tests.harness.fuzz import damaged
@@ -56,7 +57,7 @@ def recorded() -> list[tuple[str, bytes]]:
     plan, system = plan_of(PARTS), MemorySystem(PARTS)
     system.tick(TICKS)
     said = plan_t()
-    said.json = json.dumps(plan.to_json())
+    said.version, said.json = protocol_t.VERSION, json.dumps(plan.to_json())
     made = [("fwk/plan", said.encode())]
     for tick in range(TICKS):
         made += [("r/imu", system.sent["r/imu"][tick]), ("r/pose", system.sent["r/pose"][tick])]
@@ -64,20 +65,13 @@ def recorded() -> list[tuple[str, bytes]]:
     return made
 
 
-def record(tick: int, stages: list[int]) -> tick_record_t:
+def record(tick: int, stages: list[int], *more: TickEvent) -> tick_record_t:
     made = tick_record_t()
-    made.tick, made.time_us = tick, tick * 50_000
-    if tick == 1:
-        made.events += [event(tick_event_t.STARTED, host, stage=1) for host in range(2)]
+    made.version, made.tick, made.time_us = protocol_t.VERSION, tick, tick * 50_000
+    events: list[TickEvent] = [HostStarted(host, 1, 0) for host in range(2)] if tick == 1 else []
     for host, stage in enumerate(stages):
-        made.events += [event(tick_event_t.STAGE, stage), event(tick_event_t.DONE, host, tick, stage)]
-    made.n_events = len(made.events)
-    return made
-
-
-def event(kind: int, index: int, tick: int = 0, stage: int = 0) -> tick_event_t:
-    made = tick_event_t()
-    made.kind, made.index, made.tick, made.stage = kind, index, tick, stage
+        events += [StageBegun(stage, 0), StageDone(host, tick, stage)]
+    made.events = events_message([*events, *more])
     return made
 
 
@@ -158,21 +152,20 @@ def test_a_plan_of_another_shape_is_read_or_refused(tmp_path: Path, key: str, va
 @pytest.mark.parametrize("text", ["", "null", "[]", "{}", "[" * 100_000, '{"components": 3}'])
 def test_a_plan_that_is_none_is_named(tmp_path: Path, text: str) -> None:
     made = plan_t()
-    made.json = text
+    made.version, made.json = protocol_t.VERSION, text
     with pytest.raises(RecordingError, match="its plan cannot be read"):
         replay(write(tmp_path / "log.lcm", [("fwk/plan", made.encode())]))
 
 
 def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None:
-    change = change_t()
-    change.settings = "{"
-    unknown, blind, strange, broken = (record(9, [1, 5]) for _ in range(4))
-    unknown.events[1].index = 77
-    blind.events[1].kind, blind.events[1].stage = tick_event_t.FRAME_MISSED, 0  # which is no camera's
+    change = settings_change_t()
+    unknown, blind = record(9, [1, 5], HostLost(77)), record(9, [1, 5], FrameLost(0, 0, 1))  # channel 0 is no camera's
+    strange, broken, short = (record(9, [1, 5]) for _ in range(3))
     strange.n_marks, strange.channel, strange.sequence = 1, [65_536], [1]
-    broken.changes, broken.n_changes = [change], 1
+    broken.settings, broken.n_settings = [change], 1  # without values
+    short.events.kind[0] = tick_events_t.FINAL_DONE  # of which there is none in its list
     entries = [(each.channel, each.data) for each in LogReader(log)]
-    for wrong in (unknown, blind, strange, broken):
+    for wrong in (unknown, blind, strange, broken, short):
         write(log, [*entries, ("fwk/record", wrong.encode())])
         with pytest.raises(RecordingError, match=f"event {len(entries)}, a record of the main loop"):
             replay(log)

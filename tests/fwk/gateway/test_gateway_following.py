@@ -12,7 +12,7 @@ from fwk.gateway.gateway import Gateway
 from fwk.lcm import wire
 from fwk.lcm.messages import sequence_of
 from fwk.model.ports import Ports
-from lcmtypes.core import fetch_t, gone_t, log_t, tick_record_t, void_t
+from lcmtypes.core import fetch_records_t, fetch_t, gone_t, log_t, protocol_t, tick_record_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
 from tests.harness.runs import PortBlock
 
@@ -67,6 +67,7 @@ class Followed:
 
     def record(self, tick: int, mark: int = 0, run: int = RUN, void_above: int | None = None) -> None:
         made = tick_record_t()
+        made.version = protocol_t.VERSION
         made.run, made.tick, made.time_us = run, tick, tick * 50_000
         if mark:
             made.n_marks, made.channel, made.sequence = 1, [0], [mark]
@@ -139,8 +140,8 @@ def test_a_record_that_is_missing_is_asked_for(followed: Followed) -> None:
     assert followed.kept.ticks == [1]
     message = followed.supervisor.receive(followed.ports.members)
     assert message
-    fetch = fetch_t.decode(message[1])
-    assert (message[0], fetch.channel, fetch.first_sequence, fetch.last_sequence) == (b"fwk/fetch", -1, 2, 3)
+    fetch = fetch_records_t.decode(message[1])
+    assert (message[0], fetch.first_tick, fetch.last_tick) == (b"fwk/fetch_records", 2, 3)
 
 
 def test_another_runs_records_are_not_taken(followed: Followed) -> None:

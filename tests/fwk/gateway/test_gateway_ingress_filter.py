@@ -17,7 +17,7 @@ from fwk.lcm.messages import Header
 from fwk.model.ports import Ports
 from fwk.recording.sinks import Mirror
 from fwk.testing.plans import plan_of
-from lcmtypes.core import log_t, tick_record_t
+from lcmtypes.core import log_t, protocol_t, tick_record_t
 from lcmtypes.robot import imu_t, motor_command_t
 from tests.fwk.gateway.test_gateway_following import RUN, Kept
 from tests.harness.runs import PortBlock
@@ -54,6 +54,7 @@ class Opened:
 
     def record(self, tick: int, mark: int) -> None:
         made = tick_record_t()
+        made.version = protocol_t.VERSION
         made.run, made.tick, made.time_us = RUN, tick, tick * 50_000
         made.n_marks, made.channel, made.sequence = 1, [self.channel], [mark]
         self._supervisor.publish(b"fwk/record", made.encode(), self.ports.record)

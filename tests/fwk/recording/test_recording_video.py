@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from fwk.cli.recordings.video import video as command
 from fwk.model.plan import Plan
 from fwk.recording.video import Picture, VideoError, drawing, render_video
-from lcmtypes.core import plan_t
+from lcmtypes.core import plan_t, protocol_t
 from tests.fwk.recording.recording_made import entries, write
 
 Newest = Callable[[str], Any]
@@ -96,7 +96,7 @@ def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> Non
     assert alone.stderr == f"error: {log}: no readable plan of its run in it; name the drawing with --draw\n"
     plan = Plan("x", "x.yaml", (), (), 50_000, "simulated", 1, (), (), (), video=f"{__name__}:Grey")
     said = plan_t()
-    said.json = json.dumps(plan.to_json())
+    said.version, said.json = protocol_t.VERSION, json.dumps(plan.to_json())
     write(log, [("fwk/plan", said.encode(), 0), *entries(ticks=3)])
     drawn = run(app, [str(tmp_path), "-o", str(out)])
     assert (drawn.exit_code, drawn.stdout) == (0, f"{out}: 3 pictures\n")

@@ -7,10 +7,11 @@ from fwk import Component, Reads, Writes
 from fwk.bus import sync
 from fwk.engine.visibility import Ledger
 from fwk.model.plan import NOBODY
+from fwk.model.tick_events import TickEvent, TickTold
 from fwk.supervisor.continuous import Continuous
 from fwk.supervisor.processes.host_process import Change, host_table
 from fwk.testing.plans import plan_of
-from lcmtypes.core import done_t, tick_event_t, tick_t
+from lcmtypes.core import done_t, tick_t
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
 
@@ -37,9 +38,9 @@ class Told:
         self.table = host_table(plan)
         self.ledger = Ledger(plan)
         self.sent: list[tuple[bytes, bytes]] = []
-        self.events: list[tuple[int, ...]] = []
+        self.events: list[TickEvent] = []
         sender = SimpleNamespace(send=lambda channel, data, _: self.sent.append((channel, data)))
-        records = SimpleNamespace(event=lambda *event: self.events.append(event))
+        records = SimpleNamespace(event=self.events.append)
         self.continuous = Continuous(plan, 7, self.table, self.ledger, cast(Any, sender), cast(Any, records))
         for entry in self.table:
             entry.starting(0)
@@ -52,7 +53,8 @@ class Told:
 
     def take(self, tick: int, number: int, host: int = PLANS, incarnation: int = 1) -> bool:
         done = done_t()
-        done.host, done.tick, done.stage, done.incarnation = host, tick, number, incarnation
+        done.host, done.incarnation, done.kind = host, incarnation, done_t.ITERATION
+        done.tick, done.step, done.iteration = tick, -1, number
         return self.continuous.take(self.table[host], done)
 
 
@@ -66,14 +68,14 @@ def test_it_is_told_what_moved_since_its_last_done_until_that_was_taken() -> Non
     assert list(told.tell(3).sequence) == [2]
     assert told.take(3, 1)
     assert list(told.tell(4).sequence) == []
-    assert [event[0] for event in told.events] == [tick_event_t.TOLD] * 4
+    assert told.events == [TickTold()] * 4
 
 
 def test_each_done_is_taken_once_and_always_sent_back() -> None:
     told = Told()
     told.tell(1)
     assert [told.take(1, 1), told.take(1, 1), told.take(1, 2), told.take(1, 1)] == [True, False, True, False]
-    assert [channel for channel, _ in told.sent] == [sync.TICK, *[sync.DONE] * 4]
+    assert [channel for channel, _ in told.sent] == [sync.TICK, *[sync.TAKEN] * 4]
     assert told.take(2, 1)
     assert told.take(1, 1, incarnation=2)
 
@@ -99,10 +101,10 @@ def test_new_settings_are_told_until_a_done_of_that_tick_was_taken() -> None:
     entry = told.table[PLANS]
     told.tell(1)
     entry.changes.append(Change(PLANS, 1, "{}", told.ledger.step + 1))
-    assert told.tell(2).n_changes == 1
+    assert told.tell(2).n_settings == 1
     assert told.take(1, 1)
     entry.told()
-    assert told.tell(3).n_changes == 1
+    assert told.tell(3).n_settings == 1
     assert told.take(2, 1)
     entry.told()
-    assert told.tell(4).n_changes == 0
+    assert told.tell(4).n_settings == 0

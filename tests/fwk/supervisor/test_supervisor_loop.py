@@ -73,7 +73,7 @@ class Played:
 
     def done(self, host: int, sequence: int, tick: int = 1, incarnation: int = 1) -> None:
         made = done_t()
-        made.run, made.host, made.incarnation, made.tick, made.stage = RUN, host, incarnation, tick, 5
+        made.run, made.host, made.incarnation, made.tick, made.step = RUN, host, incarnation, tick, 5
         made.next_time_us = -1
         made.n_marks, made.channel, made.sequence = 1, [host], [sequence]
         self._receiver.on_done(made)

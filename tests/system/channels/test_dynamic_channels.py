@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.tick_events import ChannelsChanged, HostLost
 from fwk.recording.compare import compare
-from lcmtypes.core import tick_event_t
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, fwk, pause, replayed, write_files
@@ -67,8 +67,8 @@ def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
             run.ask("set", changes=[f"{one['name']}.gain={luck.randrange(1, 9)}"])
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text
-    kinds = {event.kind for record in Recording(tmp_path / "log.lcm").records for event in record.events}
-    assert {tick_event_t.OPENED, tick_event_t.LOST} <= kinds
+    kinds = {type(event) for _, event in Recording(tmp_path / "log.lcm").events}
+    assert {ChannelsChanged, HostLost} <= kinds
     replayed(tmp_path)
     replayed(tmp_path, "--only", "c/trader", "--only", "d/trader")
 

@@ -17,7 +17,8 @@ from fwk.bus.sockets import GROUP, LOOPBACK, multicast_receiver
 from fwk.lcm import wire
 from fwk.lcm.messages import type_named
 from fwk.model.ports import Ports
-from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, status_t, tick_record_t, tick_t
+from fwk.model.requests import channel_request, lost_message, main_loop_request, plugin_request
+from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, protocol_t, status_t, tick_record_t, tick_t
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
 from tests.harness.runs import Launched, PortBlock, pause, played
@@ -83,13 +84,13 @@ def plausible(run: int) -> list[tuple[str, bytes]]:
     done, actual, fetch, gone, tick, record = done_t(), actual_t(), fetch_t(), gone_t(), tick_t(), tick_record_t()
     for each in (done, actual, fetch, gone, tick, record):
         each.run = run
-    done.host, done.incarnation, done.tick, done.stage = 5, 1, 10, 5
+    done.host, done.incarnation, done.tick, done.step = 5, 1, 10, 5
     done.n_marks, done.channel, done.sequence = 1, [3], [10**6]
     actual.host, actual.incarnation = 5, 1
     fetch.host, fetch.channel, fetch.last_sequence = 10**6, 7, 10**12
     gone.channel, gone.first_sequence, gone.last_sequence = 7, 1, 10**12
-    tick.tick, tick.stage = 10**6, 5
-    record.tick = 1
+    tick.version, tick.tick, tick.step = protocol_t.VERSION, 10**6, 5
+    record.version, record.tick = protocol_t.VERSION, 1
     note: Any = type_named("play.note_t")()
     note.header.sequence, note.header.writer = 3, "d/player"
     whole = [
@@ -169,18 +170,29 @@ def test_strangers_on_every_inner_port_are_named_and_change_nothing(
         assert f"{port_of}: " in run.text
 
 
+def requests() -> list[done_t]:
+    """Dones with a request that the plan cannot have, or that would stop everything."""
+    main_loop, plugins, lost, channels = done_t(), done_t(), done_t(), done_t()
+    main_loop.main_loop = [main_loop_request(10**6, [77])]
+    plugins.plugins = [plugin_request(5, "stop", ["*"])]
+    lost.lost = [lost_message(10**6, 1)]
+    channels.channels = [channel_request(10**6, ["close", 1])]
+    return [main_loop, plugins, lost, channels]
+
+
 def mean(run: int) -> list[tuple[str, bytes]]:
     """Dones, ticks and records that would end a run or spoil it."""
     made = []
-    for wishes in ("{", "[1]", '{"main_loop": 1}', '{"missed": [[1]]}', '{"plugins": {"d/player": [["stop", ["*"]]]}}'):
-        for stage in (*range(10), done_t.FINAL, -1):
-            done = done_t()
-            done.run, done.host, done.incarnation, done.tick, done.stage = run, 5, 1, 10, stage
-            done.wishes, done.n_marks, done.channel, done.sequence = wishes, 2, [-1, 10**6], [10**9, 10**9]
-            made.append(("fwk/done", sync.encode_done(done)))
+    for asking in (done_t(), *requests()):
+        stages = [(done_t.STAGE, step) for step in range(10)]
+        for kind, step in [*stages, (done_t.FINAL, -1), (done_t.ITERATION, -1), (9, 0)]:
+            asking.run, asking.host, asking.incarnation, asking.tick = run, 5, 1, 10
+            asking.kind, asking.step, asking.iteration = kind, step, 1
+            asking.channel, asking.sequence = [-1, 10**6], [10**9, 10**9]
+            made.append(("fwk/done", sync.encode_done(asking)))
     for stage in range(10):
         tick = tick_t()
-        tick.run, tick.tick, tick.stage, tick.n_marks = run, 10, stage, 2
+        tick.version, tick.run, tick.tick, tick.step = protocol_t.VERSION, run, 10, stage
         tick.channel, tick.sequence = [-1, 3], [10**9, 10**9]
         made.append(("fwk/tick", sync.encode_tick(tick)))
     return made

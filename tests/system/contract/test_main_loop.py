@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import StageBegun, events_of
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -90,7 +90,7 @@ def orders(recording: Recording) -> dict[int, list[str]]:
     """Tick to the stages that it ran."""
     names = (*STAGES, "act_exec", "post_loop")
     return {
-        record.tick: [names[event.index] for event in record.events if event.kind == tick_event_t.STAGE]
+        record.tick: [names[event.stage] for event in events_of(record.events) if isinstance(event, StageBegun)]
         for record in recording.records
     }
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import StageBegun, StageDone, events_of
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.oracle import contradictions
@@ -42,12 +42,12 @@ def test_the_record_says_in_which_order_the_main_loop_did_it(launch: Launch, fol
     names = sorted(recording.messages)
     for record in recording.records:
         stages, running = [], -1
-        for event in record.events:
-            if event.kind == tick_event_t.STAGE:
-                running = event.index
+        for event in events_of(record.events):
+            if isinstance(event, StageBegun):
+                running = event.stage
                 stages.append(running)
-            elif event.kind == tick_event_t.DONE:
-                assert (event.tick, event.stage) == (record.tick, running)
+            elif isinstance(event, StageDone):
+                assert (event.tick, event.step) == (record.tick, running)
         assert stages == sorted(stages)
         marks = {names[channel]: sequence for channel, sequence in zip(record.channel, record.sequence, strict=True)}
         for name in names:

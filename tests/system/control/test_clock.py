@@ -103,7 +103,7 @@ def test_a_paused_run_is_steered_and_the_recording_replays(start: Start) -> None
     headings = {imu.header.tick: imu.heading_rad for imu in recording.decoded("r/imu")}
     assert (headings[tick], headings[tick + 1], headings[tick + 2]) == (float(tick), 3.0, 6.0)
     assert not {tick + 1, tick + 2, tick + 3} & {header.tick for header in recording.headers("r/pose")}
-    changes = [(record.tick, each.number) for record in recording.records for each in record.changes]
+    changes = [(record.tick, each.number) for record in recording.records for each in record.settings]
     assert changes == [(tick + 1, 1), (tick + 1, 2)]
 
 

@@ -11,6 +11,8 @@ import pytest
 
 from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.client import RefusedError
+from fwk.model.plain_values import value_of
+from fwk.model.tick_events import HostStopped
 from tests.harness.logs import Recording
 from tests.harness.runs import BIN, TIMEOUT_S, PortBlock, fwk
 from tests.programs.control_system import Steered, write_system
@@ -92,11 +94,9 @@ def test_settings_change_at_a_tick_that_the_recording_names(run: Steered) -> Non
     log = run.end()
     assert "equal: " in run.fwk("replay", "--verify", str(log.parent))
     recording = Recording(log)
-    ((tick, change),) = [(record.tick, each) for record in recording.records for each in record.changes]
-    assert (change.component, change.number, json.loads(change.settings)["step"]) == (0, 1, 0.25)
-    (restarted,) = [
-        record.tick for record in recording.records for each in record.events if (each.kind, each.index) == (5, 0)
-    ]
+    ((tick, change),) = [(record.tick, each) for record in recording.records for each in record.settings]
+    assert (change.component, change.number, value_of(change.values)["step"]) == (0, 1, 0.25)
+    (restarted,) = [tick for tick, each in recording.events if isinstance(each, HostStopped) and each.host == 0]
     heading = 0.0
     for imu in recording.decoded("r/imu"):
         heading = (0.0 if imu.header.tick == restarted else heading) + (1.0 if imu.header.tick < tick else 0.25)

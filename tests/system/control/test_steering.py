@@ -7,7 +7,7 @@ import psutil
 import pytest
 
 from fwk.control.client import ControlError
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import HostLost, HostStarted, HostStopped
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock
 from tests.programs.control_system import PARTS, Steered, write_system
@@ -21,11 +21,9 @@ def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., object]) -> Stee
     return Steered(launch("small.yaml"), ports)  # type: ignore[arg-type]
 
 
-def events(recording: Recording, kind: int, host: int) -> list[int]:
+def events(recording: Recording, kind: type[HostLost | HostStarted | HostStopped], host: int) -> list[int]:
     """Ticks of these events of a host."""
-    return [
-        record.tick for record in recording.records for each in record.events if (each.kind, each.index) == (kind, host)
-    ]
+    return [tick for tick, each in recording.events if isinstance(each, kind) and each.host == host]
 
 
 def test_stopped_it_leaves_its_last_value_started_it_goes_on_counting_messages(run: Steered) -> None:
@@ -44,12 +42,12 @@ def test_stopped_it_leaves_its_last_value_started_it_goes_on_counting_messages(r
     recording = Recording(run.end())
     assert not recording.gaps()
     headers = recording.headers("r/imu")
-    (stopped,), (_, started) = events(recording, tick_event_t.STOPPED, 0), events(recording, tick_event_t.STARTED, 0)
+    (stopped,), (_, started) = events(recording, HostStopped, 0), events(recording, HostStarted, 0)
     ticks = [header.tick for header in headers]
     expected = [*range(1, stopped), *range(started, recording.records[-1].tick)]
     assert ticks[: len(expected)] == expected
     assert {header.writer for header in headers if header.tick >= started} == {"r/counter#2"}
-    assert not events(recording, tick_event_t.LOST, 0)
+    assert not events(recording, HostLost, 0)
     frozen = [pose.heading_rad for pose in recording.decoded("r/pose") if stopped <= pose.header.tick < started]
     assert set(frozen) == {float(stopped - 1)}
 
@@ -64,8 +62,8 @@ def test_a_restart_misses_no_tick_in_lockstep(run: Steered) -> None:
     last = recording.records[-1].tick - 1  # the end may come in the middle of a tick
     for channel in ("r/imu", "r/seen"):
         assert [header.tick for header in recording.headers(channel)][:last] == list(range(1, last + 1))
-    assert len(events(recording, tick_event_t.STOPPED, 0)) == 2
-    assert len(events(recording, tick_event_t.STARTED, 0)) == 3
+    assert len(events(recording, HostStopped, 0)) == 2
+    assert len(events(recording, HostStarted, 0)) == 3
 
 
 def test_reload_brings_the_changed_code_of_one_and_leaves_the_others(run: Steered) -> None:

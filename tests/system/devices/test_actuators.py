@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from fwk.control import client
-from lcmtypes.core import done_t, tick_event_t
+from fwk.model.tick_events import HostLost, HostStopped
+from lcmtypes.core import header_t
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed
@@ -51,11 +52,9 @@ def speeds_m_s(recording: Recording) -> dict[int, float]:
     return {each.header.tick: math.hypot(each.robots[0].vx_m_s, each.robots[0].vy_m_s) for each in truths}
 
 
-def tick_of(recording: Recording, kind: int, host: int) -> int:
-    """The tick of such an event of a host."""
-    (tick,) = [
-        record.tick for record in recording.records for each in record.events if (each.kind, each.index) == (kind, host)
-    ]
+def tick_of(recording: Recording, event: HostLost | HostStopped) -> int:
+    """The tick of an event that happened once."""
+    (tick,) = [tick for tick, each in recording.events if each == event and type(each) is type(event)]
     return tick
 
 
@@ -73,8 +72,8 @@ def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered,
     match.ticks_pass(TICKS_PER_S)
     log = match.end()
     recording = Recording(log)
-    stopped = tick_of(recording, tick_event_t.STOPPED, base)
-    (last,) = [each for each in recording.decoded("cyan1/wheel_command") if each.header.stage == done_t.FINAL]
+    stopped = tick_of(recording, HostStopped(base))
+    (last,) = [each for each in recording.decoded("cyan1/wheel_command") if each.header.stage == header_t.FINAL]
     assert last.header.tick == stopped - 1
     assert tuple(last.wheel_m_s) == (0.0, 0.0, 0.0)
     speeds = speeds_m_s(recording)
@@ -93,7 +92,7 @@ def test_a_killed_base_lets_the_motors_time_out(match: Steered, ports: PortBlock
     match.launched.signal(signal.SIGINT)
     assert match.launched.wait() == 1, match.launched.text  # a component has failed
     recording = Recording(match.launched.run_dir / "log.lcm")
-    lost, speeds = tick_of(recording, tick_event_t.LOST, base), speeds_m_s(recording)
+    lost, speeds = tick_of(recording, HostLost(base)), speeds_m_s(recording)
     standing = lost + round((TIMEOUT_OF_MOTORS_S + BRAKING_S) * TICKS_PER_S)
     assert speeds[lost - 1] > STANDING_M_S
     assert max(speed for tick, speed in speeds.items() if tick >= standing) < STANDING_M_S
@@ -129,9 +128,9 @@ def test_what_finalize_writes_is_seen_recorded_and_replayed(
     log = run.end()
     recording = Recording(log)
     assert recording.gaps() == {}
-    stops = [r.tick for r in recording.records for e in r.events if (e.kind, e.index) == (tick_event_t.STOPPED, 0)]
+    stops = [tick for tick, each in recording.events if isinstance(each, HostStopped) and each.host == 0]
     last = [each.header for each in recording.decoded("r/imu") if each.heading_rad == -1.0]
-    assert [header.stage for header in last] == [done_t.FINAL] * 2  # that of the end nobody would see
+    assert [header.stage for header in last] == [header_t.FINAL] * 2  # that of the end nobody would see
     seen = [each.header.tick for each in recording.decoded("r/pose") if each.heading_rad == -1.0]
     if clock == "simulated":
         assert [header.tick for header in last] == [tick - 1 for tick in stops]

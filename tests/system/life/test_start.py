@@ -10,7 +10,7 @@ import pytest
 
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import HostStarted
 from tests.harness.logs import Recording
 from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, write_files
 from tests.programs.control_system import PARTS, Steered
@@ -73,7 +73,7 @@ def test_a_user_starts_when_its_vision_master_is_ready(start: Start, ports: Port
     (tmp_path / "go").touch()
     assert launched.wait() == 0, launched.text
     recording = Recording(tmp_path / "log.lcm")
-    started = [each.index for each in recording.records[0].events if each.kind == tick_event_t.STARTED]
+    started = [each.host for tick, each in recording.events if tick == 1 and isinstance(each, HostStarted)]
     assert started.index(3) < started.index(0)
     assert set(started) == {0, 1, 3}
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import HostLost, StageBegun
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, fwk, replayed, write_files
@@ -164,7 +164,7 @@ def test_killed_in_the_middle_and_steered_it_replays(start: Start, folder: Path)
     recording = verified(run.end())
     writers = list(dict.fromkeys(header.writer for header in recording.headers("r/pose")))
     assert writers == ["r/planner", "r/planner#2", "r/planner#3", "r/planner#4"]
-    lost = [event.index for record in recording.records for event in record.events if event.kind == tick_event_t.LOST]
+    lost = [event.host for _, event in recording.events if isinstance(event, HostLost)]
     assert lost == [PLANNER]
 
 
@@ -201,7 +201,8 @@ def test_it_may_take_the_main_loop_over(start: Start) -> None:
     run.launched.until("r/planner has given the main loop back")
     until_planned(run, 3)
     recording = verified(run.end())
-    assert any(
-        [event.stage for event in record.events if event.kind == tick_event_t.STAGE] == [0, 1, 2]
-        for record in recording.records
-    )
+    steps: dict[int, list[int]] = {}
+    for tick, event in recording.events:
+        if isinstance(event, StageBegun):
+            steps.setdefault(tick, []).append(event.step)
+    assert [0, 1, 2] in steps.values()

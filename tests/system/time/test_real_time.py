@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from lcmtypes.core import tick_event_t
+from fwk.model.tick_events import HostLate, StageDone
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock
@@ -30,12 +30,11 @@ def wall(folder: Path, ports: PortBlock) -> Path:
 def late_ticks(recording: Recording) -> dict[int, int]:
     """Ticks in which somebody was late, with the tick in which the answer came."""
     found: dict[int, int] = {}
-    for record in recording.records:
-        for event in record.events:
-            if event.kind == tick_event_t.LATE:
-                found[record.tick] = 0
-            elif event.kind == tick_event_t.DONE and event.tick in found and event.tick != record.tick:
-                found[event.tick] = record.tick
+    for tick, event in recording.events:
+        if isinstance(event, HostLate):
+            found[tick] = 0
+        elif isinstance(event, StageDone) and event.tick in found and event.tick != tick:
+            found[event.tick] = tick
     return found
 
 

@@ -6,19 +6,32 @@ from pathlib import Path
 
 from fwk import Component, Config, Reads, Writes
 from fwk.lcm.event_log import LogWriter
+from fwk.lcm.messages import encode
+from fwk.model.plain_values import value_messages
 from fwk.model.plan import Plan
+from fwk.model.tick_events import (
+    FinalDone,
+    HostLate,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    MessageLost,
+    StageBegun,
+    StageDone,
+    TickEvent,
+    events_message,
+)
 from fwk.recording.replay.recording import Recording
 from fwk.recording.replay.replay import Replay
 from fwk.testing.plans import plan_of
-from lcmtypes.core import change_t, done_t, plan_t, tick_event_t, tick_record_t
+from lcmtypes.core import header_t, plan_t, protocol_t, settings_change_t, tick_record_t
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
 
 SENSOR, COUNTER = 0, 1  # components, their hosts and the channels that they write
 ACQUIRE, THINK, ACT = 1, 5, 7
-Event = tuple[int, int, int, int]
-LATE = (tick_event_t.LATE, COUNTER, 0, 0)
-STOPPED = (tick_event_t.STOPPED, COUNTER, 0, 0)
+LATE = HostLate(COUNTER)
+STOPPED = HostStopped(COUNTER)
 
 
 class GainConfig(Config):
@@ -78,6 +91,7 @@ class Made:
         self._log = LogWriter(path, print)
         self._tick = 0
         said = plan_t()
+        said.version = protocol_t.VERSION
         said.json = json.dumps(plan.to_json())
         self._log.append("fwk/plan", said.encode(), 0)
 
@@ -90,7 +104,7 @@ class Made:
     def counted(self, number: int, heading_rad: float, tick: int, stage: int = THINK, y_m: float = 0.0) -> None:
         """The counter's message of a tick."""
         message = pose_t()
-        message.x_m, message.y_m, message.heading_rad = float(number - (stage == done_t.FINAL)), y_m, heading_rad
+        message.x_m, message.y_m, message.heading_rad = float(number - (stage == header_t.FINAL)), y_m, heading_rad
         self._write(message, "r/counter", number, tick, stage)
 
     def counted_anew(self, number: int, heading_rad: float, tick: int) -> None:
@@ -99,25 +113,22 @@ class Made:
         message.x_m, message.heading_rad = 1.0, heading_rad
         self._write(message, "r/counter#2", number, tick, THINK)
 
-    def tick(self, *events: Event, marks: Sequence[int], gain: float = 0.0) -> None:
+    def tick(self, *events: TickEvent, marks: Sequence[int], gain: float = 0.0) -> None:
         """A tick in which the sensor runs, and then this happens; `gain` is what the counter is told before."""
         self._tick += 1
         made = tick_record_t()
-        made.tick, made.time_us = self._tick, self._tick * 50_000
-        began = [(tick_event_t.STARTED, host, 0, 1) for host in (SENSOR, COUNTER)] if self._tick == 1 else []
-        sensed = [stage(ACQUIRE), done(SENSOR, self._tick, ACQUIRE), stage(THINK)]
-        first = [event for event in events if event == STOPPED]
-        for kind, index, tick, where in [*began, *first, *sensed, *(event for event in events if event != STOPPED)]:
-            event = tick_event_t()
-            event.kind, event.index, event.tick, event.stage = kind, index, tick, where
-            made.events.append(event)
-        made.n_events = len(made.events)
+        made.version, made.tick, made.time_us = protocol_t.VERSION, self._tick, self._tick * 50_000
+        began: list[TickEvent] = [HostStarted(host, 1, 0) for host in (SENSOR, COUNTER)] if self._tick == 1 else []
+        sensed: list[TickEvent] = [stage(ACQUIRE), done(SENSOR, self._tick, ACQUIRE), stage(THINK)]
+        first: list[TickEvent] = [event for event in events if isinstance(event, HostStopped)]
+        rest: list[TickEvent] = [event for event in events if not isinstance(event, HostStopped)]
+        made.events = events_message([*began, *first, *sensed, *rest])
         made.n_marks, made.channel, made.sequence = 2, [SENSOR, COUNTER], list(marks)
         if gain:
-            change = change_t()
-            change.component, change.number, change.settings = COUNTER, 1, json.dumps({"gain": gain})
-            made.n_changes, made.changes = 1, [change]
-        self._log.append("fwk/record", made.encode(), made.time_us)
+            change = settings_change_t()
+            change.component, change.number, change.values = COUNTER, 1, value_messages({"gain": gain})
+            made.settings = [change]
+        self._log.append("fwk/record", encode(made, "fwk/record"), made.time_us)
 
     def replayed(self, *only: str) -> Replay:
         """The replay of all this."""
@@ -133,17 +144,17 @@ class Made:
         self._log.append("r/imu" if isinstance(message, imu_t) else "r/pose", message.encode(), 0)
 
 
-def stage(index: int) -> Event:
-    return tick_event_t.STAGE, index, 0, index
+def stage(index: int) -> StageBegun:
+    return StageBegun(index, index)
 
 
-def done(host: int, tick: int, where: int) -> Event:
-    return tick_event_t.DONE, host, tick, where
+def done(host: int, tick: int, step: int) -> StageDone:
+    return StageDone(host, tick, step)
 
 
-def missed(number: int) -> Event:
+def missed(number: int) -> MessageLost:
     """The counter never got that message of the sensor."""
-    return tick_event_t.MISSED, COUNTER, number, SENSOR
+    return MessageLost(COUNTER, SENSOR, number)
 
 
 def differences(replay: Replay) -> list[str]:
@@ -158,8 +169,8 @@ def test_an_iteration_that_was_late_and_never_ran_is_not_replayed(tmp_path: Path
     made.sensed(2)
     made.tick(LATE, marks=(2, 1))
     made.sensed(3)
-    made.counted(2, 1.0, tick=1, stage=done_t.FINAL, y_m=1.0)  # the settings that were meant for it it was never told
-    made.tick(STOPPED, done(COUNTER, 1, done_t.FINAL), marks=(3, 2), gain=5.0)
+    made.counted(2, 1.0, tick=1, stage=header_t.FINAL, y_m=1.0)  # the settings that were meant for it it was never told
+    made.tick(STOPPED, FinalDone(COUNTER, 1), marks=(3, 2), gain=5.0)
     assert differences(made.replayed()) == []
 
 
@@ -187,14 +198,14 @@ def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> 
     assert replay.compared == 4
 
 
-def started_anew(folder: Path, *never_got: Event) -> Made:
+def started_anew(folder: Path, *never_got: TickEvent) -> Made:
     """Two ticks; in the second a process in the place of one that died has answered for another component."""
     made = Made(folder / "log.lcm", SHARED)
     made.sensed(1)
     made.counted(1, 1.0, tick=1)
     made.tick(done(COUNTER, 1, THINK), marks=(1, 1))
     made.sensed(2)
-    lost, started = (tick_event_t.LOST, COUNTER, 0, 0), (tick_event_t.STARTED, COUNTER, 0, 2)
+    lost, started = HostLost(COUNTER), HostStarted(COUNTER, 2, 0)
     made.tick(lost, started, stage(ACT), *never_got, done(COUNTER, 2, ACT), marks=(2, 1))
     return made
 

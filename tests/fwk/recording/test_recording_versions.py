@@ -1,0 +1,90 @@
+"""A recording of protocol version 1 is replayed, compared, listed and exported like one of today."""
+
+import json
+import shutil
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from fwk.lcm.event_log import LogReader, LogWriter
+from fwk.lcm.typegen import generate
+from fwk.model.tick_events import (
+    ChannelsChanged,
+    FinalDone,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    IterationDone,
+    MainLoopGiven,
+    OutsideTaken,
+    StageBegun,
+    StageDone,
+    TickTold,
+)
+from fwk.recording.replay.recording import Recording, RecordingError
+from lcmtypes.core import plan_t, protocol_t
+from tests.harness.runs import fwk, replayed
+
+OLD = Path(__file__).parents[2] / "data" / "recording_v1"
+TICKS = 40
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of the recorded application, in another place than when it was recorded."""
+    folder = Path(shutil.copytree(OLD, tmp_path / "workshop"))
+    generate(folder / "lcmtypes")
+    monkeypatch.setenv("PYTHONPATH", str(folder))
+    return folder
+
+
+def test_an_old_recording_replays_byte_for_byte(folder: Path) -> None:
+    assert "equal: 519 messages" in replayed(folder)
+    assert "equal: " in replayed(folder, "--only", "a/watcher", "--only", "a/reader")
+
+
+def test_a_changed_component_differs_from_an_old_recording(folder: Path) -> None:
+    source = folder / "workshop.py"
+    source.write_text(source.read_text().replace("self.reading.value.gain = self.config.gain", "pass"))
+    assert "a/reading: tick 1, stage 1" in replayed(folder, "--only", "a/meter", code=1)
+
+
+def test_an_old_recording_holds_the_events_of_today() -> None:
+    recording = Recording(OLD / "log.lcm")
+    ticks = list(recording.ticks())
+    assert (recording.version, len(ticks)) == (1, TICKS)
+    counts = Counter(type(event) for tick in ticks for event in tick.events)
+    assert counts[TickTold] == TICKS
+    assert counts[StageDone] > counts[StageBegun] > 3 * TICKS
+    assert counts[IterationDone] > TICKS
+    assert counts[OutsideTaken] == 1
+    assert counts[HostStarted] == 8 + 2
+    assert counts[HostLost] == counts[HostStopped] == counts[FinalDone] == 1
+    assert counts[MainLoopGiven] == 2
+    assert counts[ChannelsChanged] >= 3
+    assert sum(len(tick.record.settings) for tick in ticks) == 1
+
+
+def test_old_recordings_are_listed_and_compared(folder: Path) -> None:
+    said = fwk(folder, "log-info", "log.lcm")
+    assert "core_v1.tick_record_t" in said
+    assert "workshop.reading_t" in said
+    assert "undecodable" in said
+    shutil.copy(folder / "log.lcm", folder / "same.lcm")
+    assert "equal" in fwk(folder, "compare", "log.lcm", "same.lcm")
+
+
+def test_a_recording_of_a_newer_version_is_refused(tmp_path: Path) -> None:
+    plan = plan_t()
+    plan.version, plan.json = protocol_t.VERSION + 1, json.dumps({})
+    with LogWriter(tmp_path / "new.lcm", print) as log:
+        log.append("fwk/plan", plan.encode(), 0)
+    with pytest.raises(RecordingError, match=rf"protocol version {plan.version}; this program reads versions 1 to "):
+        Recording(tmp_path / "new.lcm")
+
+
+def test_the_old_recording_is_small_and_of_version_one() -> None:
+    log = OLD / "log.lcm"
+    assert log.stat().st_size < 200_000
+    assert next(iter(LogReader(log))).channel == "fwk/plan"
