@@ -1,5 +1,6 @@
 """The public bus: an ordinary LCM udpm URL, which lcm-spy, lcm-logger and programs in any language understand."""
 
+import contextlib
 import ctypes
 import itertools
 import socket
@@ -70,11 +71,17 @@ class PublicBus:
 
     def publish(self, channel: str, data: bytes) -> None:
         """Sends a message; on this bus loss is not repaired."""
-        for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel.encode(), data):
-            try:
-                self._sender.sendto(datagram, self._address)
-            except OSError:
-                return
+        for datagram in self.datagrams(channel, data):
+            self.send(datagram)
+
+    def datagrams(self, channel: str, data: bytes) -> list[bytes]:
+        """Returns the datagrams of a message, for `send`."""
+        return wire.datagrams(next(self._number) & 0xFFFFFFFF, channel.encode(), data)
+
+    def send(self, datagram: bytes) -> None:
+        """Sends one datagram; one that the system does not take is lost."""
+        with contextlib.suppress(OSError):
+            self._sender.sendto(datagram, self._address)
 
     def receive(self) -> tuple[str, bytes, int] | None:
         """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.

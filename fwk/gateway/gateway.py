@@ -17,6 +17,7 @@ from fwk.engine.message_history import gaps
 from fwk.engine.runner import AWAY_TICKS
 from fwk.gateway.ingress import Outside
 from fwk.gateway.ingress_filter import Strangers
+from fwk.gateway.pacing import PacedPublisher
 from fwk.host.inputs import Inputs
 from fwk.lcm import envelope, wire
 from fwk.lcm.messages import Header, MessageError
@@ -40,8 +41,6 @@ from lcmtypes.core import (
 )
 
 HEARD_AT_ONCE = 256  # messages of other programs, before the run's own have their turn again
-
-
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost what it was told."""
 
@@ -76,7 +75,7 @@ class SupervisorConnection(Protocol):
 
 
 class Outsiders(Protocol):
-    """The programs outside, heard on the public bus."""
+    """The programs outside, on the public bus."""
 
     def fileno(self) -> int:
         """Returns the descriptor that is readable when a message waits."""
@@ -84,6 +83,10 @@ class Outsiders(Protocol):
 
     def receive(self) -> tuple[str, bytes, int] | None:
         """Returns the next message as (channel, data, port of its sender); None when none waits."""
+        ...
+
+    def send(self, datagram: bytes) -> None:
+        """Sends one datagram to them."""
         ...
 
 
@@ -128,6 +131,8 @@ class Gateway:
         self._assembler = wire.Assembler()
         self._sources: list[Source] = [self._records, self._lines, self._status]
         self._sources += [public] if public else []
+        self.publisher = PacedPublisher(network.now_us, public.send if public else _drop)
+        """Sends what goes to the public bus."""
         for source in (*self._sources, self._sender.socket, control):
             network.watch(source)
 
@@ -146,8 +151,9 @@ class Gateway:
         """Says that it hears everything from now on, and works until the supervisor closes the control connection."""
         self._acknowledge()
         while self._open:
-            happened = yield min(self._network.now_us() + IDLE_US, self._sender.due_us)
+            happened = yield min(self._network.now_us() + IDLE_US, self._sender.due_us, self.publisher.due_us)
             self._sender.send_due()
+            self.publisher.send_due()
             if not happened and (self._outside.marks or self._next == 1):
                 self._acknowledge()  # the main loop may have lost what it was told
             self._handle_own()
@@ -162,6 +168,9 @@ class Gateway:
         self._receive_lines()
         for sink in self.sinks:
             sink.close()
+        while self.publisher.waiting:
+            yield self.publisher.due_us
+            self.publisher.send_due()
         self._inputs.close()
         for source in (self._records, self._lines, self._status, self._sender.socket):
             source.close()
@@ -408,3 +417,7 @@ class Gateway:
                 found += [message] if message else []
             except MessageError as error:
                 self._complaints(channels[0].decode(), f"{error}; refused")
+
+
+def _drop(_: bytes) -> None:
+    """Sends nothing: the run has no public bus."""

@@ -40,12 +40,10 @@ def run_gateway(
     gateway.watch(board.fileno(), board.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already
+    if public:
+        mirror = Apart(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.opened_plain)
+        gateway.sinks.append(targets.above(mirror, plan.log.bus))
     gateway.sinks += [
-        *(
-            [targets.above(Apart(sinks.Mirror(plan, public), ours, gateway.opened_plain), plan.log.bus)]
-            if public
-            else []
-        ),
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         *targets.syslog(plan.log, plan.name, gateway.log.error),
         board,

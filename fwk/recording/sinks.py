@@ -2,8 +2,9 @@
 
 import json
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Protocol
 
 from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
@@ -43,20 +44,32 @@ class Recorder:
             self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
 
 
-class Mirror:
-    """Publishes everything on the public bus, except what came from there."""
+class Pace(Protocol):
+    """Sends datagrams, not all at once."""
 
-    def __init__(self, plan: Plan, bus: PublicBus) -> None:
+    def put(self, datagrams: Iterable[bytes]) -> None:
+        """Adds the datagrams of a message."""
+
+    def tick(self) -> None:
+        """Takes note that a tick is complete."""
+
+
+class Mirror:
+    """Publishes everything on the public bus, except what came from there, a few datagrams at a time."""
+
+    def __init__(self, plan: Plan, bus: PublicBus, pace: Pace) -> None:
         self._bus = bus
+        self._pace = pace
         self._came_from_there = frozenset(plan.outside)
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Publishes a message."""
         if channel not in self._came_from_there:
-            self._bus.publish(channel, data)
+            self._pace.put(self._bus.datagrams(channel, data))
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Spreads the messages of the tick over the time until the next one."""
+        self._pace.tick()
 
     def close(self) -> None:
         """Nothing to do."""

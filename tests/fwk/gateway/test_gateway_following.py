@@ -195,3 +195,19 @@ def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) ->
     (line,) = [log_t.decode(data).text for channel, data in followed.kept.messages if channel == "fwk/log"]
     assert followed.kept.sequences == [2]
     assert line == f"{IMU}: 1 messages of 1 to 1 are lost and not in the recording"
+
+
+def test_a_record_that_the_plan_cannot_have_is_refused(followed: Followed) -> None:
+    """It comes from the supervisor's port; the gateway names it and works on."""
+    for damage in (b"", b"x" * 40, tick_record_t().encode()[:30]):
+        followed.supervisor.publish(b"fwk/record", damage, followed.ports.record)
+    strange = tick_record_t()
+    strange.version, strange.run, strange.tick = protocol_t.VERSION, RUN, 1
+    strange.n_marks, strange.channel, strange.sequence = 1, [10**6], [1]
+    followed.supervisor.publish(b"fwk/record", strange.encode(), followed.ports.record)
+    followed.publish(1)
+    followed.record(1, mark=1)
+    followed.serve()
+    assert (followed.kept.ticks, followed.kept.sequences) == ([1], [1])
+    said = [log_t.decode(data).text for channel, data in followed.kept.messages if channel == "fwk/log"]
+    assert any("fwk/record: " in text and "refused" in text for text in said)

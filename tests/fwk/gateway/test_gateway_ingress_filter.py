@@ -47,7 +47,7 @@ class Opened:
         self._network = UdpNetwork()
         self.gateway = Gateway(made, RUN, self._network, self._theirs, self._bus)
         self.kept = Kept()
-        self.gateway.sinks += [self.kept, Mirror(made, self._bus)]
+        self.gateway.sinks += [self.kept, Mirror(made, self._bus, self.gateway.publisher)]
 
     def say(self, data: bytes, channel: str = WISH) -> None:
         self.stranger.publish(channel, data)
@@ -65,6 +65,7 @@ class Opened:
 
     def follow(self) -> None:
         self._network.run(self.gateway._receive_records())
+        self.gateway.publisher.send_due()
 
     @property
     def wishes(self) -> list[bytes]:

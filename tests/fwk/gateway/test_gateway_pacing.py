@@ -1,0 +1,86 @@
+"""What the gateway publishes leaves in small groups, in order, within a tick."""
+
+from collections.abc import Callable
+
+import pytest
+
+from fwk.gateway.pacing import LARGEST, LONGEST_US, QUEUE_MAX, SLOT_BYTES, SLOT_US, PacedPublisher
+
+TICK_US = 50_000
+
+
+class Paced:
+    """A publisher on a clock that the test moves; `groups` has the sizes of what left at once."""
+
+    def __init__(self) -> None:
+        self.now_us = 1_000_000
+        self.sent: list[bytes] = []
+        self.groups: list[int] = []
+        self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append)
+
+    def tick(self, count: int, datagram: Callable[[int], bytes] = lambda number: b"%d" % number) -> None:
+        """A tick is over, in which so many datagrams were written."""
+        self.publisher.put(datagram(number) for number in range(count))
+        self.publisher.tick()
+
+    def pass_time(self, duration_us: int) -> None:
+        """Lets time pass; the publisher is called when it asked to be."""
+        end_us = self.now_us + duration_us
+        while max(self.publisher.due_us, self.now_us) < end_us:
+            self.now_us = max(self.publisher.due_us, self.now_us)
+            before = len(self.sent)
+            self.publisher.send_due()
+            self.groups.append(len(self.sent) - before)
+        self.now_us = end_us
+
+
+def test_a_tick_leaves_in_small_groups_within_a_tick() -> None:
+    paced = Paced()
+    for tick in range(1, 21):
+        paced.tick(200)
+        paced.pass_time(TICK_US)
+        assert len(paced.sent) == 200 * tick
+    assert max(paced.groups) <= LARGEST
+    assert paced.sent[:200] == [b"%d" % number for number in range(200)]
+
+
+def test_many_ticks_at_once_leave_in_groups_of_bounded_size() -> None:
+    paced = Paced()
+    for _ in range(16):
+        paced.tick(200)
+    paced.pass_time(16 * 200 // LARGEST * SLOT_US + 2 * SLOT_US)
+    assert len(paced.sent) == 16 * 200
+    assert max(paced.groups) <= 2 * LARGEST
+
+
+def test_a_gateway_that_is_late_sends_two_groups_at_the_most() -> None:
+    paced = Paced()
+    paced.tick(1000)
+    paced.pass_time(SLOT_US)
+    paced.now_us += 100 * SLOT_US
+    before = len(paced.sent)
+    paced.publisher.send_due()
+    assert len(paced.sent) - before <= 2 * LARGEST
+
+
+def test_large_datagrams_count_as_several() -> None:
+    paced = Paced()
+    paced.tick(100, lambda _: bytes(10 * SLOT_BYTES))
+    paced.pass_time(SLOT_US)
+    assert len(paced.sent) <= 2
+
+
+def test_what_exceeds_the_queue_leaves_at_once() -> None:
+    paced = Paced()
+    paced.tick(QUEUE_MAX + 1000)
+    paced.pass_time(SLOT_US)
+    assert paced.publisher.waiting == QUEUE_MAX
+
+
+@pytest.mark.parametrize("count", [1, 5])
+def test_a_few_messages_leave_at_once(count: int) -> None:
+    paced = Paced()
+    paced.tick(count)
+    paced.pass_time(2 * SLOT_US)
+    assert len(paced.sent) == count
+    assert paced.publisher.due_us > paced.now_us + LONGEST_US
