@@ -12,7 +12,7 @@ from tests.docs.docs_pages import PAGES, ROOT, Block, blocks, spans, tutorial_fi
 
 _MODULE = re.compile(r"(?:fwk|procs|tools)(?:\.\w+)+")
 _FILE = re.compile(r"(?:fwk|procs|tests|tools|launch|lcmtypes|docs)(?:/[\w.-]+)+/?")
-_CHANNELS_AND_LOGS = re.compile(r"fwk/[a-z]+|fwk\.log(\.\w+)?")  # `fwk/tick` is a channel, `fwk.log` a text log
+_CHANNELS_AND_LOGS = re.compile(r"fwk/[a-z_]+|fwk\.log(\.\w+)?")  # `fwk/tick` is a channel, `fwk.log` a text log
 
 
 def of_language(*languages: str) -> list[Block]:
