@@ -10,6 +10,7 @@ from fwk.component.images import Ring
 from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
+from fwk.host.process_title import name_process
 from fwk.launcher.gateway_process import run_gateway
 from fwk.model.plan import Plan
 from fwk.recording import sinks
@@ -39,6 +40,7 @@ class HelperProcesses:
             gateway_control.close()
             display_feed.close()
             die_with_parent(parent, signal.SIGCONT)
+            name_process(plan.name, "display")
             run_forked(lambda _: _display(plan, display_end, options.plain))
         display_end.close()
         self._gateway = os.fork()
@@ -46,6 +48,7 @@ class HelperProcesses:
             self.control.close()
             os.setsid()
             die_with_parent(parent, signal.SIGCONT)
+            name_process(plan.name, "gateway")
             run_forked(lambda _: run_gateway(plan, run, options, gateway_control, display_feed, rings))
         gateway_control.close()
         display_feed.close()
@@ -54,6 +57,7 @@ class HelperProcesses:
             self.control.close()
             os.setsid()
             die_with_parent(parent)
+            name_process(plan.name, "watcher")
             run_forked(partial(_watch, plan))
 
     def fileno(self) -> int:

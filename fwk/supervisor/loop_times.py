@@ -7,7 +7,7 @@ from fwk.clock import US_PER_S
 from fwk.component.log import Logger
 from fwk.model.histogram import Histogram
 from fwk.model.plan import Plan
-from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.host_process import HostProcess
 
 TOLERANCE = 1.1  # a tick that takes up to so many times the desired time is no reason for a warning
 _QUIET_US = 10 * US_PER_S
@@ -45,7 +45,7 @@ class LoopTimes:
     longer than a stage may.
     """
 
-    def __init__(self, plan: Plan, table: Sequence[HostEntry], log: Logger) -> None:
+    def __init__(self, plan: Plan, table: Sequence[HostProcess], log: Logger) -> None:
         self.stages = [Histogram() for _ in plan.stages]
         self.loop = Histogram()
         """From the beginning of a tick's first stage to the end of its last."""
@@ -106,7 +106,7 @@ class LoopTimes:
                 f"slowest component {self.name_of(host, its_stage)} ({busy_us / 1000:.1f} ms){self._missed.between()}"
             )
 
-    def late(self, entry: HostEntry, stage: int, tick: int, allowed_us: int) -> None:
+    def late(self, entry: HostProcess, stage: int, tick: int, allowed_us: int) -> None:
         """In real time the loop goes on without a host."""
         if entry.held:
             self._log.info(f"{entry.name} is held by its debugger in tick {tick}; the loop goes on")
@@ -117,7 +117,7 @@ class LoopTimes:
                 f"{allowed_us / 1000:g} ms; the loop goes on without it{self._overrun[entry.index].between()}"
             )
 
-    def on_time_again(self, entry: HostEntry, tick: int, busy_us: int) -> None:
+    def on_time_again(self, entry: HostProcess, tick: int, busy_us: int) -> None:
         """A late host has answered; said if its being late was."""
         if entry.held or entry.index in self._said_late:
             self._said_late.discard(entry.index)
