@@ -21,16 +21,17 @@ _PATIENCE_S = 5.0
 
 
 class HelperProcesses:
-    """Forks gateway and display, before the supervisor has sockets of its own.
+    """Forks gateway, display and watcher before the supervisor has sockets of its own.
 
-    Both end when their connections are closed, and so when the supervisor dies: its death only wakes who was stopped.
+    Gateway and display end when their connections are closed, and so when the supervisor dies; its death also wakes
+    them if they were stopped.
     """
 
     def __init__(self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring]) -> None:
         self.gave_up = ""
-        """What could not be waited for at the end."""
+        """Process that did not end in time, and the consequence; empty: all did."""
         self.lost = 0
-        """After the end: how many messages the gateway never got."""
+        """Messages that the gateway never got; known after the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -65,19 +66,19 @@ class HelperProcesses:
         return self.control.fileno()
 
     def gateway_end(self) -> str:
-        """How the gateway ended, when its end of `control` was closed before ours."""
+        """Returns how the gateway ended, when it closed its end of `control` first."""
         pid, self._gateway = self._gateway, 0
         return wait_for_end(pid)
 
     def stop(self) -> dict[str, bytes]:
-        """Lets both finish; returns the newest messages that the gateway saw."""
+        """Lets gateway and display finish; returns the newest message of each channel."""
         if self._watcher:
             os.kill(self._watcher, signal.SIGTERM)
             end_child(self._watcher, 1.0)
         self.control.settimeout(_PATIENCE_S)
         newest: dict[str, bytes] = {}
         for pid in filter(None, (self._gateway, self._display)):
-            os.kill(pid, signal.SIGCONT)  # somebody may have stopped it
+            os.kill(pid, signal.SIGCONT)  # it may have been stopped
         try:
             self.control.shutdown(socket.SHUT_WR)
             while packet := self.control.recv(_PACKET_MAX):

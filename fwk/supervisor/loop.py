@@ -52,6 +52,11 @@ class MainLoop:
         """Names of the hosts that the loop waits for longer than a moment, or the gateway."""
         return ["gateway"] if self.tick_log.stalled else [host.name for host in self.barrier.report.hosts]
 
+    @property
+    def components_waited_for(self) -> list[str]:
+        """Full names of the components that the loop waits for longer than a moment, or the gateway."""
+        return ["gateway"] if self.tick_log.stalled else self.barrier.report.components
+
     def run_tick(self) -> Steps[None]:
         """Runs the next tick when its time has come; while the run is paused, only crosses the boundary."""
         yield from self._until_due()

@@ -30,6 +30,11 @@ class WaitReport:
         """The hosts that are waited for longer than a moment."""
         return list(self._hosts) if self._now_us() >= self._began_us + SHORT_US else []
 
+    @property
+    def components(self) -> list[str]:
+        """Names of the components that those hosts execute."""
+        return [self._component_of(host) for host in self.hosts]
+
     def waiting(self, began_us: int, hosts: Iterable[HostProcess], subject: str) -> None:
         """Takes note that `subject`, such as "tick 7", waits for hosts since the wall time `began_us`."""
         now_us = self._now_us()

@@ -42,6 +42,8 @@ class StatusReport:
         made.ticks_per_s = (self._loop.tick - tick) * US_PER_S / elapsed_us
         made.repeated, made.late = self._loop.barrier.repeated, self._loop.barrier.late
         made.paused = self._loop.paused
+        made.waits_for = self._loop.components_waited_for
+        made.n_waits_for = len(made.waits_for)
         made.hosts = [_host(entry) for entry in self._core.hosts]
         made.n = len(made.hosts)
         return made

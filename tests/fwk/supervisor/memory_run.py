@@ -26,6 +26,7 @@ from lcmtypes.core import (
     histogram_t,
     log_t,
     recorded_t,
+    status_t,
     tick_record_t,
     tick_t,
 )
@@ -76,6 +77,7 @@ class MemoryRun:
         """Ticks of all records that were sent, also of repeated ones."""
         self.gateway_stands_still = False
         self.lines: list[log_t] = []
+        self.statuses: list[status_t] = []
         self.starts: list[tuple[int, Start]] = []
         self.killed: list[int] = []
         self.does_not_answer: set[int] = set()
@@ -180,6 +182,8 @@ class MemoryRun:
             if not self.records or record.tick > self.records[-1].tick:
                 self.records.append(record)
             self._gateway_done(record.tick)
+        elif channel == b"fwk/status":
+            self.statuses.append(status_t.decode(data))
         elif channel == b"fwk/log":
             self.lines.append(log_t.decode(data))
 

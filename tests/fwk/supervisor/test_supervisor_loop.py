@@ -119,6 +119,7 @@ def test_hang_is_named_after_a_second_and_repeatedly() -> None:
         f"tick {tick} has waited {seconds} s for r/right" for seconds in (1, 2, 4)
     ]
     assert run.supervisor.loop.waits_for == ["r/right"]
+    assert run.statuses[-1].waits_for == ["r/right"]
 
 
 def test_usual_wait_is_not_reported() -> None:
