@@ -6,7 +6,8 @@ its `Network` and knows no other source of time, so the same code runs on UDP so
 recording.
 """
 
-from collections.abc import Generator
+import socket
+from collections.abc import Generator, Mapping
 from typing import Protocol, TypeVar
 
 from fwk.bus.sockets import Address, multicast_receiver, own_socket
@@ -68,10 +69,14 @@ class Network(Protocol):
 
 
 class UdpNetwork:
-    """The network of a real process: UDP on the loopback interface and epoll."""
+    """The network of a real process: UDP on the loopback interface and epoll.
 
-    def __init__(self) -> None:
+    `held` are sockets that were opened before this process was forked, by port: no other process can take these ports.
+    """
+
+    def __init__(self, held: Mapping[int, socket.socket] | None = None) -> None:
         self._waiting = Waiting()
+        self._held = held or {}
 
     def now_us(self) -> int:
         """Returns the wall time in microseconds, from an arbitrary origin."""
@@ -82,8 +87,9 @@ class UdpNetwork:
         return multicast_receiver(port)
 
     def own_socket(self, port: int) -> DatagramSocket:
-        """Opens the socket that sends from `port` and hears what is sent to `port` alone."""
-        return own_socket(port)
+        """Opens the socket that sends from `port` and hears what is sent to `port` alone, or shares a held one."""
+        held = self._held.get(port)
+        return own_socket(port) if held is None else held.dup()
 
     def watch(self, source: Source) -> None:
         """Lets `source` end waits from now on."""

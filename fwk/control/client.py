@@ -11,6 +11,7 @@ from fwk.control import address
 
 TIMEOUT_S = 5.0
 _CHUNK = 64 << 10
+_DESCRIPTORS_MAX = 4
 
 
 class ControlError(Exception):
@@ -78,12 +79,13 @@ class Client:
 
     def _answer(self, timeout_s: float | None, end_us: int | None = None) -> dict[str, Any]:
         """The next answer. EOFError: there is none any more, or none before `end_us`."""
-        parts = [self._rest]
+        parts, descriptors = [self._rest], list[int]()
         while b"\n" not in parts[-1]:
             left_s = timeout_s if end_us is None else max(1, end_us - monotonic_us()) / US_PER_S
             self._socket.settimeout(left_s)
             try:
-                data = self._socket.recv(_CHUNK)
+                data, found, _, _ = socket.recv_fds(self._socket, _CHUNK, _DESCRIPTORS_MAX)
+                descriptors += found
             except TimeoutError as error:
                 if end_us is not None:
                     raise EOFError from error
@@ -99,7 +101,7 @@ class Client:
         answer: dict[str, Any] = json.loads(line)
         if not answer.get("ok"):
             raise RefusedError(str(answer.get("error")))
-        return answer
+        return {**answer, "descriptors": descriptors} if descriptors else answer
 
     def _waits(self) -> str:
         """For what happens at a tick's end only: what keeps the tick from ending."""

@@ -4,7 +4,7 @@ import contextlib
 import json
 import select
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from fwk.control.address import obeys, peer_of
@@ -41,11 +41,14 @@ class Connection:
         """Whether something waits to be sent."""
         return bool(self._replies)
 
-    def reply(self, message: dict[str, Any]) -> None:
+    def reply(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
         """Sends as much as goes, keeps the rest; who does not read for long is left."""
         if not self.open:
             return
         self._replies += json.dumps(message).encode() + b"\n"
+        if descriptors:
+            with contextlib.suppress(OSError):  # `flush` finds out
+                del self._replies[: socket.send_fds(self._socket, [self._replies[:_CHUNK]], descriptors)]
         self.flush()
         if len(self._replies) > REPLIES_MAX:
             self.close()

@@ -1,4 +1,4 @@
-"""Grants what components ask of the blackboard, between two ticks and in one order."""
+"""Decides requests for dynamic channels at boundaries, in one order."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""The ledger of marks: which sequence number of each channel is visible, and what a stage has to be told of it."""
+"""The ledger of marks: visible sequence numbers of all channels, and what each stage is told of them."""
 
 from bisect import bisect_left, insort
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from fwk.model.plan import Plan
 
 @dataclass(frozen=True)
 class Void:
-    """What a writer that died had sent above the mark is void."""
+    """The messages above the mark of a writer that died."""
 
     channel: int
     above_sequence: int
@@ -21,8 +21,8 @@ class Void:
 class Ledger:
     """Marks of all channels.
 
-    `step` counts stages begun. What dones publish while a stage runs becomes visible when the next one begins, and not
-    before: a tick that is repeated says the same as the first time. Who takes part is told what changed since the step
+    `step` counts stages begun. Messages that dones publish while a stage runs become visible when the next stage
+    begins, and not before: a repeated tick says the same as the first time. A host is told what changed since the step
     of the last tick that it answered.
     """
 
@@ -33,7 +33,7 @@ class Ledger:
         self.marks = [0] * channels
         """Highest visible sequence number of each channel."""
         self.voids: list[Void] = []
-        """In the order in which they came, of a long run with many deaths a long list."""
+        """All voids of the run, in the order of their steps."""
         self._latest = [0] * channels  # published, visible from the next step on
         self._dirty: list[int] = []
         self._changed = [-1] * channels  # step at which the mark moved last; -1: never
@@ -56,7 +56,7 @@ class Ledger:
         self._declared_read = [list(channels) for channels in self._read]
 
     def begin(self) -> int:
-        """Begins a stage; everything published so far is visible to it. Returns its step."""
+        """Begins a stage, to which everything published so far is visible; returns its step."""
         self.step += 1
         for channel in self._dirty:
             self.marks[channel] = self._latest[channel]
@@ -65,7 +65,7 @@ class Ledger:
         return self.step
 
     def publish(self, channel: int, sequence: int) -> bool:
-        """A writer's done makes its messages visible to the stages that begin from now on; false: they are already."""
+        """Makes messages visible to stages that begin from now on; returns whether they were not published before."""
         if sequence <= self._latest[channel]:
             return False
         self._latest[channel] = sequence
@@ -73,22 +73,22 @@ class Ledger:
         return True
 
     def latest(self, channel: int) -> int:
-        """Number of the newest message of a channel that a done has told."""
+        """Returns the sequence number of the newest message of a channel that a done has named."""
         return self._latest[channel]
 
     def news(self, stage: int, since: int) -> tuple[list[int], list[int]]:
-        """Channels read in a stage whose marks moved after step `since`, and the marks."""
+        """Returns the channels read in a stage whose marks moved after step `since`, and the marks."""
         changed, marks = self._changed, self.marks
         channels = [channel for channel in self._interest[stage] if changed[channel] > since]
         return channels, [marks[channel] for channel in channels]
 
     def news_of(self, host: int, since: int) -> tuple[list[int], list[int]]:
-        """Channels that the components of a host read whose marks moved after step `since`, and the marks."""
+        """Returns the channels read by a host whose marks moved after step `since`, and the marks."""
         channels = [channel for channel in self._read[host] if self._changed[channel] > since]
         return channels, [self.marks[channel] for channel in channels]
 
     def opened(self, instances: Instances) -> None:
-        """Who reads and writes what was opened at run time; each stage is told of it from the next step on."""
+        """Takes over the readers and writers of dynamic channels; stages are told from the next step on."""
         for lists, before in ((self._interest, self._declared_interest), (self._read, self._declared_read)):
             for place, channels in enumerate(before):
                 lists[place] = list(channels)
@@ -110,18 +110,18 @@ class Ledger:
             if channel not in channels:
                 insort(channels, channel)
         if self.marks[channel]:
-            self._changed[channel] = self.step + 1  # whoever reads it already has it; who is new has not
+            self._changed[channel] = self.step + 1  # a new reader has not been told
 
     def void(self, host: int, incarnation: int, tick: int) -> None:
-        """A host died in that tick, the newest; its next start is `incarnation`."""
+        """Voids what a host that died in the newest tick had sent above the marks; its next life is `incarnation`."""
         for channel in self._written[host]:
             self.voids.append(Void(channel, self._latest[channel], tick, incarnation, self.step))
 
     def voids_since(self, since: int) -> list[Void]:
-        """Voids that somebody who was told at step `since` last may not know."""
+        """Returns the voids that a host whose last tick was of step `since` may not know."""
         return self.voids[bisect_left(self.voids, since, key=lambda void: void.since) :]
 
     def sequences(self, host: int) -> dict[str, int]:
-        """Where a restarted host's channels go on."""
+        """Returns the sequence numbers at which a restarted host continues, by channel."""
         declared = [channel for channel in self._written[host] if channel < len(self.plan.channels)]
         return {self.plan.channels[channel].name: self._latest[channel] for channel in declared}

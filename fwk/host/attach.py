@@ -2,6 +2,7 @@
 
 import os
 import signal
+import socket
 import sys
 import traceback
 from collections.abc import Callable, Mapping
@@ -19,6 +20,7 @@ from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
 from fwk.host.process import StopSignal, raise_file_limit
 from fwk.model.plan import ComponentPlan, Plan
+from fwk.model.ports import Ports
 
 FAILED = 1
 REFUSED = 2
@@ -60,7 +62,10 @@ class Place:
             print(f"error: {reason}", file=sys.stderr)
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
-        driver = HostDriver(self._assignment(told), stop)
+        port = Ports.of(self.plan).host(self.component.host)
+        held = socket.socket(fileno=told["descriptors"][0])
+        held.setblocking(False)
+        driver = HostDriver(self._assignment(told), stop, held={port: held})
         forward_logging(driver.host.log_of_now)
         try:
             if self.debug:

@@ -1,6 +1,7 @@
 """Runs a host on the machine's sockets and clock."""
 
-from collections.abc import Callable
+import socket
+from collections.abc import Callable, Mapping
 
 from fwk.bus.network import UdpNetwork
 from fwk.engine.runner import Runner
@@ -14,8 +15,14 @@ from fwk.host.process import StopSignal, give_memory_back
 class HostDriver:
     """A host in a process of its own."""
 
-    def __init__(self, assignment: Assignment, stop: StopSignal, make_runner: Callable[..., Runner] = Runner) -> None:
-        self._network = UdpNetwork()
+    def __init__(
+        self,
+        assignment: Assignment,
+        stop: StopSignal,
+        make_runner: Callable[..., Runner] = Runner,
+        held: Mapping[int, socket.socket] | None = None,
+    ) -> None:
+        self._network = UdpNetwork(held)
         self._network.watch(stop.wakeup)
         hooks = ProcessHooks(stop, make_runner, BackgroundServer().serving, give_memory_back)
         self.host = host_of(assignment, self._network, hooks)

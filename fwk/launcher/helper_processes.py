@@ -10,6 +10,7 @@ from fwk.component.images import Ring
 from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
+from fwk.host.process_title import name_process
 from fwk.launcher.gateway_process import run_gateway
 from fwk.model.plan import Plan
 from fwk.recording import sinks
@@ -20,16 +21,17 @@ _PATIENCE_S = 5.0
 
 
 class HelperProcesses:
-    """Forks gateway and display, before the supervisor has sockets of its own.
+    """Forks gateway, display and watcher before the supervisor has sockets of its own.
 
-    Both end when their connections are closed, and so when the supervisor dies: its death only wakes who was stopped.
+    Gateway and display end when their connections are closed, and so when the supervisor dies; its death also wakes
+    them if they were stopped.
     """
 
     def __init__(self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring]) -> None:
         self.gave_up = ""
-        """What could not be waited for at the end."""
+        """Process that did not end in time, and the consequence; empty: all did."""
         self.lost = 0
-        """After the end: how many messages the gateway never got."""
+        """Messages that the gateway never got; known after the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -39,6 +41,7 @@ class HelperProcesses:
             gateway_control.close()
             display_feed.close()
             die_with_parent(parent, signal.SIGCONT)
+            name_process(plan.name, "display")
             run_forked(lambda _: _display(plan, display_end, options.plain))
         display_end.close()
         self._gateway = os.fork()
@@ -46,6 +49,7 @@ class HelperProcesses:
             self.control.close()
             os.setsid()
             die_with_parent(parent, signal.SIGCONT)
+            name_process(plan.name, "gateway")
             run_forked(lambda _: run_gateway(plan, run, options, gateway_control, display_feed, rings))
         gateway_control.close()
         display_feed.close()
@@ -54,6 +58,7 @@ class HelperProcesses:
             self.control.close()
             os.setsid()
             die_with_parent(parent)
+            name_process(plan.name, "watcher")
             run_forked(partial(_watch, plan))
 
     def fileno(self) -> int:
@@ -61,19 +66,19 @@ class HelperProcesses:
         return self.control.fileno()
 
     def gateway_end(self) -> str:
-        """How the gateway ended, when its end of `control` was closed before ours."""
+        """Returns how the gateway ended, when it closed its end of `control` first."""
         pid, self._gateway = self._gateway, 0
         return wait_for_end(pid)
 
     def stop(self) -> dict[str, bytes]:
-        """Lets both finish; returns the newest messages that the gateway saw."""
+        """Lets gateway and display finish; returns the newest message of each channel."""
         if self._watcher:
             os.kill(self._watcher, signal.SIGTERM)
             end_child(self._watcher, 1.0)
         self.control.settimeout(_PATIENCE_S)
         newest: dict[str, bytes] = {}
         for pid in filter(None, (self._gateway, self._display)):
-            os.kill(pid, signal.SIGCONT)  # somebody may have stopped it
+            os.kill(pid, signal.SIGCONT)  # it may have been stopped
         try:
             self.control.shutdown(socket.SHUT_WR)
             while packet := self.control.recv(_PACKET_MAX):

@@ -1,15 +1,18 @@
 """Runs a plan in the foreground: composes supervisor, zygote, gateway and display."""
 
 import secrets
+import socket
 
 from fwk.bus.network import UdpNetwork
 from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.sockets import own_socket
 from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
 from fwk.control.address import supervisor_address
 from fwk.control.server import Answer, Server
 from fwk.host.debugger import DebuggerMissing, DebugRequest, check
 from fwk.host.process import raise_file_limit
+from fwk.host.process_title import name_process
 from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.launcher.signals import Signals
@@ -17,7 +20,7 @@ from fwk.lcm import envelope, messages
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
-from fwk.supervisor.loop import WINDOW
+from fwk.supervisor.barrier import WINDOW
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.processes.zygote import Zygote
 from fwk.supervisor.supervisor import Machine, Supervisor
@@ -38,32 +41,55 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     profile = _profile_request(plan, options)
     lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
+    sockets = _host_sockets(plan, ports)
     number = secrets.randbits(62)
     rings = _rings(plan, options)
-    zygote = Zygote(plan, number, rings, debug, profile)
-    children = HelperProcesses(plan, number, options, rings)
-    network = UdpNetwork()
-    machine = Machine(zygote, Signals(), lambda answer: _control_server(plan, answer), rings, debug)
+    zygote = Zygote(plan, number, rings, sockets, debug, profile)
+    helpers = HelperProcesses(plan, number, options, rings)
+    network = UdpNetwork(sockets)
+    name_process(plan.name, "supervisor")
+    machine = Machine(zygote, Signals(), lambda answer: _control_server(plan, answer), rings, sockets, debug)
     supervisor = Supervisor(plan, options, number, network, machine)
-    reason, failed = network.run(supervisor.work(children))
+    reason, failed = network.run(supervisor.work(helpers))
     status, failures = network.run(supervisor.stop())
     if failures and not failed:
         reason, failed = f"failed: {'; '.join(failures)}", True
-    newest = _decoded(plan, children.stop())
-    if children.gave_up and not failed:
-        reason, failed = f"broken: {children.gave_up}", True
+    newest = _decoded(plan, helpers.stop())
+    if helpers.gave_up and not failed:
+        reason, failed = f"broken: {helpers.gave_up}", True
     zygote.close()
     lock.release()
     return Outcome(
         1 if failed else 0,
         supervisor.loop.tick,
-        supervisor.pace.time_us / US_PER_S,
+        supervisor.time_us / US_PER_S,
         supervisor.wall_s,
         reason,
         status,
         newest,
-        children.lost,
+        helpers.lost,
     )
+
+
+def _host_sockets(plan: Plan, ports: Ports) -> dict[int, socket.socket]:
+    """Opens the hosts' own sockets, so that no other process can take the port of a host that ended.
+
+    Raises:
+        PortsInUse: another program has one of the ports.
+    """
+    opened: dict[int, socket.socket] = {}
+    for host in plan.hosts:
+        port = ports.host(host.index)
+        try:
+            opened[port] = own_socket(port)
+        except OSError as error:
+            for each in opened.values():
+                each.close()
+            raise PortsInUse(
+                f"{plan.file or plan.name}: port {port} of {host.name} cannot be opened: {error.strerror}; "
+                "start this run with another --bus-port"
+            ) from error
+    return opened
 
 
 def _control_server(plan: Plan, answer: Answer) -> Server:

@@ -39,7 +39,10 @@ class ComponentPlan:
     """Port attribute to channel names."""
     host: int
     restart: RestartPolicy = RestartPolicy()
-    ready_timeout_s: float = 20.0
+    ready_timeout_s: float | None = None
+    """Wall time in which its host has to become ready; None: no limit."""
+    stop_timeout_s: float | None = None
+    """Wall time in which its host has to end when it is stopped while the run goes on; None: no limit."""
     needs: tuple[int, ...] = ()
     """Indices of components that have to be ready before this one starts, whoever grants it an aspect among them."""
     rate_hz: float | None = None

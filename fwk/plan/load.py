@@ -189,6 +189,7 @@ def _component_plans(
             host=host_of[index],
             restart=RestartPolicy(**each.asked.entry.restart.model_dump()),
             ready_timeout_s=each.asked.entry.ready_timeout_s,
+            stop_timeout_s=each.asked.entry.stop_timeout_s,
             rate_hz=each.rate_hz,
             memory_limit_mb=each.asked.entry.memory_limit_mb,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),

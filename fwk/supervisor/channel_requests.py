@@ -1,80 +1,72 @@
-"""What components ask of the blackboard on its way into the run: decided between two ticks, told, recorded."""
+"""Requests for dynamic channels: decided at boundaries, told to the hosts, recorded."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
-
-from fwk.bus.sync import place_of
-from fwk.component.log import Logger
 from fwk.engine.channel_grants import Openings
-from fwk.engine.visibility import Ledger
 from fwk.model.channel_table import Fact, text_of
-from fwk.model.plan import Plan
 from fwk.model.requests import channel_request_of
-from fwk.supervisor.processes.host_process import Change, HostEntry
-from fwk.supervisor.processes.hosts import Hosts
-from lcmtypes.core import done_t
+from fwk.model.tick_events import ChannelsChanged
+from fwk.supervisor.changes import Changes
+from fwk.supervisor.core import Core
+from fwk.supervisor.host_process import Change, HostProcess
+from fwk.supervisor.tick_log import TickLog
+from lcmtypes.core import channel_request_t
 
 
-class Opening:
-    """Of a run in which components may open channels; `change` makes a decision part of the tick that is to begin."""
+class ChannelRequests:
+    """Decides about dynamic channels, in a run whose components may open any."""
 
-    def __init__(
-        self, plan: Plan, hosts: Hosts, ledger: Ledger, change: Callable[[Sequence[Fact]], Change], log: Logger
-    ) -> None:
-        self._plan = plan
-        self._hosts = hosts
-        self._ledger = ledger
-        self._change = change
-        self._log = log
-        self._openings = Openings(plan)
-        self._written = {channel.index for channel in plan.channels}  # all channels that somebody has written
+    def __init__(self, core: Core, changes: Changes, tick_log: TickLog) -> None:
+        self._core = core
+        self._changes = changes
+        self._tick_log = tick_log
+        self._exist = any(component.opens for component in core.plan.components)
+        self._grants = Openings(core.plan)
+        self._written = {channel.index for channel in core.plan.channels}  # all channels that had a writer
 
     @property
     def asked(self) -> bool:
         """Whether there is something to decide."""
-        return self._openings.asked
+        return self._exist and self._grants.asked
 
     def snapshot(self) -> str:
-        """The blackboard as it is, for a host that starts."""
-        return text_of(self._openings.instances.snapshot())
+        """Returns the table of dynamic channels as it is, for a host that starts."""
+        return text_of(self._grants.instances.snapshot()) if self._exist else "[]"
 
-    def ask(self, done: done_t) -> None:
-        """Takes the requests for dynamic channels in a done."""
-        asked: dict[str, list[list[Any]]] = {}
-        for request in done.channels:
-            asked.setdefault(self._plan.components[request.component].name, []).append(channel_request_of(request))
-        for name, requests in asked.items():
-            self._openings.ask(done.tick, place_of(done), name, requests)
+    def ask(self, tick: int, step: int, request: channel_request_t) -> None:
+        """Takes a request for a dynamic channel."""
+        if self._exist:
+            name = self._core.plan.components[request.component].name
+            self._grants.ask(tick, step, name, [channel_request_of(request)])
 
-    def came(self, entry: HostEntry) -> None:
-        """A host takes part in the run from now on."""
-        for component in self._plan.hosts[entry.index].components:
-            self._openings.came(component, entry.incarnation)
+    def came(self, host: HostProcess) -> None:
+        """Takes note that a host takes part in the run."""
+        for component in self._core.components_of(host) if self._exist else ():
+            self._grants.came(component, host.incarnation)
 
-    def left(self, entry: HostEntry) -> None:
-        """A host ended or leaves the loop; what its components had opened is closed."""
-        for component in self._plan.hosts[entry.index].components:
-            self._openings.left(component)
+    def left(self, host: HostProcess) -> None:
+        """Takes note that a host ended or leaves the loop; the channels that its components had opened are closed."""
+        for component in self._core.components_of(host) if self._exist else ():
+            self._grants.left(component)
 
     def decide(self) -> Change | None:
-        """Decides at a boundary; returns the change if channels are written by it that never were before."""
-        facts, _ = self._openings.decide(self._busy)
+        """Decides at a boundary; returns the change if it gives a writer to channels that never had one."""
+        facts, _ = self._grants.decide(self._busy)
         announced = None
         if facts:
             written = {fact.opening.channel for fact in facts if fact.kind == "write" and fact.opening}
-            change = self._change([self._numbered(fact) for fact in facts])
+            change = self._changes.change_channels([self._numbered(fact) for fact in facts])
+            self._tick_log.event(ChannelsChanged(change.number))
             announced = None if written <= self._written else change
             self._written |= written
-            self._ledger.opened(self._openings.instances)
+            self._core.ledger.opened(self._grants.instances)
         for fact in facts:
             if fact.kind == "refuse":
-                self._log.warning(f"{self._plan.components[fact.component].name}: {fact.reason}; refused")
+                self._core.log.warning(f"{self._core.plan.components[fact.component].name}: {fact.reason}; refused")
         return announced
 
     def _numbered(self, fact: Fact) -> Fact:
-        """A writer goes on where the channel is."""
-        return fact.numbered(self._ledger.latest(fact.opening.channel)) if fact.opening else fact
+        """Adds the newest sequence number of the channel, at which its writer goes on."""
+        return fact.numbered(self._core.ledger.latest(fact.opening.channel)) if fact.opening else fact
 
     def _busy(self, component: int) -> bool:
-        entry = self._hosts.table[self._plan.components[component].host]
-        return entry.busy is not None or entry.index in self._hosts.leaving
+        host = self._core.host_of(component)
+        return host.late_with is not None or host.finalizing

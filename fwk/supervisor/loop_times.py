@@ -7,7 +7,7 @@ from fwk.clock import US_PER_S
 from fwk.component.log import Logger
 from fwk.model.histogram import Histogram
 from fwk.model.plan import Plan
-from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.host_process import HostProcess
 
 TOLERANCE = 1.1  # a tick that takes up to so many times the desired time is no reason for a warning
 _QUIET_US = 10 * US_PER_S
@@ -15,7 +15,7 @@ _OVERRUNS_SAID = 10
 
 
 class Limited:
-    """Lets some warnings of a kind through at once, then one each ten seconds, and counts those between."""
+    """Lets some warnings of a kind through at once, then one every ten seconds, and counts those in between."""
 
     def __init__(self, at_once: int) -> None:
         self.left_out = 0
@@ -23,7 +23,7 @@ class Limited:
         self._quiet_until_us = 0
 
     def lets_through(self, now_us: int) -> bool:
-        """Whether a warning may be said now; if not, it is counted."""
+        """Whether a warning may be logged now; if not, it is counted."""
         if self._at_once > 0:
             self._at_once -= 1
         elif now_us < self._quiet_until_us:
@@ -33,7 +33,7 @@ class Limited:
         return True
 
     def between(self) -> str:
-        """Words for what was left out since the last warning that was said, which begins anew."""
+        """Returns how many warnings were left out since the last one, as text, and begins to count anew."""
         left_out, self.left_out = self.left_out, 0
         return f" ({left_out} more since the last such line)" if left_out else ""
 
@@ -41,16 +41,16 @@ class Limited:
 class LoopTimes:
     """Histograms of wall time by stage, and of whole ticks.
 
-    A tick that takes longer than desired is said with its slowest stage and component; so is a component that takes
+    Warns of a tick that takes longer than desired, with its slowest stage and component, and of a component that takes
     longer than a stage may.
     """
 
-    def __init__(self, plan: Plan, table: Sequence[HostEntry], log: Logger) -> None:
+    def __init__(self, plan: Plan, table: Sequence[HostProcess], log: Logger) -> None:
         self.stages = [Histogram() for _ in plan.stages]
         self.loop = Histogram()
-        """From the beginning of a tick's first stage to the end of its last."""
+        """From the beginning of a tick's first stage to the end of its last one."""
         self.cycle = Histogram()
-        """From the beginning of a tick to that of the next."""
+        """From the beginning of a tick to the beginning of the next one."""
         self._plan = plan
         self._table = table
         self._log = log
@@ -58,7 +58,7 @@ class LoopTimes:
         self._slowest_stage = (0, 0)  # of this tick: how long, which
         self._slowest_host = (0, 0, 0)  # of this tick: how long, which, in which stage
         warns = plan.loop_time_warnings
-        lockstep = plan.clock == "simulated"  # in real time it is the loop that says who is late
+        lockstep = plan.clock == "simulated"  # in real time the loop itself names late hosts
         self._allowed_us = plan.stage_time_us if warns and lockstep and plan.stage_time_us else sys.maxsize
         self._warns = warns
         self._missed = Limited(1)
@@ -66,7 +66,7 @@ class LoopTimes:
         self._said_late: set[int] = set()
 
     def tick_begins(self, now_us: int) -> None:
-        """A tick begins at this wall time."""
+        """Takes the wall time at which a tick begins."""
         if self._began_us:
             self.cycle.add(now_us - self._began_us)
         self._began_us = now_us
@@ -74,7 +74,7 @@ class LoopTimes:
         self._slowest_host = (0, 0, 0)
 
     def answered(self, host: int, stage: int, busy_us: int, tick: int) -> None:
-        """A host took so long for its iterations of a stage."""
+        """Takes the wall time of a host's iterations of a stage."""
         if busy_us > self._slowest_host[0]:
             self._slowest_host = (busy_us, host, stage)
         if busy_us > self._allowed_us and self._overrun[host].lets_through(self._began_us):
@@ -84,13 +84,13 @@ class LoopTimes:
             )
 
     def stage_ended(self, stage: int, duration_us: int) -> None:
-        """A stage took so long."""
+        """Takes the wall time of a stage."""
         self.stages[stage].add(duration_us)
         if duration_us > self._slowest_stage[0]:
             self._slowest_stage = (duration_us, stage)
 
     def tick_ended(self, tick: int, now_us: int, desired_us: float) -> None:
-        """A tick ends at this wall time; `desired_us` is how long it should take at most, 0 if nobody cares."""
+        """Takes the wall time at which a tick ends; `desired_us` is the longest that it should take, 0: no limit."""
         took_us = now_us - self._began_us
         self.loop.add(took_us)
         if not self._warns or not 0 < desired_us * TOLERANCE < took_us or any(entry.held for entry in self._table):
@@ -106,8 +106,8 @@ class LoopTimes:
                 f"slowest component {self.name_of(host, its_stage)} ({busy_us / 1000:.1f} ms){self._missed.between()}"
             )
 
-    def late(self, entry: HostEntry, stage: int, tick: int, allowed_us: int) -> None:
-        """In real time the loop goes on without a host."""
+    def late(self, entry: HostProcess, stage: int, tick: int, allowed_us: int) -> None:
+        """Reports that the loop goes on without a host in real time."""
         if entry.held:
             self._log.info(f"{entry.name} is held by its debugger in tick {tick}; the loop goes on")
         elif self._overrun[entry.index].lets_through(self._began_us):
@@ -117,15 +117,15 @@ class LoopTimes:
                 f"{allowed_us / 1000:g} ms; the loop goes on without it{self._overrun[entry.index].between()}"
             )
 
-    def on_time_again(self, entry: HostEntry, tick: int, busy_us: int) -> None:
-        """A late host has answered; said if its being late was."""
+    def on_time_again(self, entry: HostProcess, tick: int, busy_us: int) -> None:
+        """Reports that a late host has answered, if its lateness was reported."""
         if entry.held or entry.index in self._said_late:
             self._said_late.discard(entry.index)
             log = self._log.info if entry.held else self._log.warning
             log(f"{entry.name} is on time again; its tick {tick} took {busy_us / 1000:.1f} ms")
 
     def name_of(self, host: int, stage: int) -> str:
-        """The component of a host that takes longest in a stage, and its process if that has another name."""
+        """Returns the component of a host that takes longest in a stage, and its process if that has another name."""
         entry = self._table[host]
         members = [self._plan.components[index] for index in self._plan.hosts[host].components]
         busy_us = {each.name: each.busy_us / max(1, each.iterations) for each in entry.components}

@@ -1,4 +1,4 @@
-"""What a run is asked for beside its plan, and what came of it."""
+"""The options of a run beside its plan, and its outcome."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,20 +9,20 @@ from lcmtypes.core import status_t
 
 @dataclass(frozen=True)
 class RunOptions:
-    """How long, how fast, recorded where, shown how."""
+    """Length, speed, recording and display of a run."""
 
     run_dir: Path
-    """Folder of this run, already there: resolved plan, effective configuration, text log, recording."""
+    """Existing folder of this run: resolved plan, effective configuration, text log, recording."""
     ticks: int | None = None
-    """Stop after so many ticks."""
+    """Number of ticks after which the run stops."""
     time_s: float | None = None
-    """Stop after so much logical time."""
+    """Logical time in seconds after which the run stops."""
     speed: float = 1.0
-    """Logical seconds per wall second; 0: as fast as it goes."""
+    """Logical seconds per wall second; 0: as fast as possible."""
     record: Path | None = None
-    """Where the LCM log goes; None: no recording."""
+    """File of the recording; None: no recording."""
     video: Path | None = None
-    """Where a video of the run goes; the launcher draws it from the recording when the run has ended."""
+    """File of a video of the run, drawn from the recording when the run has ended."""
     debug: str | None = None
     """Component that runs under pdb in this terminal."""
     debugpy_port: int = 0
@@ -36,7 +36,7 @@ class RunOptions:
 
 
 class RunBroken(Exception):  # noqa: N818 - what happened to the run
-    """A process that no run can do without has ended; says which and how."""
+    """A process that every run needs has ended; says which one and how."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Outcome:
     logical_s: float
     wall_s: float
     reason: str
-    """Why it ended, for people: `600 ticks done`, `interrupted`, `cyan1/base failed: ...`."""
+    """Why it ended, as text: `600 ticks done`, `interrupted`, `cyan1/base failed: ...`."""
     status: status_t = field(default_factory=status_t)
-    """The supervisor's last view of all components."""
+    """The supervisor's last status."""
     newest: dict[str, Any] = field(default_factory=dict)
     """Newest message of each mirrored channel, decoded."""
     unrecorded: int = 0

@@ -1,10 +1,10 @@
-"""How long the loop waits for answers before it takes a datagram for lost and tells a tick again."""
+"""The time after which a tick that is not answered is sent again."""
 
 _MARGIN_US = 100
 _AT_FIRST_US = 20_000
 
 
-class Patience:
+class RetransmissionTimeout:
     """Learns how long a stage usually takes, as TCP learns round trips (RFC 6298): smoothed time and deviation."""
 
     def __init__(self) -> None:
@@ -13,11 +13,11 @@ class Patience:
 
     @property
     def wait_us(self) -> int:
-        """No answer within this time: probably lost."""
+        """Wall time after which an unanswered tick is probably lost, in microseconds."""
         return self._usual_us + 3 * self._deviation_us + _MARGIN_US
 
     def took(self, duration_us: int) -> None:
-        """All answers came within this time after the tick was told."""
+        """Learns from a stage that was answered this long after its tick was sent."""
         error_us = duration_us - self._usual_us
         self._usual_us += error_us // 8
         self._deviation_us += (abs(error_us) - self._deviation_us) // 4

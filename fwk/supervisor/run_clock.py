@@ -1,16 +1,15 @@
-"""The central clock: the logical time of each tick, from its one source, and when on the wall a tick may begin."""
+"""The central clock: the logical time of each tick, from its one source, and the wall time at which it may begin."""
 
 from fwk.clock import US_PER_S, Clock
 from fwk.model.plan import Plan
 
 
-class Pace:
+class RunClock:
     """Logical time of the run.
 
-    Simulated: from the time source if there is one, else a period a tick; `speed` logical seconds a wall second, 0
-    without waiting. Wall: the wall time since the first tick; a tick begins every period.
-
-    Simulated time can be paused, and then be stepped by some ticks.
+    Simulated time comes from the time source if there is one; otherwise it advances by the period in each tick. It
+    proceeds at `speed` logical seconds per wall second, or without waiting if that is 0, and it can be paused and
+    stepped. In real time, logical time is the wall time since the first tick, and a tick begins every period.
     """
 
     def __init__(self, plan: Plan, speed: float) -> None:
@@ -21,9 +20,14 @@ class Pace:
         self._speed = speed
         self._next_us = -1
         self._origin_us = -1  # wall clock only: wall time of logical time 0
-        self._anchor: tuple[int, int] | None = None  # wall and logical time at which the pace was last set
+        self._anchor: tuple[int, int] | None = None  # wall and logical time at which the speed was last set
         self._paused = False
         self._steps = 0  # ticks that may still begin while paused
+
+    @property
+    def tick(self) -> int:
+        """Number of the newest tick."""
+        return self.clock.tick
 
     @property
     def time_us(self) -> int:
@@ -32,7 +36,7 @@ class Pace:
 
     @property
     def speed(self) -> float:
-        """Logical seconds a wall second; 0: as fast as it goes."""
+        """Logical seconds per wall second; 0: as fast as possible."""
         return self._speed
 
     @speed.setter
@@ -46,24 +50,24 @@ class Pace:
         return self._paused and not self._steps
 
     def pause(self) -> None:
-        """No further tick begins."""
+        """Lets no further tick begin."""
         self._paused, self._steps = True, 0
 
     def resume(self) -> None:
-        """Ticks begin again, at the same pace as before."""
+        """Lets ticks begin again, at the speed of before."""
         self._paused, self._steps, self._anchor = False, 0, None
 
     def step(self, ticks: int) -> None:
-        """So many more ticks begin, then none."""
+        """Lets so many more ticks begin, then none."""
         self._paused, self._steps, self._anchor = True, ticks, None
 
     @property
     def loop_time_us(self) -> float:
-        """Wall time that a tick may take if the pace is to be kept; 0: as long as it takes."""
+        """Wall time that a tick may take at this speed; 0: no limit."""
         return self.period_us if self.wall else self.period_us / self._speed if self._speed > 0 else 0.0
 
     def source(self, next_us: int) -> None:
-        """The time source says when the next tick happens."""
+        """Takes the logical time of the next tick from the time source."""
         self._next_us = next_us
 
     def begin_us(self, now_us: int) -> int:
@@ -75,7 +79,7 @@ class Pace:
             self._anchor = (now_us, upcoming)
         wall_us, logical_us = self._anchor
         begin = wall_us + (upcoming - logical_us if self.wall else round((upcoming - logical_us) / self._speed))
-        if begin < now_us - US_PER_S // 2:  # too slow for this pace: do not run after lost time
+        if begin < now_us - US_PER_S // 2:  # too slow for this speed: lost time is not made up
             self._anchor = (now_us, upcoming)
             return now_us
         return begin

@@ -1,6 +1,7 @@
 """The supervisor as a participant: owns plan, clock, marks and main loop, and starts and ends every host of the run."""
 
 import signal
+import socket
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -12,21 +13,35 @@ from fwk.bus.sender import Sender
 from fwk.clock import US_PER_S
 from fwk.component.images import Ring
 from fwk.component.log import Logger
+from fwk.engine.boundary import BoundaryRequests
 from fwk.engine.visibility import Ledger
 from fwk.host.debugger import DebugRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from fwk.supervisor.barrier import barrier_of
+from fwk.supervisor.boundary import Boundary
+from fwk.supervisor.changes import Changes
+from fwk.supervisor.channel_requests import ChannelRequests
+from fwk.supervisor.continuous import ContinuousHosts
 from fwk.supervisor.control.control import Control, Listen
 from fwk.supervisor.control.status import StatusReport
+from fwk.supervisor.core import Core
+from fwk.supervisor.dones import Dones
 from fwk.supervisor.event_loop import EventLoop
+from fwk.supervisor.host_process import host_processes
+from fwk.supervisor.lifecycle import Lifecycle
 from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.options import RunBroken, RunOptions
-from fwk.supervisor.processes.attach import Places
+from fwk.supervisor.processes.attach import Attach
 from fwk.supervisor.processes.hosts import Hosts, StartFailure
 from fwk.supervisor.processes.starter import ProcessStarter
-from fwk.supervisor.run_clock import Pace
+from fwk.supervisor.run_clock import RunClock
+from fwk.supervisor.schedule import Schedule
 from fwk.supervisor.sync_receiver import SyncReceiver
-from lcmtypes.core import log_t, status_t
+from fwk.supervisor.tick_log import TickLog
+from fwk.supervisor.wait_report import WaitReport
+from lcmtypes.core import status_t
 
 
 class GatewayProcess(Protocol):
@@ -65,6 +80,8 @@ class Machine:
     """Opens the control server."""
     rings: Mapping[str, Ring] = field(default_factory=dict)
     """Where the frames of cameras lie."""
+    host_sockets: Mapping[int, socket.socket] = field(default_factory=dict)
+    """The hosts' own sockets, by port."""
     debug: DebugRequest | None = None
 
 
@@ -72,44 +89,51 @@ class Supervisor:
     """One run of a plan, from the first process to the last."""
 
     def __init__(self, plan: Plan, options: RunOptions, number: int, network: Network, machine: Machine) -> None:
-        self._plan = plan
         self._options = options
-        self._ports = Ports.of(plan)
-        self._sender = Sender(self._ports.supervisor, network)
-        self.pace = Pace(plan, options.speed)
-        self.log = Logger("supervisor", self.pace.clock, self._send_log)
-        self._events = EventLoop(network)
-        receiver = SyncReceiver(self._events, self._ports, number, Complaints(self.log))
-        ledger = Ledger(plan)
-        self._starter = machine.starter
-        self._hosts = Hosts(plan, machine.starter, ledger, self._events, receiver, self.log, self.pace.clock)
-        debug = machine.debug
-        self._debugged = self._hosts.table[debug.host] if debug and not debug.debugpy_port else None
-        self.loop = MainLoop(
-            plan,
-            number,
-            self._hosts,
-            ledger,
-            self._events,
-            receiver,
-            self._sender,
-            self.pace,
-            self.log,
-            self._interrupted,
+        ports = Ports.of(plan)
+        sender = Sender(ports.supervisor, network)
+        clock = RunClock(plan, options.speed)
+        self.log = Logger("supervisor", clock.clock, lambda line: sender.publish(b"fwk/log", line.encode(), ports.log))
+        events, table = EventLoop(network), host_processes(plan)
+        self._core = core = Core(
+            plan, number, ports, events, sender, clock, Ledger(plan), table, self.log, self._interrupted
         )
-        places = Places(plan, number, self._hosts, self._events, machine.rings)
-        self._control = Control(plan, options, self._hosts, self.loop, self._events, self.log, places, machine.listen)
-        self._number = number
-        self._status = self._status_report()
-        self.loop.on_wait = self._publish_status_in_time
-        self.wall_s = 0.0
+        self._starter = machine.starter
         self._signals = machine.signals
+        debug = machine.debug
+        self._debugged = table[debug.host] if debug and not debug.debugpy_port else None
+        complaints = Complaints(self.log)
+        receiver = SyncReceiver(events, ports, number, complaints)
+        tick_log = TickLog(core)
+        changes = Changes(core, tick_log)
+        channels = ChannelRequests(core, changes, tick_log)
+        self._hosts = hosts = Hosts(core, machine.starter, receiver, changes, channels)
+        times = LoopTimes(plan, table, self.log)
+        self._report = WaitReport(core.now_us, hosts.component_at_work, self.log)
+        barrier = barrier_of(core, hosts, tick_log, times, self._report)
+        continuous = ContinuousHosts(core, tick_log)
+        requests, schedule, lifecycle = BoundaryRequests(), Schedule(core), Lifecycle(plan, table)
+        dones = Dones(core, barrier, continuous, requests, tick_log, times, complaints)
+        boundary = Boundary(core, hosts, schedule, channels, changes, requests, lifecycle, barrier, tick_log)
+        self.loop = MainLoop(core, boundary, schedule, barrier, continuous, dones, tick_log, times)
+        attach = Attach(core, hosts, machine.rings, machine.host_sockets)
+        self._control = Control(core, options, hosts, self.loop, changes.settings, lifecycle, attach, machine.listen)
+        self._status = StatusReport(core, self.loop)
+        self._started = False
+        self.wall_s = 0.0
+        """Wall time of the main loop, in seconds; known when it has ended."""
+        events.after_each_wait(self._publish_status_in_time)
         if machine.signals:
-            self._events.watch(machine.signals, machine.signals.handle)
+            events.watch(machine.signals, machine.signals.handle)
+
+    @property
+    def time_us(self) -> int:
+        """Logical time of the newest tick."""
+        return self._core.clock.time_us
 
     def work(self, gateway: GatewayProcess) -> Steps[tuple[str, bool]]:
         """Starts everything and runs the main loop; returns why it ended and whether that is a failure."""
-        self._events.watch(gateway, partial(self._on_gateway_end, gateway))
+        self._core.events.watch(gateway, partial(self._on_gateway_end, gateway))
         try:
             return (yield from self._work())
         except RunBroken as broken:
@@ -129,26 +153,26 @@ class Supervisor:
         return status, broken + [f"{name}: {reason}" for name, reason in after.items() if name not in before]
 
     def _on_gateway_end(self, gateway: GatewayProcess) -> None:
-        self._events.unwatch(gateway)
+        self._core.events.unwatch(gateway)
         raise RunBroken(f"the gateway ended: {gateway.gateway_end()}")
 
     def _work(self) -> Steps[tuple[str, bool]]:
         # Until the gateway listens: it would miss what is sent before.
-        yield from self.loop.records.wait_for(0, self._interrupted)
+        yield from self.loop.tick_log.wait_for(0, self._interrupted)
         try:
-            yield from self._hosts.start_all(self._interrupted)
+            yield from self._hosts.start_all(self._report)
         except StartFailure as failure:
             self.log.error(f"not started:\n{failure}")
             return f"not started: {failure}", True
-        for entry in self._hosts.table:
+        for entry in self._core.hosts:
             entry.fresh_code = self._options.watch
-        self._status = self._status_report()
+        self._status, self._started = StatusReport(self._core, self.loop), True
         while not self._interrupted() and not self._done():
             yield from self.loop.run_tick()
-            self._publish_status_in_time()
+        self._started = False
         self.wall_s = self._status.wall_s
         yield from self.loop.finish()
-        broken = [f"{entry.name}: {entry.reason}" for entry in self._hosts.table if entry.state == "failed"]
+        broken = [f"{entry.name}: {entry.reason}" for entry in self._core.hosts if entry.failed]
         if broken:
             return f"failed: {'; '.join(broken)}", True
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
@@ -168,7 +192,7 @@ class Supervisor:
     def _done(self) -> bool:
         ticks, time_s = self._options.ticks, self._options.time_s
         return (ticks is not None and self.loop.tick >= ticks) or (
-            time_s is not None and self.pace.time_us >= round(time_s * US_PER_S)
+            time_s is not None and self._core.clock.time_us >= round(time_s * US_PER_S)
         )
 
     def _interrupted(self) -> bool:
@@ -176,24 +200,18 @@ class Supervisor:
             return False
         received = self._signals.received
         if self._debugged and self._debugged.pid and self._debugged.incarnation == 1:
-            while signal.SIGINT in received:  # Ctrl-C is the debugger's as long as there is one
+            while signal.SIGINT in received:  # Ctrl-C belongs to the debugger as long as there is one
                 received.remove(signal.SIGINT)
                 self._starter.signal(self._debugged.pid, signal.SIGINT)
         return bool(received)
 
-    def _status_report(self) -> StatusReport:
-        return StatusReport(self._number, self._hosts.table, self.loop, self.pace, self._events.now_us)
-
     def _publish_status_in_time(self) -> None:
-        if self._status.due:
+        if self._started and self._status.due:
             self._publish_status()
 
     def _publish_status(self) -> status_t:
         status = self._status.message()
         self._control.published(status)
-        self._hosts.printed.look()
-        self._sender.publish(b"fwk/status", status.encode(), self._ports.status)
+        self._hosts.output.look()
+        self._core.sender.publish(b"fwk/status", status.encode(), self._core.ports.status)
         return status
-
-    def _send_log(self, line: log_t) -> None:
-        self._sender.publish(b"fwk/log", line.encode(), self._ports.log)

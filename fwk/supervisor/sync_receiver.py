@@ -9,16 +9,14 @@ from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
 from fwk.supervisor.event_loop import EventLoop
-from lcmtypes.core import actual_t, done_t, recorded_t
+from lcmtypes.core import actual_t, done_t
 
 
 class SyncReceiver:
     """The supervisor's socket for dones and states; refuses, counts and names what does not belong there."""
 
     def __init__(self, events: EventLoop, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
-        self.on_done: Callable[[done_t], None] = lambda _: None
-        self.on_recorded: Callable[[recorded_t], None] = lambda _: None
-        self.on_actual: Callable[[actual_t], None] = lambda _: None
+        self._emit = events.emit
         self._first_host, self._gateway_port = ports.host(0), ports.host(ports.gateway)
         self._members = ports.members
         self._assembler = wire.Assembler()
@@ -28,7 +26,7 @@ class SyncReceiver:
         events.watch(self._socket, self.drain)
 
     def drain(self) -> None:
-        """Handles the dones and states that have arrived."""
+        """Emits the dones and states that have arrived as events."""
         while True:
             try:
                 datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
@@ -50,12 +48,13 @@ class SyncReceiver:
         if channel == sync.DONE:
             self._take_done(data, source)
         elif channel == sync.RECORDED:
-            self._take_recorded(sync.decode_recorded(data), source)
+            recorded = sync.decode_recorded(data)
+            if source != self._gateway_port:
+                raise MessageError(f"datagram from port {source}, which is not the gateway's")
+            if recorded.run == self._run:
+                self._emit(recorded)
         elif channel == b"fwk/actual":
-            actual = actual_t.decode(data)
-            self._check(actual, source)
-            if actual.run == self._run:
-                self.on_actual(actual)
+            self._take_state(actual_t.decode(data), source)
         elif channel:
             raise MessageError(f"channel {channel!r} does not belong on the sync bus")
 
@@ -63,13 +62,14 @@ class SyncReceiver:
         done = sync.decode_done(data)
         self._check(done, source)
         if done.run == self._run:
-            self.on_done(done)
+            self._emit(done)
 
-    def _take_recorded(self, recorded: recorded_t, source: int) -> None:
-        if source != self._gateway_port:
-            raise MessageError(f"datagram from port {source}, which is not the gateway's")
-        if recorded.run == self._run:
-            self.on_recorded(recorded)
+    def _take_state(self, actual: actual_t, source: int) -> None:
+        self._check(actual, source)
+        if len(actual.times) != len(actual.components):
+            raise MessageError(f"state of host {actual.host} with other times than components")
+        if actual.run == self._run:
+            self._emit(actual)
 
     def _check(self, message: done_t | actual_t, source: int) -> None:
         if source - self._first_host != message.host or source == self._gateway_port:

@@ -1,4 +1,4 @@
-"""What the main loop decides in each tick, on its way to the gateway: kept, and sent again to who lacks it."""
+"""The supervisor's decisions of each tick, kept and sent again until the gateway has them."""
 
 import contextlib
 import json
@@ -8,74 +8,79 @@ from collections.abc import Callable, Iterable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
-from fwk.bus.sender import Sender
 from fwk.engine.visibility import Ledger
 from fwk.lcm.messages import MessageError
 from fwk.model.channel_table import change_message
 from fwk.model.plain_values import value_messages
-from fwk.model.ports import Ports
 from fwk.model.tick_events import TickEvent, events_message
-from fwk.supervisor.event_loop import EventLoop
-from fwk.supervisor.processes.host_process import Change
-from lcmtypes.core import announcement_t, protocol_t, settings_change_t, tick_record_t, tick_t, void_t
+from fwk.supervisor.core import Core
+from fwk.supervisor.host_process import Change
+from lcmtypes.core import announcement_t, protocol_t, recorded_t, settings_change_t, tick_record_t, tick_t, void_t
 
-KEPT = 64  # ticks at the least: all that the gateway has not taken yet
+KEPT = 64
+"""Ticks that are kept at the least; all that the gateway has not taken yet are kept besides."""
 FIRST_WAIT_US = 20_000
 LONGEST_WAIT_US = 100_000
 STALLED_US = 200_000
+"""A wait for the gateway that takes longer is reported."""
 
 
-class Records:
-    """The record of the running tick, and the newest ones before it, for which the gateway asks if it lacks them."""
+class TickLog:
+    """The record of the running tick, and those of earlier ticks, which the gateway fetches when it lacks them."""
 
-    def __init__(self, ports: Ports, run: int, sender: Sender, events: EventLoop) -> None:
-        self.taken = -1  # newest tick that the gateway has; 0: it hears whatever is sent from now on
-        self.heard = 0  # newest change of the blackboard that the gateway was told of beforehand
+    def __init__(self, core: Core) -> None:
+        self.taken = -1
+        """Newest tick that the gateway has; 0: it receives from now on; -1: it does not listen yet."""
         self.stalled = False
-        """Whether the gateway is waited for longer than usual."""
-        self._ports = ports
-        self._run = run
-        self._sender = sender
-        self._loop = events
+        """Whether the loop waits longer than usual for the gateway."""
+        self._listens_to = 0  # newest change whose channels the gateway listens to
+        self._core = core
         self._kept: deque[tuple[int, bytes]] = deque()
         self._events: list[TickEvent] = []
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
-        events.watch(sender.socket, self._on_asked)
+        core.events.watch(core.sender.socket, self._answer_fetch)
 
     def event(self, event: TickEvent) -> None:
         """Adds an event to the record of the running tick."""
         self._events.append(event)
 
     def mark(self, channel: int, sequence: int) -> None:
-        """A mark moves."""
+        """Moves a mark in the record of the running tick."""
         self._marks[channel] = sequence
 
     def change(self, change: Change) -> None:
-        """The tick begins with new settings of a component."""
+        """Adds a change that the tick begins with."""
         self._changes.append(change)
 
-    def announce(self, change: Change, patience_us: int, interrupted: Callable[[], bool]) -> Steps[None]:
-        """Waits until the gateway listens to the channels that a change opens, for so long at most; 0: for ever.
+    def acknowledge(self, recorded: recorded_t) -> None:
+        """Takes from the gateway's report which tick it has and which channels it listens to."""
+        self.taken = max(self.taken, recorded.tick)
+        self._listens_to = max(self._listens_to, recorded.change)
 
-        It learns of them from the tick's record, too, but by then a writer may have sent something and died.
+    def announce(self, change: Change, longest_us: int, interrupted: Callable[[], bool]) -> Steps[None]:
+        """Waits until the gateway listens to the channels that a change opens, `longest_us` at most; 0: no limit.
+
+        The tick's record names them, too, but by then a writer may have sent a message and died.
         """
+        core = self._core
         announcement = announcement_t()
-        announcement.run, announcement.change = self._run, change_message(change.number, change.facts)
+        announcement.run, announcement.change = core.run, change_message(change.number, change.facts)
         data = announcement.encode()
-        until_us = self._loop.now_us() + patience_us if patience_us else sys.maxsize
+        until_us = core.now_us() + longest_us if longest_us else sys.maxsize
         wait_us, due_us = FIRST_WAIT_US, 0
-        while self.heard < change.number and not interrupted() and (now_us := self._loop.now_us()) < until_us:
+        while self._listens_to < change.number and not interrupted() and (now_us := core.now_us()) < until_us:
             if now_us >= due_us:
-                self._sender.publish(sync.ANNOUNCE, data, self._ports.record)
+                core.sender.publish(sync.ANNOUNCE, data, core.ports.record)
                 due_us = now_us + wait_us
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
-            yield from self._loop.wait(min(due_us, until_us))
+            yield from core.events.wait(min(due_us, until_us))
 
     def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
         """Sends the record of a tick that has ended, and keeps it for a while."""
         record = tick_record_t()
-        record.version, record.run, record.tick, record.time_us = protocol_t.VERSION, self._run, tick, time_us
+        record.version, record.run = protocol_t.VERSION, self._core.run
+        record.tick, record.time_us = tick, time_us
         record.channel, record.sequence = list(self._marks), list(self._marks.values())
         record.voids = list(voids)
         put_changes(record, self._changes)
@@ -85,34 +90,34 @@ class Records:
         self._kept.append((tick, data))
         while len(self._kept) > KEPT and self._kept[0][0] <= self.taken:
             self._kept.popleft()
-        self._sender.publish(sync.RECORD, data, self._ports.record)
+        self._core.sender.publish(sync.RECORD, data, self._core.ports.record)
 
     def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> Steps[None]:
-        """Waits until the gateway has `tick`; what it may have lost is sent again."""
-        wait_us, began_us = FIRST_WAIT_US, self._loop.now_us()
+        """Waits until the gateway has `tick`; sends it again what it may have lost."""
+        now_us = self._core.now_us
+        wait_us, began_us = FIRST_WAIT_US, now_us()
         while self.taken < tick and not interrupted():
-            now_us = self._loop.now_us()
-            self.stalled = now_us >= began_us + STALLED_US
+            self.stalled = now_us() >= began_us + STALLED_US
             before = self.taken
-            yield from self._loop.wait(now_us + wait_us)
+            yield from self._core.events.wait(now_us() + wait_us)
             if self.taken == before:
                 wait_us = min(2 * wait_us, LONGEST_WAIT_US)
-                self.repeat(self.taken + 1, tick + KEPT)
+                self._repeat(self.taken + 1, tick + KEPT)
         self.stalled = False
 
-    def repeat(self, first: int, last: int) -> None:
-        """Sends the records of these ticks again, but not too many at once."""
+    def _repeat(self, first: int, last: int) -> None:
+        """Sends the records of these ticks again, a limited number at once."""
         for tick, data in self._kept:
             if first <= tick <= min(last, first + KEPT):
-                self._sender.publish(sync.RECORD, data, self._ports.record)
+                self._core.sender.publish(sync.RECORD, data, self._core.ports.record)
 
-    def _on_asked(self) -> None:
-        with contextlib.suppress(MessageError):  # a stranger's; hosts' complaints name it
-            message = self._sender.receive(self._ports.members)
+    def _answer_fetch(self) -> None:
+        with contextlib.suppress(MessageError):  # complaints of the hosts name the sender
+            message = self._core.sender.receive(self._core.ports.members)
             if message and message[0] == sync.FETCH_RECORDS:
                 fetch = sync.decode_fetch_records(message[1])
-                if fetch.run == self._run:
-                    self.repeat(fetch.first_tick, fetch.last_tick)
+                if fetch.run == self._core.run:
+                    self._repeat(fetch.first_tick, fetch.last_tick)
 
 
 def put_changes(message: tick_t | tick_record_t, changes: Iterable[Change]) -> None:
@@ -133,7 +138,7 @@ def _settings_message(change: Change) -> settings_change_t:
 
 
 def void_messages(ledger: Ledger, since: int) -> list[void_t]:
-    """What is void, for somebody who was told at step `since` last."""
+    """Returns the voids for a receiver whose last tick was of step `since` of the ledger."""
     made = []
     for void in ledger.voids_since(since):
         message = void_t()

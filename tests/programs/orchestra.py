@@ -297,8 +297,8 @@ if loss:
         def __getattr__(self, name):
             return getattr(self._real, name)
 
-    _calm = network.own_socket
-    network.own_socket = lambda port: _Lossy(_calm(port))
+    _calm = network.UdpNetwork.own_socket
+    network.UdpNetwork.own_socket = lambda self, port: _Lossy(_calm(self, port))
 
 if buffer_bytes:
     sockets.multicast_receiver.__defaults__ = (buffer_bytes,)

@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Any
 
 from fwk.bus.network import Steps, UdpNetwork
+from fwk.bus.sockets import own_socket
 from fwk.host.process import raise_file_limit
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.model.plan import Plan
+from fwk.model.ports import Ports
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.hosts import StartFailure
@@ -38,7 +40,7 @@ class MeasuredSupervisor(Supervisor):
         Raises:
             StartFailure: components were not ready.
         """
-        yield from self._hosts.start_all(self._interrupted)
+        yield from self._hosts.start_all(self._report)
         with control.makefile("rw") as lines:
 
             def answer(what: dict[str, Any]) -> None:
@@ -59,17 +61,15 @@ class MeasuredSupervisor(Supervisor):
 
     def _ticks(self, ticks: int, seconds: float) -> Steps[dict[str, Any]]:
         tick_us: list[int] = []
-        repeated = self.loop.repeated
+        repeated = self.loop.barrier.repeated
         end_us = now_us() + int(seconds * 1e6)
         while len(tick_us) < ticks and (start_us := now_us()) <= end_us:
             yield from self._tick()
             tick_us.append(now_us() - start_us)
-        return {"tick_us": tick_us, "repeated": self.loop.repeated - repeated}
+        return {"tick_us": tick_us, "repeated": self.loop.barrier.repeated - repeated}
 
     def _tick(self) -> Steps[None]:
         yield from self.loop.run_tick()
-        if self._status.due:
-            self._publish_status()
 
 
 def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None:
@@ -78,12 +78,14 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     options = RunOptions(
         Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
     )
-    zygote = Zygote(plan, number, {})
+    ports = Ports.of(plan)
+    sockets = {port: own_socket(port) for port in map(ports.host, range(len(plan.hosts)))}
+    zygote = Zygote(plan, number, {}, sockets)
     children = HelperProcesses(plan, number, options, {}) if recorded else None
-    network = UdpNetwork()
+    network = UdpNetwork(sockets)
     supervisor = MeasuredSupervisor(plan, options, number, network, Machine(zygote))
     if not recorded:
-        supervisor.loop.records.taken = _NEVER  # there is no gateway to wait for
+        supervisor.loop.tick_log.taken = _NEVER  # there is no gateway to wait for
     try:
         network.run(supervisor.measure(control))
     except StartFailure as failure:

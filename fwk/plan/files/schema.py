@@ -87,7 +87,10 @@ class ComponentEntry(_Entry):
     start: bool = True
     """Whether it starts with the run."""
     restart: RestartEntry = RestartEntry()
-    ready_timeout_s: float = Field(20.0, gt=0.0, le=SECONDS_MAX)
+    ready_timeout_s: float | None = Field(None, gt=0.0, le=SECONDS_MAX)
+    """Wall time in which it has to become ready; without it no limit."""
+    stop_timeout_s: float | None = Field(None, gt=0.0, le=SECONDS_MAX)
+    """Wall time in which its process has to end when it is stopped while the run goes on."""
     memory_limit_mb: float | None = Field(None, gt=0.0, le=1e9)
     """What it may take beyond what its process begins with."""
 

@@ -1,4 +1,4 @@
-"""What is asked of the run's clock: to pause, to go on, to step, another speed."""
+"""Control requests for the run's clock: pause, resume, step, speed."""
 
 from collections.abc import Callable
 from typing import Any
@@ -7,60 +7,63 @@ from fwk.clock import speed_word
 from fwk.component.log import Logger
 from fwk.control.requests import Clock, RequestError
 from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.run_clock import RunClock
 
 _WORDS = {"pause": "paused", "resume": "resumed", "step": "stepped", "speed": "run at another speed"}
 
 
 class ClockControl:
-    """Steers simulated time. None of this changes what components see: they know logical time alone."""
+    """Controls simulated time. Components see logical time alone, so none of this changes what they see."""
 
-    def __init__(self, loop: MainLoop, log: Logger) -> None:
+    def __init__(self, loop: MainLoop, clock: RunClock, log: Logger) -> None:
         self._loop = loop
+        self._run_clock = clock
         self._log = log
 
-    def ask(self, wish: Clock) -> Callable[[], dict[str, Any] | None]:
-        """Does it; what is returned gives the answer as soon as it has happened.
+    def ask(self, request: Clock) -> Callable[[], dict[str, Any] | None]:
+        """Carries a request out; the function that is returned gives the reply as soon as it has taken effect.
 
         Raises:
-            RequestError: the run keeps the wall's clock.
+            RequestError: the run follows the wall clock.
         """
-        pace = self._loop.pace
-        if wish.verb == "speed" and wish.speed is None:
+        clock = self._run_clock
+        if request.verb == "speed" and request.speed is None:
             return self.now
-        if pace.wall:
+        if clock.wall:
             raise RequestError(
-                f"the clock on the wall cannot be {_WORDS[wish.verb]}, and this run follows it; "
+                f"the clock on the wall cannot be {_WORDS[request.verb]}, and this run follows it; "
                 "for a simulation say 'clock: simulated' in the launch file"
             )
-        if wish.verb == "step":
-            return self._step(wish.ticks)
-        if wish.verb == "pause":
-            pace.pause()
-        elif wish.verb == "resume":
-            pace.resume()
-        elif wish.speed is not None:
-            pace.speed = wish.speed
-        self._log.info(f"asked to {wish.verb}{f' {speed_word(pace.speed)}' if wish.verb == 'speed' else ''}")
-        return self._standing if wish.verb == "pause" else self.now
+        if request.verb == "step":
+            return self._step(request.ticks)
+        if request.verb == "pause":
+            clock.pause()
+        elif request.verb == "resume":
+            clock.resume()
+        elif request.speed is not None:
+            clock.speed = request.speed
+        self._log.info(f"asked to {request.verb}{f' {speed_word(clock.speed)}' if request.verb == 'speed' else ''}")
+        return self._standing if request.verb == "pause" else self.now
 
     def now(self) -> dict[str, Any]:
-        """Where the clock is."""
+        """Returns tick, logical time, speed, and whether the run is paused."""
         loop = self._loop
-        paused = loop.stands and loop.pace.stands
-        return {"tick": loop.tick, "time_us": loop.time_us, "paused": paused, "pace": loop.pace.speed}
+        clock = self._run_clock
+        paused = loop.paused and clock.stands
+        return {"tick": loop.tick, "time_us": clock.time_us, "paused": paused, "pace": clock.speed}
 
     def _standing(self) -> dict[str, Any] | None:
-        if self._loop.pace.stands and not self._loop.stands:
+        if self._run_clock.stands and not self._loop.paused:
             return None
         return self.now()
 
     def _step(self, ticks: int) -> Callable[[], dict[str, Any] | None]:
         loop = self._loop
         last = loop.tick + ticks
-        loop.stands = False
-        loop.pace.step(ticks)
-        return lambda: self.now() if loop.tick > last or (loop.tick == last and loop.stands) else self._overtaken()
+        loop.paused = False
+        self._run_clock.step(ticks)
+        return lambda: self.now() if loop.tick > last or (loop.tick == last and loop.paused) else self._overtaken()
 
     def _overtaken(self) -> dict[str, Any] | None:
-        """Whoever paused meanwhile has the last word."""
-        return self.now() if self._loop.pace.stands and self._loop.stands else None
+        """Returns the reply if a pause issued meanwhile has taken precedence."""
+        return self.now() if self._run_clock.stands and self._loop.paused else None

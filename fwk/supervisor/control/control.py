@@ -1,4 +1,4 @@
-"""Answers what is asked of a running supervisor; what changes the run waits for the next boundary between two ticks."""
+"""Answers control requests; what changes the run waits for the next boundary."""
 
 import os
 from collections.abc import Callable
@@ -6,231 +6,226 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.clock import US_PER_S
-from fwk.component.log import Logger
 from fwk.control import requests
 from fwk.control.requests import RequestError
 from fwk.control.server import Answer, Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
-from fwk.model.plan import Plan
+from fwk.supervisor.boundary import SettingsChanged, SettingsRequest
 from fwk.supervisor.control.clock_control import ClockControl
-from fwk.supervisor.control.lifecycle import Steering
-from fwk.supervisor.control.plugin_requests import Directing
 from fwk.supervisor.control.view import component_view, period_us, times_view
-from fwk.supervisor.event_loop import EventLoop
+from fwk.supervisor.core import Core
+from fwk.supervisor.host_process import HostProcess, HostState
+from fwk.supervisor.lifecycle import Lifecycle
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.options import RunOptions
-from fwk.supervisor.processes.attach import Places
-from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.processes.attach import Attach
 from fwk.supervisor.processes.hosts import Hosts
 from lcmtypes.core import status_t
 
 _FRESH_US = 2 * US_PER_S  # rates older than this say nothing
 
-
 Listen = Callable[[Answer], Server]
 """Opens the control server that hands requests to an answer."""
+Reply = dict[str, Any] | None
+"""A reply that is sent at once; None: it is sent later."""
 
 
 @dataclass(frozen=True)
-class _Waiting:
-    """Somebody who is answered when something has happened."""
+class _Pending:
+    """A request that is answered when something has happened."""
 
     connection: Connection
-    happened: Callable[[], dict[str, Any] | None]
-    """The answer, when it has."""
+    happened: Callable[[], Reply]
+    """Returns the reply, when it has."""
 
 
 class Control:
-    """The supervisor's ear."""
+    """Answers the requests of tools: one handler for each type of request."""
 
     def __init__(
         self,
-        plan: Plan,
+        core: Core,
         options: RunOptions,
         hosts: Hosts,
         loop: MainLoop,
-        events: EventLoop,
-        log: Logger,
-        places: Places,
+        settings: RunSettings,
+        lifecycle: Lifecycle,
+        attach: Attach,
         listen: Listen | None,
     ) -> None:
-        self.settings = RunSettings(plan)
-        self._plan = plan
+        self._core = core
+        self._plan = core.plan
         self._options = options
         self._hosts = hosts
         self._loop = loop
-        self._log = log
-        self._places = places
-        self._steering = Steering(plan, hosts.table)
-        self._directing = Directing(plan, hosts, self._steering, events.now_us, log)
-        loop.on_requests = self._directing.ask
-        self._clock = ClockControl(loop, log)
+        self._settings = settings
+        self._lifecycle = lifecycle
+        self._attach = attach
+        self._clock = ClockControl(loop, core.clock, core.log)
         self._status = status_t()
         self._status_us = 0
-        self._new: list[tuple[NewSettings, str]] = []
-        self._waiting: list[_Waiting] = []
+        self._pending: list[_Pending] = []
         self._watching: list[tuple[Connection, list[str]]] = []
-        self._events = events
+        self._handlers: dict[type[Any], Callable[[Any, Connection], Reply]] = {
+            requests.Run: lambda _request, _connection: self._run(),
+            requests.Status: self._answer_status,
+            requests.Times: lambda _request, _connection: times_view(self._plan, self._loop.times, core.hosts),
+            requests.Steer: self._steer,
+            requests.TakePlace: self._take_place,
+            requests.Clock: self._steer_clock,
+            requests.Settings: lambda request, _: {"settings": self._settings.rows(request.names)},
+            requests.SetSettings: self._set,
+            requests.WatchSettings: self._watch_settings,
+            requests.Note: self._note,
+            requests.Common: self._common,
+        }
         self._server = listen(self.take) if listen else None
         if self._server:
-            events.watch(self._server, self._server.handle)
-        events.afterwards = self.check
-        hosts.settings_of = self._settings_of
-        loop.on_boundary = self._boundary
+            core.events.watch(self._server, self._server.handle)
+        core.events.subscribe(SettingsChanged, self._tell_watchers)
+        core.events.after_each_wait(self._answer_pending)
 
     def close(self) -> None:
-        """Answers nobody any more."""
-        self._events.afterwards = lambda: None
+        """Takes no more requests and answers none."""
+        self._pending = []
         if self._server:
-            self._events.unwatch(self._server)
+            self._core.events.unwatch(self._server)
             self._server.close()
 
     def published(self, status: status_t) -> None:
-        """The newest published status; its rates are shown to who asks."""
-        self._status, self._status_us = status, self._events.now_us()
-
-    def check(self) -> None:
-        """Answers those who wait for something that has happened meanwhile."""
-        if not self._waiting:
-            return
-        still = []
-        for waiting in self._waiting:
-            answer = waiting.happened()
-            if answer is not None:
-                waiting.connection.reply({"ok": True, **answer})
-            elif waiting.connection.open:
-                still.append(waiting)
-        self._waiting = still
+        """Takes the newest published status, whose rates are part of replies."""
+        self._status, self._status_us = status, self._core.now_us()
 
     def take(self, line: bytes, connection: Connection) -> None:
         """Answers a control request at once, later, or again and again."""
         try:
             request = requests.parsed(requests.to_supervisor, line)
-            answer = self._answer(request, connection)
+            reply = self._handlers[type(request)](request, connection)
         except RequestError as error:
             connection.refuse(str(error))
             return
-        except Exception as error:  # a mistake in here must not end the run
-            self._log.error(f"cannot answer {line[:200]!r}: {type(error).__name__}: {error}")
+        except Exception as error:  # a defect here must not end the run
+            self._core.log.error(f"cannot answer {line[:200]!r}: {type(error).__name__}: {error}")
             connection.refuse(f"the run cannot answer this: {type(error).__name__}: {error}")
             return
-        if answer is not None:
-            connection.reply({"ok": True, **answer})
+        if reply is not None:
+            connection.reply({"ok": True, **reply})
 
-    def _answer(self, request: requests.SupervisorRequest, connection: Connection) -> dict[str, Any] | None:
-        if isinstance(request, requests.Run):
-            return self._run()
-        if isinstance(request, requests.Status):
-            return {**self._run(), **self._now(), "components": self._components(request.names)}
-        if isinstance(request, requests.Times):
-            return times_view(self._plan, self._loop.times, self._hosts.table)
-        if isinstance(request, requests.Steer):
-            self._steer(request, connection)
-            return None
-        if isinstance(request, requests.TakePlace):
-            self._take_place(request, connection)
-            return None
-        if isinstance(request, requests.Clock):
-            self._wait(connection, self._clock.ask(request))
-            return None
-        if isinstance(request, requests.Settings):
-            return {"settings": self.settings.rows(request.names)}
-        if isinstance(request, requests.SetSettings):
-            return self._set(request, connection)
-        if isinstance(request, requests.WatchSettings):
-            rows = self.settings.rows(request.names)
-            self._watching.append((connection, request.names))
-            return {"settings": rows}
-        if isinstance(request, requests.Note):
-            (self._log.warning if request.level == "warning" else self._log.info)(request.text)
-            return {"tick": self._loop.tick}
-        return self._common(request, connection)
+    def _answer_pending(self) -> None:
+        if not self._pending:
+            return
+        still = []
+        for pending in self._pending:
+            reply = pending.happened()
+            if reply is not None:
+                pending.connection.reply({"ok": True, **reply})
+            elif pending.connection.open:
+                still.append(pending)
+        self._pending = still
+
+    def _answer_when(self, connection: Connection, happened: Callable[[], Reply]) -> None:
+        self._pending.append(_Pending(connection, happened))
+
+    def _answer_status(self, request: requests.Status, _connection: Connection) -> Reply:
+        return {**self._run(), **self._now(), "components": self._components(request.names)}
+
+    def _steer_clock(self, request: requests.Clock, connection: Connection) -> Reply:
+        self._answer_when(connection, self._clock.ask(request))
+        return None
+
+    def _watch_settings(self, request: requests.WatchSettings, connection: Connection) -> Reply:
+        rows = self._settings.rows(request.names)
+        self._watching.append((connection, request.names))
+        return {"settings": rows}
+
+    def _note(self, request: requests.Note, _connection: Connection) -> Reply:
+        (self._core.log.warning if request.level == "warning" else self._core.log.info)(request.text)
+        return {"tick": self._loop.tick}
 
     def _run(self) -> dict[str, Any]:
-        record = self._options.record
+        record, plan = self._options.record, self._plan
         return {
-            "plan": self._plan.name,
-            "file": self._plan.file,
-            "folders": list(self._plan.folders),
+            "plan": plan.name,
+            "file": plan.file,
+            "folders": list(plan.folders),
             "run_dir": str(self._options.run_dir),
             "record": str(record) if record else "",
             "pid": os.getpid(),
-            "bus_port": self._plan.bus_port,
-            "public_url": self._plan.public_url,
-            "seed": self._plan.seed,
-            "clock": self._plan.clock,
-            "period_us": self._plan.period_us,
+            "bus_port": plan.bus_port,
+            "public_url": plan.public_url,
+            "seed": plan.seed,
+            "clock": plan.clock,
+            "period_us": plan.period_us,
             "watching": len(self._watching),
         }
 
     def _now(self) -> dict[str, Any]:
-        fresh = self._events.now_us() < self._status_us + _FRESH_US
+        fresh = self._core.now_us() < self._status_us + _FRESH_US
         return {
             **self._clock.now(),
             "speed": self._status.speed if fresh else 0.0,
             "ticks_per_s": self._status.ticks_per_s if fresh else 0.0,
-            "repeated": self._loop.repeated,
-            "late": self._loop.late,
+            "repeated": self._loop.barrier.repeated,
+            "late": self._loop.barrier.late,
             "waits_for": self._loop.waits_for,
-            **self._loop.turns.view,
+            **self._loop.schedule.view,
         }
 
     def _components(self, names: list[str]) -> list[dict[str, Any]]:
-        chosen = self._steering.components(names or ["*"])
+        chosen = self._lifecycle.components(names or ["*"])
         components = [self._plan.components[index] for index in chosen]
-        return [component_view(self._plan, each, self._hosts.table[each.host]) for each in components]
+        return [component_view(self._plan, each, self._core.hosts[each.host]) for each in components]
 
-    def _steer(self, request: requests.Steer, connection: Connection) -> None:
-        entries = self._steering.hosts(request.action, request.names, request.force)
-        for entry in entries:
-            self._steering.wish(request.action, entry, self._events.now_us())
-            self._hosts.asked.add(entry.index)
+    def _steer(self, request: requests.Steer, connection: Connection) -> Reply:
+        hosts = self._lifecycle.hosts(request.action, request.names, request.force)
+        for host in hosts:
+            self._lifecycle.request(request.action, host, self._core.now_us())
+            self._hosts.request(host)
             if request.action == "kill":
-                self._hosts.kill(entry)
-        names = [entry.name for entry in entries]
-        self._log.info(f"asked to {request.action} {', '.join(names)}")
-        self._wait(connection, lambda: self._settled(entries))
-
-    def _take_place(self, request: requests.TakePlace, connection: Connection) -> None:
-        component = self._steering.component(request.name)
-        host = self._plan.components[component].host
-        self._steering.check_needs(self._plan.hosts[host].components)
-        self._places.give(host, connection, request.held)
-        self._log.info(f"{request.name}: process {connection.pid}, started by hand, takes its place")
-
-    def _settled(self, entries: list[HostEntry]) -> dict[str, Any] | None:
-        if not all(entry.settled for entry in entries):
-            return None
-        states = [{"name": entry.name, "state": entry.state, "reason": entry.reason} for entry in entries]
-        stopped = [entry for entry in entries if entry.state == "stopped"]
-        return {"tick": self._loop.tick, "processes": states, "left_without": self._steering.left_without(stopped)}
-
-    def _set(self, request: requests.SetSettings, connection: Connection) -> dict[str, Any] | None:
-        found = self.settings.check(request.changes)
-        if request.check:
-            return {"settings": [self._said(new) for new in found]}
-        for new in found:
-            self.settings.ask(new)
-            self._new.append((new, request.origin))
-        newest = self._loop.newest_change + len(self._new)
-        self._wait(connection, lambda: self._taken_over(found, newest))
+                self._hosts.kill(host)
+        self._core.log.info(f"asked to {request.action} {', '.join(host.name for host in hosts)}")
+        self._answer_when(connection, lambda: self._settled(hosts))
         return None
 
-    def _said(self, new: NewSettings) -> dict[str, Any]:
+    def _take_place(self, request: requests.TakePlace, connection: Connection) -> Reply:
+        component = self._lifecycle.component(request.name)
+        host = self._plan.components[component].host
+        self._lifecycle.check_needs(self._plan.hosts[host].components)
+        self._attach.give(host, connection, request.held)
+        self._core.log.info(f"{request.name}: process {connection.pid}, an external process, takes its place")
+        return None
+
+    def _settled(self, hosts: list[HostProcess]) -> Reply:
+        if not all(host.settled for host in hosts):
+            return None
+        states = [{"name": host.name, "state": host.state, "reason": host.reason} for host in hosts]
+        stopped = [host for host in hosts if host.state is HostState.STOPPED]
+        return {"tick": self._loop.tick, "processes": states, "left_without": self._lifecycle.left_without(stopped)}
+
+    def _set(self, request: requests.SetSettings, connection: Connection) -> Reply:
+        found = self._settings.check(request.changes)
+        if request.check:
+            return {"settings": [self._values(new) for new in found]}
+        asked = [self._loop.boundary.ask_settings(new, request.origin) for new in found]
+        self._answer_when(connection, lambda: self._taken_over(asked))
+        return None
+
+    def _values(self, new: NewSettings) -> dict[str, Any]:
         return {"component": self._plan.components[new.component].name, "values": new.said}
 
-    def _taken_over(self, found: list[NewSettings], number: int) -> dict[str, Any] | None:
-        entries = [self._hosts.table[self._plan.components[new.component].host] for new in found]
-        if self._loop.newest_change < number:
+    def _taken_over(self, asked: list[SettingsRequest]) -> Reply:
+        if not all(each.number for each in asked):
             return None
-        stands = self._loop.stands  # then they have them before they do anything else
-        if not stands and any(change.number <= number for entry in entries for change in entry.changes):
+        newest = max((each.number for each in asked), default=0)
+        paused = self._loop.paused  # then components have the settings before they do anything else
+        waiting = (change.number for each in asked for change in self._core.host_of(each.new.component).changes)
+        if not paused and any(number <= newest for number in waiting):
             return None
-        return {"tick": self._loop.tick + stands, "settings": [self._said(new) for new in found]}
+        return {"tick": self._loop.tick + paused, "settings": [self._values(each.new) for each in asked]}
 
-    def _common(self, request: requests.Common, connection: Connection) -> dict[str, Any] | None:
-        component = self._plan.components[self._steering.component(request.name)]
-        view = component_view(self._plan, component, self._hosts.table[component.host])
+    def _common(self, request: requests.Common, connection: Connection) -> Reply:
+        component = self._plan.components[self._lifecycle.component(request.name)]
+        view = component_view(self._plan, component, self._core.hosts[component.host])
         if request.verb == "state":
             return {"name": view["name"], "state": view["state"], "reason": view["reason"]}
         if request.verb == "period":
@@ -238,33 +233,12 @@ class Control:
         if request.verb == "time_awake":
             return {"name": view["name"], "awake_s": view["awake_s"]}
         if request.verb == "parameters":
-            rows = self.settings.rows([component.name])
-            return {"name": view["name"], "parameters": rows}
-        self._steer(requests.Steer(verb="steer", action="kill", names=[component.name]), connection)
-        return None
+            return {"name": view["name"], "parameters": self._settings.rows([component.name])}
+        return self._steer(requests.Steer(verb="steer", action="kill", names=[component.name]), connection)
 
-    def _wait(self, connection: Connection, happened: Callable[[], dict[str, Any] | None]) -> None:
-        self._waiting.append(_Waiting(connection, happened))
-
-    def _boundary(self, tick: int) -> None:
-        """Between two ticks: what was asked for since the last one happens now."""
-        self._directing.decide()
-        new, self._new = self._new, []
-        for each, origin in new:
-            self.settings.take(each, f"{origin}, tick {tick}")
-            self._loop.change(each.component, each.text)
-            name = self._plan.components[each.component].name
-            self._log.info(f"{name}: {', '.join(f'{key} = {value}' for key, value in each.said.items())} ({origin})")
-        if new:
-            self._tell_watchers({self._plan.components[each.component].name for each, _ in new})
-
-    def _tell_watchers(self, names: set[str]) -> None:
+    def _tell_watchers(self, event: SettingsChanged) -> None:
         self._watching = [(connection, patterns) for connection, patterns in self._watching if connection.open]
         for connection, patterns in self._watching:
-            rows = [row for row in self.settings.rows(patterns) if row["component"] in names]
+            rows = [row for row in self._settings.rows(patterns) if row["component"] in event.components]
             if rows:
                 connection.stream({"ok": True, "tick": self._loop.tick + 1, "settings": rows})
-
-    def _settings_of(self, entry: HostEntry) -> dict[str, str]:
-        entry.started_with = self._loop.newest_change
-        return self.settings.changed(self._plan.hosts[entry.index].components)

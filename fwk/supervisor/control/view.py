@@ -1,4 +1,4 @@
-"""A run and its components as plain data, for whoever asks."""
+"""A run and its components as plain data, for replies to control requests."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -6,12 +6,12 @@ from typing import Any
 from fwk.clock import US_PER_S
 from fwk.model.histogram import Histogram
 from fwk.model.plan import ComponentPlan, Plan
+from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.processes.host_process import HostEntry
 from lcmtypes.core import component_state_t
 
 
-def component_view(plan: Plan, component: ComponentPlan, entry: HostEntry) -> dict[str, Any]:
+def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> dict[str, Any]:
     """State and figures of one component; times of iterations are wall time."""
     told = next((item for item in entry.components if item.name == component.name), component_state_t())
     return {
@@ -44,7 +44,7 @@ def period_us(plan: Plan, component: ComponentPlan) -> int:
     return round(US_PER_S / component.rate_hz) if component.rate_hz else 0
 
 
-def times_view(plan: Plan, times: LoopTimes, table: Sequence[HostEntry]) -> dict[str, Any]:
+def times_view(plan: Plan, times: LoopTimes, table: Sequence[HostProcess]) -> dict[str, Any]:
     """Histograms of wall time, as `Histogram.to_json`: of ticks, of the stages that ran, and of components."""
     stages = [(plan.stages[index], histogram) for index, histogram in enumerate(times.stages) if histogram.count]
     components = {}
@@ -60,10 +60,10 @@ def times_view(plan: Plan, times: LoopTimes, table: Sequence[HostEntry]) -> dict
     }
 
 
-def _state(entry: HostEntry, told: component_state_t) -> str:
+def _state(entry: HostProcess, told: component_state_t) -> str:
     if entry.held and entry.alive:
         return "held"
-    if entry.busy:
+    if entry.late_with:
         return "late"
     if entry.state in ("starting", "running", "stopping") and told.state:
         return told.state

@@ -1,58 +1,62 @@
-"""Gives the places of hosts to processes that somebody started by hand."""
+"""Gives the places of hosts to external processes."""
 
 import dataclasses
 import os
+import socket
 from collections.abc import Mapping
 
 from fwk.component.images import Ring
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection
 from fwk.host.assignment import Start
-from fwk.model.plan import Plan
-from fwk.supervisor.event_loop import EventLoop
-from fwk.supervisor.processes.external_process import Hand
+from fwk.supervisor.core import Core
+from fwk.supervisor.processes.external_process import ExternalProcess
 from fwk.supervisor.processes.hosts import Hosts
 
 
-class Places:
-    """Knows what such a process has to be told, and whether it can have the place."""
+class Attach:
+    """Puts external processes into the places of hosts, if these can be had, and tells them what they have to know."""
 
-    def __init__(self, plan: Plan, run: int, hosts: Hosts, events: EventLoop, rings: Mapping[str, Ring]) -> None:
-        self._plan = plan
-        self._run = run
+    def __init__(
+        self, core: Core, hosts: Hosts, rings: Mapping[str, Ring], sockets: Mapping[int, socket.socket]
+    ) -> None:
+        self._core = core
         self._hosts = hosts
-        self._events = events
         self._rings = rings
+        self._sockets = sockets
 
     def give(self, host: int, connection: Connection, held: bool) -> None:
-        """The process at the other end takes the host's place at the next boundary, and is answered then.
+        """Gives a host's place to the process at the other end at the next boundary, and answers it then.
 
         Raises:
-            RequestError: it cannot.
+            RequestError: the process cannot have the place; says why.
         """
-        entry = self._hosts.table[host]
-        other = self._hosts.by_hand(entry)
+        entry = self._core.hosts[host]
+        other = self._hosts.external_process(entry)
         if other:
-            raise RequestError(f"{entry.name} is in the hands of process {other}; end that first")
+            raise RequestError(f"{entry.name} is run by process {other}; end that first")
         try:
-            hand = Hand(connection.pid, held, lambda start: self._begin(host, connection, start), self._events)
+            process = ExternalProcess(
+                connection.pid, held, lambda start: self._begin(host, connection, start), self._core.events
+            )
         except OSError as error:
             raise RequestError(f"the process that asks cannot be seen from here: {error.strerror}") from error
-        self._hosts.hand_over(entry, hand)
+        self._hosts.hand_over(entry, process)
 
     def _begin(self, host: int, connection: Connection, start: Start) -> None:
         told = {
-            "run": self._run,
+            "run": self._core.run,
             "start": dataclasses.asdict(start),
             "rings": self._rings_of(host),
         }
-        connection.reply({"ok": True, **told})
+        held = self._sockets.get(self._core.ports.host(host))
+        connection.reply({"ok": True, **told}, [held.fileno()] if held else [])
 
     def _rings_of(self, host: int) -> dict[str, str]:
-        """Where the frames lie that components of the host read or write: files for this user and root alone."""
-        members = set(self._plan.hosts[host].components)
+        """Returns the files, for this user and root alone, of the frames that components of the host read or write."""
+        members = set(self._core.plan.hosts[host].components)
         return {
             channel.name: f"/proc/{os.getpid()}/fd/{self._rings[channel.name].descriptor}"
-            for channel in self._plan.channels
+            for channel in self._core.plan.channels
             if channel.images and members & {channel.writer, *channel.readers}
         }

@@ -1,32 +1,29 @@
-"""Stands in for a host that has left the run: whoever lacks one of its messages is sent on to the gateway."""
+"""Forwards fetches for a host that has left the run to the gateway."""
 
 import contextlib
 
 from fwk.bus.sender import Sender
 from fwk.lcm.messages import MessageError
-from fwk.model.plan import Plan
-from fwk.model.ports import Ports
-from fwk.supervisor.event_loop import EventLoop
+from fwk.supervisor.core import Core
 
 
-class StandIn:
-    """Has the port of the host as long as no process of its own does."""
+class FetchForwarder:
+    """Owns the port of a host while that has no process."""
 
-    def __init__(self, plan: Plan, host: int, events: EventLoop) -> None:
-        ports = Ports.of(plan)
-        self._gateway = ports.host(ports.gateway)
-        self._members = ports.members
-        self._sender = Sender(ports.host(host), events.network)
-        self._events = events
-        events.watch(self._sender.socket, self._pass_on)
+    def __init__(self, core: Core, host: int) -> None:
+        port = core.ports.host(host)
+        self._ports = core.ports
+        self._events = core.events
+        self._sender = Sender(port, core.events.network)
+        core.events.watch(self._sender.socket, self._forward)
 
     def close(self) -> None:
-        """The host comes back."""
+        """Gives the port back to the host."""
         self._events.unwatch(self._sender.socket)
         self._sender.socket.close()
 
-    def _pass_on(self) -> None:
-        with contextlib.suppress(MessageError):  # a stranger's; the hosts' complaints name it
-            message = self._sender.receive(self._members)
+    def _forward(self) -> None:
+        with contextlib.suppress(MessageError):  # complaints of the hosts name the sender
+            message = self._sender.receive(self._ports.members)
             if message and message[0] == b"fwk/fetch":
-                self._sender.send(*message, self._gateway)
+                self._sender.send(*message, self._ports.host(self._ports.gateway))

@@ -1,29 +1,31 @@
 """The host processes of a run: starts them, hears of their states and ends, starts them again as their policy says."""
 
 import signal
-from collections.abc import Callable
-from functools import partial
 
 from fwk.bus.network import Steps
-from fwk.clock import US_PER_S, Clock
-from fwk.component.log import Logger
-from fwk.engine.visibility import Ledger
+from fwk.clock import US_PER_S
 from fwk.host.assignment import Start
 from fwk.host.debugger import LEFT
-from fwk.model.plan import NOBODY, Plan
-from fwk.supervisor.event_loop import EventLoop
+from fwk.model.plan import NOBODY
+from fwk.supervisor.changes import Changes
+from fwk.supervisor.channel_requests import ChannelRequests
+from fwk.supervisor.core import Core
+from fwk.supervisor.host_events import HostLeaves, HostLost, HostReady
+from fwk.supervisor.host_process import HostProcess, HostState
 from fwk.supervisor.options import RunBroken
-from fwk.supervisor.processes.external_process import Hand
-from fwk.supervisor.processes.fetch_forwarder import StandIn
-from fwk.supervisor.processes.host_process import HostEntry, host_table
-from fwk.supervisor.processes.output import Printed
-from fwk.supervisor.processes.starter import ProcessStarter, Started
+from fwk.supervisor.processes.external_process import ExternalProcess
+from fwk.supervisor.processes.fetch_forwarder import FetchForwarder
+from fwk.supervisor.processes.output import CapturedOutput
+from fwk.supervisor.processes.starter import Ended, ProcessStarter, Started
 from fwk.supervisor.sync_receiver import SyncReceiver
+from fwk.supervisor.wait_report import WaitReport
 from lcmtypes.core import actual_t
 
 STOP_GRACE_US = 3 * US_PER_S
-LOOK_US = 100_000  # how often to look after hosts that are being started
-WAITS_US = US_PER_S // 2  # who waits longer for another is told
+"""How long hosts have to end when the whole run ends."""
+LOOK_US = 100_000
+NAMED_AFTER_US = US_PER_S // 2
+"""A host that waits longer for hosts that it needs is named."""
 
 
 class StartFailure(Exception):  # noqa: N818 - what happened to the run
@@ -31,127 +33,130 @@ class StartFailure(Exception):  # noqa: N818 - what happened to the run
 
 
 class Hosts:
-    """All host processes, by index.
-
-    A process is started when those that it needs run. One that they will not come back for fails.
-    """
+    """Starts, signals and ends the host processes of a run."""
 
     def __init__(
         self,
-        plan: Plan,
+        core: Core,
         starter: ProcessStarter,
-        ledger: Ledger,
-        events: EventLoop,
         receiver: SyncReceiver,
-        log: Logger,
-        clock: Clock,
+        changes: Changes,
+        channels: ChannelRequests,
     ) -> None:
-        self.table: list[HostEntry] = host_table(plan)
-        self.on_started: Callable[[HostEntry], None] = lambda _: None
-        self.on_lost: Callable[[HostEntry], None] = lambda _: None
-        self.on_stopped: Callable[[HostEntry], None] = lambda _: None
-        self.asked: set[int] = set()
-        """Hosts whose desired state was changed and that do not have it yet."""
-        self.leaving: set[int] = set()
-        """Hosts that were asked to stop and have not finalized yet."""
-        self.settings_of: Callable[[HostEntry], dict[str, str]] = lambda _: {}
-        self.blackboard: Callable[[], str] = lambda: "[]"
-        """What is open that was opened at run time."""
-        self._plan = plan
+        self.output = CapturedOutput(core.events, core.log, core.plan.log.lines_per_s)
+        self._core = core
+        self._log = core.log
         self._starter = starter
-        self._ledger = ledger
-        self._events = events
         self._receiver = receiver
-        self._now_us = events.now_us
-        self._log = log
-        self._clock = clock
+        self._changes = changes
+        self._channels = channels
         self._stopping = False
-        self._told: set[int] = set()  # hosts that were said to wait for others
-        self._standins: dict[int, StandIn] = {}
-        self._hands: dict[int, Hand] = {}
-        self.printed = Printed(events, log, plan.log.lines_per_s)
-        receiver.on_actual = self._on_actual
-        events.watch(starter, self._on_process_events)
+        self._asked: set[int] = set()  # hosts whose desired state was changed and that do not have it yet
+        self._named: set[int] = set()  # hosts that were said to wait for others
+        self._forwarders: dict[int, FetchForwarder] = {}
+        self._external: dict[int, ExternalProcess] = {}
+        core.events.watch(starter, self._read_starter)
+        core.events.subscribe(actual_t, self._take_state)
+        core.events.subscribe(Started, self._take_start)
+        core.events.subscribe(Ended, self._take_end)
 
-    def start_all(self, interrupted: Callable[[], bool]) -> Steps[None]:
+    def start_all(self, report: WaitReport) -> Steps[None]:
         """Starts every host and waits until all are ready.
 
         Raises:
             StartFailure: some are not, with the reasons.
         """
-        now_us = self._now_us()
-        for entry in self.table:
-            entry.since_us = now_us
-        self._start_ready("loaded")
-        while any(entry.state == "starting" for entry in self.table) and not interrupted():
-            yield from self._events.wait(now_us + LOOK_US)
-            now_us = self._now_us()
-            for entry in self.table:
-                if entry.overdue(now_us):
-                    entry.state, entry.reason = "failed", _not_ready(entry)
-            self._start_ready("loaded")
-        failed = [entry for entry in self.table if entry.state in ("failed", "waiting")]
+        core = self._core
+        began_us = core.now_us()
+        for host in core.hosts:
+            host.since_us = began_us
+        self._start_due(HostState.LOADED)
+        while (
+            starting := [host for host in core.hosts if host.state is HostState.STARTING]
+        ) and not core.interrupted():
+            report.waiting(began_us, starting, "the start of the run")
+            yield from core.events.wait(core.now_us() + LOOK_US)
+            now_us = core.now_us()
+            for host in core.hosts:
+                if host.not_ready_in_time(now_us):
+                    host.fail(_not_ready(host))
+            self._start_due(HostState.LOADED)
+        report.ended()
+        failed = [host for host in core.hosts if host.failed or host.state is HostState.WAITING]
         if failed:
-            failed += [entry for entry in self.table if entry.state == "loaded"]
-            raise StartFailure("\n".join(f"{entry.name}: {entry.reason}" for entry in failed))
-
-    def maintain(self) -> None:
-        """Starts hosts again whose time has come; gives up on those that do not become ready."""
-        now_us = self._now_us()
-        for entry in self.table:
-            if entry.overdue(now_us):
-                entry.since_us, entry.reason = now_us, _not_ready(entry)
-                self._log.error(f"{entry.name}: {entry.reason}; killed")
-                self.kill(entry)
-            elif entry.state == "stopping" and now_us - entry.since_us > STOP_GRACE_US:
-                entry.since_us, entry.reason = now_us, "did not stop when asked; killed"
-                self._log.warning(f"{entry.name}: {entry.reason}")
-                self.kill(entry)
-        self._start_ready("waiting")
-
-    def steer(self) -> None:
-        """Between two ticks: what is asked to leave the loop leaves it, what is asked to join it is started."""
-        if not self.asked:
-            return
-        for entry in [entry for entry in self.table if entry.index in self.asked]:
-            if entry.settled:
-                self.asked.discard(entry.index)
-            elif entry.leaves:
-                entry.leaving(self._now_us())
-                self.leaving.add(entry.index)
-                self.on_stopped(entry)
-                self._signal(entry, signal.SIGTERM)
-            elif entry.joins:
-                if entry.state != "waiting" or entry.restart_us > self._now_us():
-                    entry.waits(self._now_us())
-            elif not entry.wanted and entry.state in ("loaded", "waiting", "failed"):
-                entry.state, entry.reason = "stopped", ""
-                self.on_stopped(entry)
-        self._start_ready("waiting")
-
-    def kill(self, entry: HostEntry) -> None:
-        """Ends a process that cannot be asked any more."""
-        self._signal(entry, signal.SIGKILL)
-
-    def by_hand(self, entry: HostEntry) -> int:
-        """The process started by hand that has a host's place or waits for it; 0: none."""
-        return self._hands[entry.index].pid if entry.index in self._hands else 0
-
-    def hand_over(self, entry: HostEntry, hand: Hand) -> None:
-        """At the next boundary a process started by hand takes the place; when it has ended, the host comes back."""
-        self._hands[entry.index] = hand
-        hand.watch(partial(self._on_hand_ended, entry, hand))
-        entry.want_restart(self._now_us())
-        self.asked.add(entry.index)
+            failed += [host for host in core.hosts if host.state is HostState.LOADED]
+            raise StartFailure("\n".join(f"{host.name}: {host.reason}" for host in failed))
 
     @property
     def unsettled(self) -> bool:
-        """Whether something has to be maintained."""
-        return any(entry.state in ("waiting", "starting", "stopping") for entry in self.table)
+        """Whether time alone may change the state of a host."""
+        return any(host.unsettled for host in self._core.hosts)
+
+    def request(self, host: HostProcess) -> None:
+        """Notes that the desired state of a host was changed: the next boundary sees to it."""
+        self._asked.add(host.index)
+
+    def enforce_timeouts(self) -> None:
+        """Kills processes that did not become ready, or did not end, in the time that they have."""
+        now_us = self._core.now_us()
+        for host in self._core.hosts:
+            if host.not_ready_in_time(now_us):
+                host.since_us, host.reason = now_us, _not_ready(host)
+                self._log.error(f"{host.name}: {host.reason}; killed")
+                self.kill(host)
+            elif host.not_stopped_in_time(now_us):
+                host.since_us, host.reason = now_us, "did not stop when asked; killed"
+                self._log.warning(f"{host.name}: {host.reason}")
+                self.kill(host)
+
+    def retire(self) -> None:
+        """At a boundary: takes hosts that shall stop out of the loop and asks their processes to end."""
+        now_us = self._core.now_us()
+        for host in [self._core.hosts[index] for index in sorted(self._asked)]:
+            if host.settled:
+                self._asked.discard(host.index)
+            elif host.must_leave:
+                host.begin_stop(now_us)
+                self._core.events.emit(HostLeaves(host))
+                self._signal(host, signal.SIGTERM)
+            elif not host.wanted and host.state in (HostState.LOADED, HostState.WAITING, HostState.FAILED):
+                host.stay_stopped()
+                self._core.events.emit(HostLeaves(host))
+
+    def admit(self) -> None:
+        """At a boundary: lets hosts that shall join the loop start as soon as what they need runs."""
+        now_us = self._core.now_us()
+        for host in [self._core.hosts[index] for index in sorted(self._asked)]:
+            if host.must_join and (host.state is not HostState.WAITING or host.restart_us > now_us):
+                host.wait_for_start(now_us)
+
+    def start_due(self) -> None:
+        """Starts waiting hosts whose time has come and whose needs run."""
+        self._start_due(HostState.WAITING)
+
+    def kill(self, host: HostProcess) -> None:
+        """Ends a process that cannot be asked any more."""
+        self._signal(host, signal.SIGKILL)
+
+    def external_process(self, host: HostProcess) -> int:
+        """Returns the number of the external process that has a host's place or waits for it; 0: there is none."""
+        return self._external[host.index].pid if host.index in self._external else 0
+
+    def hand_over(self, host: HostProcess, process: ExternalProcess) -> None:
+        """Gives a host's place to an external process at the next boundary; the host comes back when that ends."""
+        self._external[host.index] = process
+        process.watch(lambda: self._take_external_end(host, process))
+        host.want_restart(self._core.now_us())
+        self.request(host)
+
+    def component_at_work(self, host: HostProcess) -> str:
+        """Returns the name of the component that a host executes; if none, the name of the host."""
+        working = self._starter.component_at(host.index)
+        return self._core.plan.components[working].name if working != NOBODY else host.name
 
     def failed_components(self) -> dict[str, str]:
-        """Names of components that have failed, and why."""
-        components = (component for entry in self.table for component in entry.components)
+        """Returns the names of components that have failed, and why."""
+        components = (component for host in self._core.hosts for component in host.components)
         return {component.name: component.reason for component in components if component.state == "failed"}
 
     def stop_all(self) -> Steps[list[str]]:
@@ -159,153 +164,161 @@ class Hosts:
         self._stopping = True
         killed = []
         self._starter.wake()
-        for entry in self.table:
-            if entry.alive and entry.pid:
-                self._signal(entry, signal.SIGTERM)
-                self._signal(entry, signal.SIGCONT)  # somebody may have stopped it
-            elif entry.state == "waiting":
-                entry.state = "failed"
-        deadline_us = self._now_us() + STOP_GRACE_US
-        while any(entry.pid for entry in self.table) and self._now_us() < deadline_us:
-            yield from self._events.wait(deadline_us)
-        for entry in self.table:
-            if entry.pid:
-                killed.append(entry.name)
-                self._signal(entry, signal.SIGKILL)
-        deadline_us = self._now_us() + STOP_GRACE_US
-        while any(entry.pid for entry in self.table) and self._now_us() < deadline_us:
-            yield from self._events.wait(deadline_us)
+        for host in self._core.hosts:
+            if host.pid and host.state is not HostState.STOPPING:
+                self._signal(host, signal.SIGTERM)
+            if host.pid:
+                self._signal(host, signal.SIGCONT)
+            elif host.state is HostState.WAITING:
+                host.fail(host.reason)
+        yield from self._until_ended()
+        for host in self._core.hosts:
+            if host.pid:
+                killed.append(host.name)
+                self._signal(host, signal.SIGKILL)
+        yield from self._until_ended()
         return killed
 
-    def _start_ready(self, state: str) -> None:
-        """Starts those in this state whose time has come and whose needs run; says for whom the others wait."""
-        now_us = self._now_us()
-        for entry in self.table:
-            if entry.state != state or now_us < entry.restart_us or self._stopping:
-                continue
-            missing = [each for index in entry.needs if (each := self.table[index]).state != "running"]
-            lost = [each for each in missing if each.state == "failed" or not each.wanted]
-            if not missing:
-                self._start(entry)
-            elif lost and state == "waiting":
-                ends = [
-                    f"{each.name}, which {'has failed' if each.state == 'failed' else 'is stopped'}" for each in lost
-                ]
-                entry.give_up(f"needs {', '.join(ends)}")
-                self._stand_in(entry)
-                self._log.error(f"{entry.name}: not started: it {entry.reason}")
-            else:
-                entry.reason = f"waits for {', '.join(each.name for each in missing)}"
-                if entry.index not in self._told and now_us > entry.since_us + WAITS_US:
-                    self._told.add(entry.index)
-                    self._log.info(f"{entry.name} {entry.reason}")
+    def _until_ended(self) -> Steps[None]:
+        deadline_us = self._core.now_us() + STOP_GRACE_US
+        while any(host.pid for host in self._core.hosts) and self._core.now_us() < deadline_us:
+            yield from self._core.events.wait(deadline_us)
 
-    def _start(self, entry: HostEntry) -> None:
-        standin = self._standins.pop(entry.index, None)
-        if standin:
-            standin.close()
-        self._told.discard(entry.index)
-        incarnation = entry.starting(self._now_us())
-        settings, sequences = self.settings_of(entry), self._ledger.sequences(entry.index)
+    def _start_due(self, state: HostState) -> None:
+        """Starts hosts in a state whose time has come and whose needs run; names those that wait for others."""
+        now_us = self._core.now_us()
+        for host in self._core.hosts:
+            if host.state is not state or now_us < host.restart_us or self._stopping:
+                continue
+            missing = [needed for index in host.needs if not (needed := self._core.hosts[index]).running]
+            lost = [needed for needed in missing if needed.failed or not needed.wanted]
+            if not missing:
+                self._start(host)
+            elif lost and state is HostState.WAITING:
+                ends = [f"{each.name}, which {'has failed' if each.failed else 'is stopped'}" for each in lost]
+                host.fail(f"needs {', '.join(ends)}")
+                self._forward_fetches(host)
+                self._log.error(f"{host.name}: not started: it {host.reason}")
+            else:
+                host.reason = f"waits for {', '.join(each.name for each in missing)}"
+                if now_us > host.since_us + NAMED_AFTER_US and host.index not in self._named:
+                    self._named.add(host.index)
+                    self._log.info(f"{host.name} {host.reason}")
+
+    def _start(self, host: HostProcess) -> None:
+        if host.index in self._forwarders:
+            self._forwarders.pop(host.index).close()
+        self._named.discard(host.index)
+        incarnation = host.begin_start(self._core.now_us())
+        clock = self._core.clock.clock
+        sequences = self._core.ledger.sequences(host.index)
+        host.started_with = self._changes.newest
         start = Start(
             incarnation,
             sequences,
-            settings,
-            self.blackboard(),
-            entry.started_with,
-            self._clock.tick,
-            self._clock.now_us,
+            self._changes.settings_of(host),
+            self._channels.snapshot(),
+            self._changes.newest,
+            clock.tick,
+            clock.now_us,
         )
-        hand = self._hands.get(entry.index)
-        if hand:
-            entry.pid, entry.held = hand.pid, hand.held
-            hand.begin(start)
+        external = self._external.get(host.index)
+        if external:
+            host.pid, host.held = external.pid, external.held
+            external.begin(start)
         else:
-            entry.held = incarnation == 1 and self._starter.debugs(entry.index)
-            self._starter.start(entry.index, start, entry.fresh_code)
+            host.held = incarnation == 1 and self._starter.debugs(host.index)
+            self._starter.start(host.index, start, host.fresh_code)
 
-    def _signal(self, entry: HostEntry, number: int) -> None:
-        hand = self._hands.get(entry.index)
-        if hand and hand.pid == entry.pid:
-            hand.signal(number)
-        elif entry.pid:
-            self._starter.signal(entry.pid, number)
+    def _signal(self, host: HostProcess, number: int) -> None:
+        external = self._external.get(host.index)
+        if external and external.pid == host.pid:
+            external.signal(number)
+        elif host.pid:
+            self._starter.signal(host.pid, number)
 
-    def _on_hand_ended(self, entry: HostEntry, hand: Hand) -> None:
-        del self._hands[entry.index]
-        hand.close()
-        if entry.pid == hand.pid:
-            self._ended(entry, 0 if self._stopping else LEFT)
+    def _read_starter(self) -> None:
+        try:
+            found = self._starter.events()
+        except RunBroken:
+            self._core.events.unwatch(self._starter)
+            for host in self._core.hosts:
+                host.pid = 0  # the kernel kills them all
+            raise
+        self._receiver.drain()  # the last done of a process came before its end
+        for event in found:
+            self._core.events.emit(event)
 
-    def _on_actual(self, actual: actual_t) -> None:
-        if actual.host >= len(self.table):
+    def _take_state(self, actual: actual_t) -> None:
+        host = self._core.hosts[actual.host]
+        if actual.incarnation != host.incarnation:
             return
-        entry = self.table[actual.host]
-        if actual.incarnation != entry.incarnation:
-            return
-        entry.heard(actual.components, actual.times)
+        host.report(actual.components, actual.times)
         failed = [item.reason for item in actual.components if item.state == "failed"]
         if failed:
-            entry.reason = failed[0]
-        elif entry.state == "starting" and all(item.state == "running" for item in actual.components):
-            entry.state, entry.since_us = "running", self._now_us()
-            self.on_started(entry)
+            host.reason = failed[0]
+        elif host.state is HostState.STARTING and all(item.state == "running" for item in actual.components):
+            host.become_ready(self._core.now_us())
+            self._core.events.emit(HostReady(host))
 
-    def _on_process_events(self) -> None:
-        try:
-            events = self._starter.events()
-        except RunBroken:
-            self._events.unwatch(self._starter)
-            for entry in self.table:
-                entry.pid = 0  # the kernel kills them all
-            raise
-        for event in events:
-            entry = self.table[event.host]
-            if isinstance(event, Started):
-                entry.pid = event.pid
-                if entry.state == "stopping":  # asked to stop before there was a process to ask
-                    self._signal(entry, signal.SIGTERM)
-                if event.streams:
-                    self.printed.listen(entry.name, *event.streams)
-            elif event.incarnation == entry.incarnation:
-                self._ended(entry, event.code, event.core)
+    def _take_start(self, event: Started) -> None:
+        host = self._core.hosts[event.host]
+        host.pid = event.pid
+        if host.state is HostState.STOPPING or self._stopping:  # asked to stop before there was a process to ask
+            self._signal(host, signal.SIGTERM)
+        if event.streams:
+            self.output.listen(host.name, *event.streams)
 
-    def _ended(self, entry: HostEntry, code: int, core: bool = False) -> None:
-        asked = entry.state == "stopping"
-        if asked:
-            self._receiver.drain()  # its last done came before its end
-        self.leaving.discard(entry.index)
-        culprit = self._culprit(entry)
-        entry.ended(code, self._now_us(), self._stopping, core, culprit)
-        self._ledger.void(entry.index, entry.incarnation + 1, self._clock.tick)
+    def _take_end(self, event: Ended) -> None:
+        host = self._core.hosts[event.host]
+        if event.incarnation == host.incarnation:
+            self._end(host, event.code, event.core)
+
+    def _take_external_end(self, host: HostProcess, process: ExternalProcess) -> None:
+        del self._external[host.index]
+        process.close()
+        if host.pid == process.pid:
+            self._end(host, 0 if self._stopping else LEFT)
+
+    def _end(self, host: HostProcess, code: int, core: bool = False) -> None:
+        asked = host.state is HostState.STOPPING
+        culprit = self._culprit(host)
+        host.ended(code, self._core.now_us(), self._stopping, core, culprit)
+        self._core.ledger.void(host.index, host.incarnation + 1, self._core.clock.tick)
         if not asked:
-            self.on_lost(entry)
-        if not entry.expected and not self._stopping:
-            self._stand_in(entry)
+            self._core.events.emit(HostLost(host))
+        if not host.expected and not self._stopping:
+            self._forward_fetches(host)
         if not self._stopping and not asked:
-            again = f"; starting it again in {max(0, entry.restart_us - self._now_us()) / US_PER_S:.1f} s"
-            log = self._log.info if code == LEFT else self._log.error
-            others = [name for name in self._members(entry) if name != culprit]
-            went = f"; with it went {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
-            log(f"{entry.name} ended: {entry.reason}{went}{again if entry.state == 'waiting' else ''}")
+            self._log_end(host, code, culprit)
 
-    def _members(self, entry: HostEntry) -> list[str]:
-        return [self._plan.components[index].name for index in self._plan.hosts[entry.index].components]
+    def _log_end(self, host: HostProcess, code: int, culprit: str) -> None:
+        again = ""
+        if host.state is HostState.WAITING:
+            wait_us = max(0, host.restart_us - self._core.now_us())
+            again = f"; starting it again in {wait_us / US_PER_S:.1f} s"
+        log = self._log.info if code == LEFT else self._log.error
+        others = [name for name in self._component_names(host) if name != culprit]
+        went = f"; with it went {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
+        log(f"{host.name} ended: {host.reason}{went}{again}")
 
-    def _culprit(self, entry: HostEntry) -> str:
-        """Which component of a shared process was to blame for its end; empty if nobody knows."""
-        if len(self._members(entry)) < 2:
+    def _component_names(self, host: HostProcess) -> list[str]:
+        return [self._core.plan.components[index].name for index in self._core.components_of(host)]
+
+    def _culprit(self, host: HostProcess) -> str:
+        """Returns the component of a shared process that caused its end; empty if that is unknown."""
+        if len(self._core.components_of(host)) < 2:
             return ""
-        failed = [item.name for item in entry.components if item.state == "failed"]
-        working = self._starter.component_at(entry.index)
-        return failed[0] if failed else self._plan.components[working].name if working != NOBODY else ""
+        failed = [item.name for item in host.components if item.state == "failed"]
+        working = self._starter.component_at(host.index)
+        return failed[0] if failed else self._core.plan.components[working].name if working != NOBODY else ""
 
-    def _stand_in(self, entry: HostEntry) -> None:
-        if entry.index not in self._standins:
-            self._standins[entry.index] = StandIn(self._plan, entry.index, self._events)
+    def _forward_fetches(self, host: HostProcess) -> None:
+        if host.index not in self._forwarders:
+            self._forwarders[host.index] = FetchForwarder(self._core, host.index)
 
 
-def _not_ready(entry: HostEntry) -> str:
-    stuck = [item.name for item in entry.components if item.state == "init"]
+def _not_ready(host: HostProcess) -> str:
+    stuck = [item.name for item in host.components if item.state == "init"]
     where = f"; still in init: {', '.join(stuck)}" if stuck else ""
-    return f"not ready after {entry.ready_timeout_us / US_PER_S:g} s{where}"
+    return f"not ready after {(host.ready_timeout_us or 0) / US_PER_S:g} s{where}"

@@ -11,10 +11,10 @@ _LINE_MAX = 4096
 _CHUNK = 65536
 
 
-class Captured:
+class CapturedStream:
     """Reads one stream of a process and logs its lines under the process's name, with the stream and line as place.
 
-    What is above the limit is read and counted, so that who prints too much is neither heard nor held up.
+    Lines above the limit are read, counted and dropped, so that a process that prints too much is not held up.
     """
 
     def __init__(self, descriptor: int, events: EventLoop, log: Logger, limit: RateLimit, stream: str, level: int):
@@ -32,7 +32,7 @@ class Captured:
         events.watch(descriptor, self._read)
 
     def look(self) -> None:
-        """Once a second: what does not end in a line by then is logged as it is; says how many lines were dropped."""
+        """Called repeatedly: logs an incomplete line that is older than one call, and reports dropped lines."""
         if self._rest and self._rest == self._waits:
             self._write(self._rest, self._lines + 1)
             self._rest = b""
@@ -40,7 +40,7 @@ class Captured:
         self._tell_dropped()
 
     def _tell_dropped(self) -> None:
-        """Says how many lines were dropped, if that second is over or nothing more can come."""
+        """Reports how many lines were dropped, if that second is over or the stream has ended."""
         dropped = self._limit.dropped() if self.open else self._limit.rest()
         if dropped:
             text = f"{dropped} lines dropped in the last second: more than {self._limit.per_s}"
@@ -74,23 +74,25 @@ class Captured:
         self._log.write(self._level, _text(line), self._stream, number)
 
 
-class Printed:
-    """What all processes print."""
+class CapturedOutput:
+    """Standard output and error of all host processes."""
 
     def __init__(self, events: EventLoop, log: Logger, lines_per_s: int) -> None:
         self._events = events
         self._log = log
         self._lines_per_s = lines_per_s
-        self._streams: list[Captured] = []
+        self._streams: list[CapturedStream] = []
 
     def listen(self, name: str, output: int, errors: int) -> None:
         """Logs what the process `name` writes to its standard output and error."""
         log = self._log.named(name)
         for descriptor, stream, level in ((output, "stdout", log_t.INFO), (errors, "stderr", log_t.WARNING)):
-            self._streams.append(Captured(descriptor, self._events, log, RateLimit(self._lines_per_s), stream, level))
+            self._streams.append(
+                CapturedStream(descriptor, self._events, log, RateLimit(self._lines_per_s), stream, level)
+            )
 
     def look(self) -> None:
-        """Once a second: what waits for the end of its line, and how much was too much for the log."""
+        """Called repeatedly: logs incomplete lines and reports dropped ones."""
         for each in self._streams:
             each.look()
         self._streams = [each for each in self._streams if each.open]

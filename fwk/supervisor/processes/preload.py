@@ -1,4 +1,4 @@
-"""What all components of a class share is made once, before processes are forked."""
+"""Makes what all components of a class share once, before processes are forked."""
 
 import json
 from contextlib import suppress
@@ -12,7 +12,7 @@ from fwk.model.plan import Plan
 
 
 def preload(plan: Plan) -> None:
-    """Makes the codecs of all channels, and calls `preload` of every component class, once a class and settings."""
+    """Makes the codecs of all channels and calls `preload` once for every component class and its settings."""
     for type_name in sorted({channel.type_name for channel in plan.channels}):
         codec.encoder(type_named(type_name))
         codec.decoder(type_named(type_name))
@@ -24,5 +24,5 @@ def preload(plan: Plan) -> None:
             continue
         done.add(key)
         config_type = declaration(component).config
-        with suppress(Exception):  # whatever is wrong with it, the component's own init says so, with its name
+        with suppress(Exception):  # the component's own `init` reports the mistake, with its name
             component.preload(config_type.model_validate(planned.config))

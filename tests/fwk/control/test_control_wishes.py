@@ -10,8 +10,8 @@ import pytest
 from fwk import Component, Image, VisionMaster, Writes
 from fwk.control.requests import Action, RequestError
 from fwk.plan.files.source_files import Sources
-from fwk.supervisor.control.lifecycle import Steering
-from fwk.supervisor.processes.host_process import HostEntry, host_table
+from fwk.supervisor.host_process import HostProcess, host_processes
+from fwk.supervisor.lifecycle import Lifecycle
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 
@@ -35,30 +35,38 @@ class Base(Component):
 
 
 @pytest.fixture
-def table() -> list[HostEntry]:
+def table() -> list[HostProcess]:
     return []
 
 
 @pytest.fixture
-def steering(table: list[HostEntry]) -> Steering:
+def steering(table: list[HostProcess]) -> Lifecycle:
     components = {"r/camera": Camera, "r/finder": Finder, "r/base": Base, "s/base": Base}
     plan = plan_of(components, groups=[["r/base", "s/base"]])
     planned = list(plan.components)
     planned[1] = replace(planned[1], needs=(0, 2))  # the finder needs r/base too
     plan = replace(plan, components=tuple(planned))
-    table += host_table(plan)
+    table += host_processes(plan)
     for entry in table:
-        entry.starting(0)
-        entry.state = "running"
-    return Steering(plan, table)
+        entry.begin_start(0)
+        entry.become_ready(0)
+    return Lifecycle(plan, table)
 
 
-def state(table: list[HostEntry], name: str, *, running: bool) -> None:
+def state(table: list[HostProcess], name: str, *, running: bool) -> None:
     entry = next(entry for entry in table if entry.name == name)
-    entry.state, entry.wanted = ("running", True) if running else ("stopped", False)
+    if running:
+        entry.wait_for_start(0)
+        entry.begin_start(0)
+        entry.become_ready(0)
+    else:
+        entry.begin_stop(0)
+        entry.wanted = False
+        entry.ended(0, 0, stopping=False)
+    entry.wanted = running
 
 
-def names(entries: list[HostEntry]) -> list[str]:
+def names(entries: list[HostProcess]) -> list[str]:
     return [entry.name for entry in entries]
 
 
@@ -77,12 +85,12 @@ def names(entries: list[HostEntry]) -> list[str]:
         ("restart", ["s/base"], "the process 'r/base+s/base' holds r/base as well; restart all of them"),
     ],
 )
-def test_what_cannot_be_is_refused(steering: Steering, action: Action, patterns: list[str], error: str) -> None:
+def test_what_cannot_be_is_refused(steering: Lifecycle, action: Action, patterns: list[str], error: str) -> None:
     with pytest.raises(RequestError, match=re.escape(error)):
         steering.hosts(action, patterns)
 
 
-def test_a_user_does_not_start_without_its_vision_master(steering: Steering, table: list[HostEntry]) -> None:
+def test_a_user_does_not_start_without_its_vision_master(steering: Lifecycle, table: list[HostProcess]) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
     for action in ("start", "restart", "reload"):
@@ -91,13 +99,13 @@ def test_a_user_does_not_start_without_its_vision_master(steering: Steering, tab
     assert names(steering.hosts("start", ["r/finder", "r/camera"])) == ["r/camera", "r/finder"]
 
 
-def test_load_brings_what_is_needed_and_does_not_run(steering: Steering, table: list[HostEntry]) -> None:
+def test_load_brings_what_is_needed_and_does_not_run(steering: Lifecycle, table: list[HostProcess]) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
     assert names(steering.hosts("load", ["r/finder"])) == ["r/camera", "r/finder"]
 
 
-def test_a_master_is_unloaded_once_nobody_uses_it(steering: Steering, table: list[HostEntry]) -> None:
+def test_a_master_is_unloaded_once_nobody_uses_it(steering: Lifecycle, table: list[HostProcess]) -> None:
     state(table, "r/finder", running=False)
     assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
     state(table, "r/finder", running=True)
@@ -105,18 +113,18 @@ def test_a_master_is_unloaded_once_nobody_uses_it(steering: Steering, table: lis
     assert names(steering.hosts("unload", ["r/camera"], force=True)) == ["r/camera", "r/finder"]
 
 
-def test_readers_that_lose_their_writer_are_named(steering: Steering, table: list[HostEntry]) -> None:
+def test_readers_that_lose_their_writer_are_named(steering: Lifecycle, table: list[HostProcess]) -> None:
     (camera,) = steering.hosts("stop", ["r/camera"])
     assert steering.left_without([camera]) == [{"channel": "r/image", "readers": ["r/finder"]}]
     state(table, "r/finder", running=False)
     assert steering.left_without([camera]) == []
 
 
-def test_a_namespace_means_all_in_it(steering: Steering) -> None:
+def test_a_namespace_means_all_in_it(steering: Lifecycle) -> None:
     assert names(steering.hosts("restart", ["r", "s"])) == ["r/camera", "r/finder", "r/base+s/base"]
 
 
-def test_reload_looks_at_the_code_first(steering: Steering, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reload_looks_at_the_code_first(steering: Lifecycle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     broken = tmp_path / "broken.py"
     broken.write_text("x = 1\ndef (:\n")
     monkeypatch.setattr(Sources, "files", lambda *_: {broken})

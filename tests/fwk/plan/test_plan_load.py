@@ -48,7 +48,7 @@ def test_what_a_file_does_not_say_has_defaults(load: Load, folder: Path) -> None
     assert (plan.name, plan.file, plan.period_us, plan.clock) == ("it", str(folder / "it.yaml"), 50_000, "simulated")
     assert (plan.seed, plan.speed, plan.stage_time_us, len(plan.stages)) == (1, 1.0, 0, 10)
     wheels = component(plan, "it/wheels")
-    assert (wheels.restart, wheels.ready_timeout_s, wheels.needs) == (RestartPolicy(), 20.0, ())
+    assert (wheels.restart, wheels.ready_timeout_s, wheels.needs) == (RestartPolicy(), None, ())
     assert wheels.config["limits"] == {"speed_m_s": 2.0, "turns": [-1.0, 1.0]}
     assert set(wheels.origins.values()) == {"default"}
 

@@ -1,25 +1,18 @@
-"""The main loop without processes: what it is told in which order, and what it says then."""
+"""The main loop without processes: what hosts are told in which order, and which answers count."""
 
 from collections.abc import Callable
-from contextlib import suppress
-from types import SimpleNamespace
-from typing import Any, cast
+
+import pytest
 
 from fwk import Component, Reads, Writes
 from fwk.bus import sync
-from fwk.clock import Clock
-from fwk.component.log import Logger
-from fwk.engine.visibility import Ledger
-from fwk.supervisor.event_loop import EventLoop
-from fwk.supervisor.loop import MainLoop
-from fwk.supervisor.processes.host_process import HostEntry, host_table
-from fwk.supervisor.run_clock import Pace
-from fwk.testing.plans import plan_of
-from lcmtypes.core import done_t, log_t, tick_t
+from fwk.model.requests import channel_request, lost_message, main_loop_request, plugin_request
+from lcmtypes.core import done_t, tick_events_t
 from lcmtypes.robot import imu_t
+from tests.fwk.supervisor.memory_run import RUN, MemoryRun, S
 
-RUN = 4711
 LEFT, RIGHT = 0, 1
+THINK = 5
 
 
 class Left(Component):
@@ -34,152 +27,180 @@ class Right(Component):
     left: Reads[imu_t]
 
 
-class Played:
-    """A main loop of two hosts in one stage; each pump of the mailbox plays the next step of the script."""
-
-    def __init__(self, clock: str = "simulated") -> None:
-        plan = plan_of({"r/left": Left, "r/right": Right}, clock=clock, period_s=0.001, loop_time_warnings=False)
-        self.table = host_table(plan)
-        self.ledger = Ledger(plan)
-        self.script: list[Callable[[], None]] = []
-        self.sent: list[tuple[bytes, bytes]] = []
-        self.logged: list[log_t] = []
-        self._receiver = cast(Any, SimpleNamespace())
-        self._now_us = 0
-        network = SimpleNamespace(now_us=self._look_at_the_clock, watch=lambda _: None)
-        self._hosts = cast(Any, SimpleNamespace(table=self.table, unsettled=False, leaving=set()))
-        self._hosts.maintain = self._hosts.steer = lambda: None
-        socket = SimpleNamespace(fileno=lambda: 0)
-        sender = SimpleNamespace(socket=socket, publish=lambda channel, data, _: self.sent.append((channel, data)))
-        self.loop = MainLoop(
-            plan,
-            RUN,
-            self._hosts,
-            self.ledger,
-            EventLoop(cast(Any, network)),
-            self._receiver,
-            cast(Any, sender),
-            Pace(plan, 0.0),
-            Logger("supervisor", Clock(), self.logged.append),
-            lambda: not self.script,
-        )
-        for entry in self.table:
-            entry.starting(0)
-            entry.state = "running"
-
-    @property
-    def ticks(self) -> list[tick_t]:
-        return [sync.decode_tick(data) for channel, data in self.sent if channel == sync.TICK]
-
-    def done(self, host: int, sequence: int, tick: int = 1, incarnation: int = 1) -> None:
-        made = done_t()
-        made.run, made.host, made.incarnation, made.tick, made.step = RUN, host, incarnation, tick, 5
-        made.next_time_us = -1
-        made.n_marks, made.channel, made.sequence = 1, [host], [sequence]
-        self._receiver.on_done(made)
-
-    def dones(self, *answers: tuple[int, int, int]) -> None:
-        for host, sequence, tick in answers:
-            self.done(host, sequence, tick)
-
-    def die(self, entry: HostEntry) -> None:
-        entry.ended(-9, 0, stopping=False)
-        self.ledger.void(entry.index, entry.incarnation + 1, self.loop.tick)
-        self._hosts.on_lost(entry)
-
-    def return_(self, entry: HostEntry) -> None:
-        entry.starting(0)
-        entry.state = "running"
-        self._hosts.on_started(entry)
-
-    def play(self, *script: Callable[[], None]) -> None:
-        """Runs one tick with this script; the loop is interrupted where the script ends."""
-        self.script = [*script]
-        steps = self.loop.run_tick()
-        with suppress(StopIteration):
-            next(steps)
-            while True:
-                self._pump()
-                steps.send([])
-
-    def _look_at_the_clock(self) -> int:
-        self._now_us += 10
-        return self._now_us
-
-    def _pump(self) -> None:
-        if self.loop._outstanding and self.script:
-            self.script.pop(0)()
+def pair(clock: str = "simulated") -> MemoryRun:
+    run = MemoryRun({"r/left": Left, "r/right": Right}, clock=clock, period_s=0.001)
+    run.begin()
+    return run
 
 
-def test_a_stage_ends_when_all_have_answered_and_marks_move_with_the_next() -> None:
-    played = Played()
-    played.play(lambda: played.done(LEFT, 1), lambda: played.done(RIGHT, 1), lambda: None)
-    assert played.ledger.marks == [0, 0]
-    played.ledger.begin()
-    assert played.ledger.marks == [1, 1]
+def test_marks_move_with_the_next_stage() -> None:
+    run = pair()
+    run.play_ticks(1)
+    second = next(tick for tick in run.ticks if tick.tick == 2)
+    assert dict(zip(second.channel, second.sequence, strict=True)) == {LEFT: 1, RIGHT: 1}
 
 
-def test_a_repeated_tick_does_not_tell_what_peers_did_meanwhile() -> None:
-    played = Played()
-    right = played.table[RIGHT]
-    played.play(
-        lambda: played.done(LEFT, 1), lambda: played.die(right), lambda: played.return_(right), *[lambda: None] * 3
-    )
-    first, again = played.ticks[0], played.ticks[-1]
-    assert len(played.ticks) == 2
-    assert (first.n_marks, again.n_marks) == (0, 0)
-
-    assert [list(tick.absent) for tick in (first, again)] == [[], [LEFT]]
+def test_repeated_tick_does_not_tell_newer_marks() -> None:
+    run = pair()
+    run.does_not_answer = {RIGHT}
+    newest = len(run.records)
+    run.play(lambda: [tick.tick for tick in run.ticks].count(newest + 1) >= 3)
+    told = [tick for tick in run.ticks if tick.tick == newest + 1]
+    assert all(list(tick.sequence) == list(told[0].sequence) for tick in told)
+    assert [list(tick.absent) for tick in told] == [[], [LEFT], [LEFT]]
 
 
-def test_a_done_that_comes_after_the_news_of_death_does_not_count() -> None:
-    played = Played()
-    right = played.table[RIGHT]
-    played.play(lambda: played.done(LEFT, 1), lambda: played.die(right), lambda: played.done(RIGHT, 1), lambda: None)
-    played.ledger.begin()
-    assert played.ledger.marks == [1, 0]
-    assert [(void.channel, void.above_sequence) for void in played.ledger.voids] == [(RIGHT, 0)]
+def test_done_after_the_news_of_death_does_not_count() -> None:
+    run = pair()
+    run.does_not_answer = {RIGHT}
+    before = run.supervisor._core.ledger.latest(RIGHT)
+    tick = len(run.records) + 1
+    run.play(lambda: run.ticks[-1].tick == tick)
+    run.end(RIGHT, -9)
+    run.play(lambda: any("ended" in text for text in run.texts))
+    run.done(RIGHT, tick, THINK, sequence=99)
+    run.play(lambda: len(run.starts) == 3)
+    assert run.supervisor._core.ledger.latest(RIGHT) == before
+    (void,) = [void for void in run.supervisor._core.ledger.voids if void.channel == RIGHT]
+    assert (void.above_sequence, void.before_incarnation) == (before, 2)
 
 
-def test_answers_of_other_ticks_and_incarnations_do_not_count() -> None:
-    played = Played()
-    played.play(
-        lambda: played.done(LEFT, 1, tick=9), lambda: played.done(LEFT, 1, incarnation=2), lambda: None, lambda: None
-    )
-    played.ledger.begin()
-    assert played.ledger.marks == [0, 0]
+def test_dones_of_other_ticks_do_not_count() -> None:
+    run = pair()
+    run.does_not_answer = {RIGHT}
+    tick = len(run.records) + 1
+    run.play(lambda: run.ticks[-1].tick == tick)
+    run.done(RIGHT, tick + 8, THINK, sequence=99)
+    run.done(RIGHT, tick, THINK + 1, sequence=99)
+    run.play(lambda: run.supervisor.loop.barrier.repeated > 3)
+    assert len(run.records) == tick - 1
 
 
-def test_in_real_time_the_late_one_is_named_left_out_and_reminded_until_it_answers() -> None:
-    played = Played("wall")
-    idle = [lambda: None] * 100_000  # the stage's time is a millisecond
-    played.play(lambda: played.done(LEFT, 1), *idle)
-    assert [line.text.partition(":")[0] for line in played.logged] == ["r/right is late"]
-    assert played.loop.late == 1
-    played.sent.clear()
-    played.play(lambda: played.done(LEFT, 2, tick=2), *idle)
-    reminder, second = played.ticks
-    assert (reminder.tick, list(reminder.absent)) == (1, [LEFT])  # nor may a new process take it for its first
-    assert (second.tick, list(second.absent)) == (2, [RIGHT])
-    played.sent.clear()
-    played.play(lambda: played.dones((RIGHT, 1, 1), (LEFT, 3, 3)), *idle)
-    assert [line.text.partition(";")[0] for line in played.logged[1:]] == ["r/right is on time again"]
-    played.sent.clear()
-    played.play(lambda: played.dones((LEFT, 4, 4), (RIGHT, 2, 4)), *idle)
-    assert [(tick.tick, list(tick.absent)) for tick in played.ticks] == [(4, [])]
-    assert dict(zip(played.ticks[0].channel, played.ticks[0].sequence, strict=True)) == {LEFT: 3, RIGHT: 1}
+def test_real_time_names_and_reminds_a_late_host() -> None:
+    run = pair("wall")
+    run.does_not_answer = {RIGHT}
+    run.play(lambda: any("r/right is late" in text for text in run.texts))
+    late_tick = run.supervisor._core.hosts[RIGHT].late_with
+    assert late_tick
+    assert run.supervisor.loop.barrier.late == 1
+    run.play(lambda: run.ticks[-1].tick > late_tick[0] + 3)
+    reminders = [tick for tick in run.ticks if tick.tick == late_tick[0]][1:]
+    assert reminders
+    assert all(list(tick.absent) == [LEFT] for tick in reminders)  # nor may a new process take it for its first
+    assert list(run.ticks[-1].absent) == [RIGHT] or run.ticks[-1].tick == late_tick[0]
+    run.does_not_answer = set()
+    run.done(RIGHT, *late_tick, sequence=77)
+    run.play(lambda: any("r/right is on time again" in text for text in run.texts))
+    run.play_ticks(2)
+    assert list(run.ticks[-1].absent) == []
 
 
-def test_while_paused_no_tick_runs_but_what_is_asked_between_ticks_happens() -> None:
-    played = Played()
-    boundaries: list[int] = []
-    played.loop.on_boundary = boundaries.append
-    played.loop.pace.pause()
-    for _ in range(3):
-        played.play(lambda: None)
-    assert (played.loop.tick, played.loop.stands, played.ticks) == (0, True, [])
-    assert boundaries == [1, 1, 1]
-    played.loop.pace.step(1)
-    played.play(lambda: played.dones((LEFT, 1, 1), (RIGHT, 1, 1)), lambda: None)
-    played.play(lambda: None)
-    assert (played.loop.tick, played.loop.stands, len(played.ticks)) == (1, True, 1)
+def test_paused_run_crosses_boundaries_only() -> None:
+    run = pair()
+    clock = run.supervisor._core.clock
+    clock.pause()
+    run.play(lambda: run.supervisor.loop.paused)
+    ticks = len(run.records)
+    paused_us = run.wall_us
+    run.play(lambda: run.wall_us > paused_us + S)
+    assert len(run.records) == ticks
+    clock.step(1)
+    run.play(lambda: len(run.records) == ticks + 1)
+    run.play(lambda: run.supervisor.loop.paused)
+    assert len(run.records) == ticks + 1
+
+
+def test_hang_is_named_after_a_second_and_repeatedly() -> None:
+    run = pair()
+    run.does_not_answer = {RIGHT}
+    run.play(lambda: sum("has waited" in text for text in run.texts) >= 3, 10 * S)
+    tick = len(run.records) + 1
+    assert [text for text in run.texts if "has waited" in text] == [
+        f"tick {tick} has waited {seconds} s for r/right" for seconds in (1, 2, 4)
+    ]
+    assert run.supervisor.loop.waits_for == ["r/right"]
+    assert run.statuses[-1].waits_for == ["r/right"]
+
+
+def test_usual_wait_is_not_reported() -> None:
+    run = pair()
+    run.play_ticks(50)
+    assert run.supervisor.loop.waits_for == []
+    assert not any("has waited" in text for text in run.texts)
+
+
+def test_broken_done_is_refused_counted_and_named() -> None:
+    def broken(done: done_t) -> None:
+        if done.host == RIGHT:
+            done.channel, done.sequence = [1234], [1]
+
+    run = pair()
+    run.alters = broken
+    run.play(lambda: run.supervisor.loop.barrier.repeated > 12)
+    assert [text for text in run.texts if "refused" in text] == [
+        "fwk/done: done of r/right with a mark of channel 1234, which it does not write; refused",
+        "fwk/done: done of r/right with a mark of channel 1234, which it does not write; refused (10 times)",
+    ]
+    run.alters = lambda _: None
+    run.play_ticks(3)
+
+
+def asks_for_the_main_loop(done: done_t) -> None:
+    done.main_loop = [main_loop_request(LEFT, [THINK])]
+
+
+def asks_for_an_unknown_stage(done: done_t) -> None:
+    done.main_loop = [main_loop_request(RIGHT, [99])]
+
+
+def asks_to_fly(done: done_t) -> None:
+    done.plugins = [plugin_request(RIGHT, "stop", ["r"])]
+    done.plugins[0].action = 99
+
+
+def loses_from_an_unknown_channel(done: done_t) -> None:
+    done.lost = [lost_message(99, 1)]
+
+
+def opens_in_an_unknown_way(done: done_t) -> None:
+    done.channels = [channel_request(RIGHT, ["close", 1])]
+    done.channels[0].kind = 99
+
+
+@pytest.mark.parametrize(
+    ("mistake", "reason"),
+    [
+        (asks_for_the_main_loop, "a request of component 0, which it does not have"),
+        (asks_for_an_unknown_stage, "a schedule with a stage that the plan does not have"),
+        (asks_to_fly, "a plugin request of an unknown kind"),
+        (loses_from_an_unknown_channel, "a channel that the plan does not have"),
+        (opens_in_an_unknown_way, "a channel request of an unknown kind"),
+    ],
+)
+def test_broken_requests_are_refused(mistake: Callable[[done_t], None], reason: str) -> None:
+    def broken(done: done_t) -> None:
+        if done.host == RIGHT:
+            mistake(done)
+
+    run = pair()
+    run.alters = broken
+    run.play(lambda: bool(run.texts))
+    assert run.texts == [f"fwk/done: done of r/right with {reason}; refused"]
+    run.alters = lambda _: None
+    run.play_ticks(2)
+
+
+def test_broken_datagrams_of_hosts_are_refused() -> None:
+    run = pair()
+    run.report(b"fwk/actual", b"nonsense", run.ports.host(LEFT))
+    run.report(sync.DONE, b"nonsense", run.ports.host(LEFT))
+    run.play_ticks(2)
+    assert sum("refused" in text for text in run.texts) == 2
+
+
+def test_record_has_all_events_of_a_tick_in_order() -> None:
+    run = pair()
+    run.play_ticks(2)
+    kinds = tick_events_t.STAGE, tick_events_t.STAGE_DONE, tick_events_t.STAGE_DONE
+    assert tuple(run.records[-1].events.kind) == kinds
+    assert run.records[-1].run == RUN

@@ -5,8 +5,8 @@ from typing import Any
 from fwk import Component, Writes
 from fwk.clock import Clock
 from fwk.component.log import Logger
+from fwk.supervisor.host_process import host_processes
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.processes.host_process import host_table
 from fwk.testing.plans import plan_of
 from lcmtypes.core import component_state_t, log_t
 from lcmtypes.robot import imu_t
@@ -37,7 +37,7 @@ class Timed:
     def __init__(self, groups: list[list[str]] | None = None, **fields: Any) -> None:
         parts = {"r/senses": Senses, "r/thinks": Thinks, "r/dreams": Dreams}
         plan = plan_of(parts, groups=groups, **fields)
-        self.table = host_table(plan)
+        self.table = host_processes(plan)
         self.logged: list[log_t] = []
         self.times = LoopTimes(plan, self.table, Logger("supervisor", Clock(), self.logged.append))
 

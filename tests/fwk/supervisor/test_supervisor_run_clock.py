@@ -1,7 +1,7 @@
 """The central clock: logical time of the ticks and their place on the wall."""
 
 from fwk import Component, Writes
-from fwk.supervisor.run_clock import Pace
+from fwk.supervisor.run_clock import RunClock
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 
@@ -11,8 +11,8 @@ class Senses(Component):
     imu: Writes[imu_t]
 
 
-def pace(speed: float, clock: str = "simulated") -> Pace:
-    return Pace(plan_of({"r/senses": Senses}, period_s=0.05, clock=clock), speed)
+def pace(speed: float, clock: str = "simulated") -> RunClock:
+    return RunClock(plan_of({"r/senses": Senses}, period_s=0.05, clock=clock), speed)
 
 
 def test_without_a_source_time_goes_on_by_the_period() -> None:

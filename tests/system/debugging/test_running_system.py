@@ -201,7 +201,7 @@ def test_what_cannot_be_debugged_is_refused_and_runs_on(
     first = debug(NAME)
     first.prompt()
     second = debug(NAME)
-    second.child.expect(f"{NAME} is in the hands of process")
+    second.child.expect(f"{NAME} is run by process")
     assert second.end() == 2
     first.type("q")
     assert first.end() == 0

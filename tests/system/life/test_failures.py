@@ -127,7 +127,7 @@ def test_who_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None
         ("loop:exit text", "d/player ended: SystemExit: enough"),
         ("loop:give up", "d/player ended: GiveUp: no more"),
         ("loop:os._exit", "d/player ended: exit code 3"),
-        ("loop:leave", "d/player ended: it left by itself (exit code 0), which nobody had asked it to"),
+        ("loop:leave", "d/player ended: it left by itself (exit code 0) without having been asked to"),
         ("loop:crash", "d/player ended: killed by signal 11"),
     ],
 )

@@ -4,7 +4,7 @@ import pytest
 
 from fwk import Component, Writes
 from fwk.supervisor.control.view import component_view
-from fwk.supervisor.processes.host_process import host_table
+from fwk.supervisor.host_process import host_processes
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 
@@ -29,4 +29,4 @@ class AsSoonAsThereIsSomethingNew(Component):
 )
 def test_the_period_is_that_of_its_own_iterations(kind: type[Component], period_s: float) -> None:
     plan = plan_of({"r/it": kind}, period_s=0.02)
-    assert component_view(plan, plan.components[0], host_table(plan)[0])["period_s"] == period_s
+    assert component_view(plan, plan.components[0], host_processes(plan)[0])["period_s"] == period_s

@@ -3,12 +3,14 @@
 import pytest
 
 from fwk.model.plan import RestartPolicy, RestartWhen
-from fwk.supervisor.processes.host_process import Change, HostEntry
+from fwk.supervisor.host_process import NEXT_STATES, Change, HostProcess, HostState, HostStateError
 from lcmtypes.core import component_state_t
 
 
-def entry(when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10, backoff_s: float = 0.5) -> HostEntry:
-    return HostEntry(0, "cyan1/base", RestartPolicy(when, backoff_s, limit, window_s), 1_000_000)
+def entry(
+    when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10, backoff_s: float = 0.5
+) -> HostProcess:
+    return HostProcess(0, "cyan1/base", RestartPolicy(when, backoff_s, limit, window_s), 1_000_000)
 
 
 @pytest.mark.parametrize(
@@ -26,7 +28,7 @@ def entry(when: RestartWhen = "on-failure", limit: int = 3, window_s: float = 10
 )
 def test_what_follows_an_end(when: RestartWhen, code: int, state: str) -> None:
     host = entry(when)
-    host.starting(0)
+    host.begin_start(0)
     host.ended(code, 1000, stopping=False)
     assert host.state == state
 
@@ -34,7 +36,7 @@ def test_what_follows_an_end(when: RestartWhen, code: int, state: str) -> None:
 def test_each_start_is_a_new_incarnation_and_waits_twice_as_long() -> None:
     host, waits = entry(), []
     for number in range(3):
-        assert host.starting(number) == number + 1
+        assert host.begin_start(number) == number + 1
         host.ended(-9, number, stopping=False)
         waits.append(host.restart_us - number)
     assert waits == [500_000, 1_000_000, 2_000_000]
@@ -43,7 +45,7 @@ def test_each_start_is_a_new_incarnation_and_waits_twice_as_long() -> None:
 def test_too_many_starts_within_the_window_are_the_end() -> None:
     host = entry(limit=3)
     for now in range(4):
-        host.starting(now)
+        host.begin_start(now)
         host.ended(1, now, stopping=False)
     assert host.state == "failed"
     assert "4 times in 10 s" in host.reason
@@ -52,7 +54,7 @@ def test_too_many_starts_within_the_window_are_the_end() -> None:
 def test_starts_outside_the_window_are_forgotten() -> None:
     host = entry(limit=3)
     for number in range(20):
-        host.starting(number * 11_000_000)
+        host.begin_start(number * 11_000_000)
         host.ended(1, number * 11_000_000, stopping=False)
     assert host.state == "waiting"
     assert host.restarts == 20
@@ -60,95 +62,96 @@ def test_starts_outside_the_window_are_forgotten() -> None:
 
 def test_nothing_is_started_again_while_everything_stops() -> None:
     host = entry("always")
-    host.starting(0)
+    host.begin_start(0)
     host.ended(-15, 1, stopping=True)
     assert host.state == "failed"
 
 
 def test_the_reason_names_the_signal() -> None:
     host = entry("never")
-    host.starting(0)
+    host.begin_start(0)
     host.ended(-9, 1, stopping=False)
     assert host.reason == "killed by signal 9"
 
 
 def test_who_leaves_without_having_been_asked_is_told_so() -> None:
     host = entry("never")
-    host.starting(0)
+    host.begin_start(0)
     host.ended(0, 1, stopping=False)
     assert "left by itself" in host.reason
 
 
 def test_the_reason_names_the_culprit_of_a_shared_process() -> None:
     host = entry("never")
-    host.starting(0)
+    host.begin_start(0)
     host.ended(-11, 1, stopping=False, culprit="cyan1/base")
     assert host.reason == "cyan1/base: killed by signal 11"
 
 
-def running(when: RestartWhen = "on-failure") -> HostEntry:
+def running(when: RestartWhen = "on-failure") -> HostProcess:
     host = entry(when)
-    host.starting(0)
-    host.state, host.pid = "running", 100
+    host.begin_start(0)
+    host.become_ready(5)
+    host.pid = 100
     return host
 
 
 def test_asked_to_stop_it_leaves_and_stays_away() -> None:
     host = running("always")
     host.want_stop(10)
-    assert host.leaves
+    assert host.must_leave
     assert host.expected  # until the boundary
-    host.leaving(20)
+    host.begin_stop(20)
     assert not host.expected
     host.ended(-15, 30, stopping=False)
     assert host.state == "stopped"
     assert host.settled
-    assert not host.joins
+    assert not host.must_join
 
 
 def test_a_restart_is_a_number_that_goes_up() -> None:
     host = running()
     host.want_restart(10)
     assert (host.desired_run, host.actual_run) == (2, 1)
-    assert host.leaves
-    host.leaving(20)
+    assert host.must_leave
+    host.begin_stop(20)
     assert host.expected  # the loop waits for it
     host.ended(0, 30, stopping=False)
     assert host.state == "waiting"
     assert host.restart_us == 30
-    assert host.joins
-    assert host.starting(40) == 2
-    host.state = "running"
+    assert host.must_join
+    assert host.begin_start(40) == 2
+    host.become_ready(50)
     assert host.settled
 
 
 def test_what_was_given_up_starts_again_when_asked() -> None:
     host = entry("never")
-    host.starting(0)
+    host.begin_start(0)
     host.ended(1, 10, stopping=False)
     assert host.state == "failed"
     host.want_start(20)
-    assert host.joins
-    host.starting(30)
+    assert host.must_join
+    host.begin_start(30)
     assert host.alive
-    assert not host.leaves
+    assert not host.must_leave
 
 
 def test_start_leaves_what_runs_alone() -> None:
     host = running()
     host.want_start(10)
-    assert not host.leaves
+    assert not host.must_leave
     assert host.settled
 
 
 def test_asked_restarts_forget_failures_of_before() -> None:
     host = entry(limit=1)
     for moment in (0, 10):
-        host.starting(moment)
+        host.begin_start(moment)
         host.ended(1, moment + 5, stopping=False)
     assert host.state == "failed"
     host.want_restart(20)
-    host.starting(30)
+    host.begin_start(30)
     host.ended(1, 40, stopping=False)
     assert host.state == "waiting"
 
@@ -163,24 +166,49 @@ def test_what_shall_stop_and_dies_before_is_not_started_again() -> None:
 def test_changes_of_settings_wait_until_their_tick_is_answered() -> None:
     host = running()
     host.changes = [Change(0, 1, "{}", step=5), Change(0, 2, "{}", step=8)]
-    host.seen = 5
-    host.told()
+    host.answered_step = 5
+    host.drop_told_changes()
     assert [change.number for change in host.changes] == [2]
     host.want_restart(10)
-    host.leaving(20)
+    host.begin_stop(20)
     assert host.changes == []  # the new process is started with them
 
 
 def test_what_was_lost_stays_lost_whoever_dies() -> None:
     host = entry()
     for lost in (2, 3):
-        host.starting(0)
+        host.begin_start(0)
         for sofar in range(lost + 1):  # it says so again and again
             said = component_state_t()
             said.name, said.lost, said.fetched, said.iterations = "cyan1/base", sofar, 10 * sofar, 100
-            host.heard([said], [])
+            host.report([said], [])
         host.ended(-9, 0, stopping=False)
-    host.starting(0)  # and this one has not said anything yet
-    host.starting(0)
+    host.begin_start(0)  # and this process has not reported anything
+    host.ended(-9, 0, stopping=False)
+    host.begin_start(0)
     (component,) = host.components
     assert (component.lost, component.fetched, component.iterations) == (5, 50, 100)
+
+
+def test_every_state_has_its_successors() -> None:
+    assert set(NEXT_STATES) == set(HostState)
+    host = entry()
+    with pytest.raises(HostStateError, match="cyan1/base is loaded and cannot become running"):
+        host.become_ready(0)
+    with pytest.raises(HostStateError, match="cannot become stopping"):
+        host.begin_stop(0)
+
+
+def test_time_outs_apply_only_where_they_are_asked_for() -> None:
+    host = HostProcess(0, "a", RestartPolicy())
+    host.begin_start(0)
+    assert not host.not_ready_in_time(10**12)
+    host.ready_timeout_us = 1000
+    assert host.not_ready_in_time(1001)
+    host.held = True
+    assert not host.not_ready_in_time(1001)
+    host.become_ready(2000)
+    host.begin_stop(3000)
+    assert not host.not_stopped_in_time(10**12)
+    host.stop_timeout_us = 1000
+    assert host.not_stopped_in_time(4001)

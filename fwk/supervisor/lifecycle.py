@@ -1,4 +1,4 @@
-"""Finds out what a wish such as `restart cyan1/*` means for the processes of a run, and whether it can be granted."""
+"""Translates requests such as `restart cyan1/*` into desired states of host processes, or refuses them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -8,7 +8,7 @@ from fwk.control.requests import Action, RequestError
 from fwk.model.plan import NOBODY, Plan
 from fwk.model.selection import matches, nearest
 from fwk.plan.files.source_files import Sources, mistakes
-from fwk.supervisor.processes.host_process import HostEntry
+from fwk.supervisor.host_process import HostProcess
 
 _STOPS = ("stop", "unload", "kill")
 _STARTS_AGAIN = ("start", "restart", "reload")
@@ -16,19 +16,19 @@ _RUNNING = ("starting", "running", "waiting")
 _LOADED = "; what can be loaded stands in the launch file, with 'start: false' if it does not start with the run"
 
 
-class Steering:
-    """Turns wishes for components into wishes for their processes."""
+class Lifecycle:
+    """Turns requests for components into desired states of their hosts."""
 
-    def __init__(self, plan: Plan, table: Sequence[HostEntry]) -> None:
+    def __init__(self, plan: Plan, table: Sequence[HostProcess]) -> None:
         self._plan = plan
         self._table = table
         self._sources = Sources(plan)
 
     def components(self, patterns: Sequence[str]) -> list[int]:
-        """Indices of the components that patterns mean.
+        """Returns the indices of the components that match patterns.
 
         Raises:
-            RequestError: one means none.
+            RequestError: a pattern matches no component.
         """
         names = [component.name for component in self._plan.components]
         for pattern in patterns:
@@ -37,21 +37,21 @@ class Steering:
         return [index for index, name in enumerate(names) if any(matches(name, pattern) for pattern in patterns)]
 
     def component(self, name: str) -> int:
-        """Index of the component of that very name.
+        """Returns the index of the component with exactly this name.
 
         Raises:
-            RequestError: there is none.
+            RequestError: there is no such component.
         """
         names = [component.name for component in self._plan.components]
         if name not in names:
             raise RequestError(f"no component '{name}'; {nearest(name, names)}")
         return names.index(name)
 
-    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[HostEntry]:
-        """The processes concerned; with `force`, unloading takes along who needs them.
+    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[HostProcess]:
+        """Returns the hosts concerned; with `force`, unloading includes the components that need them.
 
         Raises:
-            RequestError: it cannot be done; names who stands against it.
+            RequestError: the request cannot be granted; names the components that prevent it.
         """
         if not patterns:
             raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
@@ -73,8 +73,8 @@ class Steering:
         self._check_whole(action, chosen, entries)
         return list(entries.values())
 
-    def wish(self, action: Action, entry: HostEntry, now_us: int) -> None:
-        """Sets the desired state of a process."""
+    def request(self, action: Action, entry: HostProcess, now_us: int) -> None:
+        """Sets the desired state of a host."""
         if action in _STOPS:
             entry.want_stop(now_us)
         elif action in ("start", "load"):
@@ -83,8 +83,8 @@ class Steering:
             entry.fresh_code = entry.fresh_code or action == "reload"
             entry.want_restart(now_us)
 
-    def left_without(self, entries: Sequence[HostEntry]) -> list[dict[str, Any]]:
-        """Channels that lose their writer when these processes end, with the components that go on reading them."""
+    def left_without(self, entries: Sequence[HostProcess]) -> list[dict[str, Any]]:
+        """Returns the channels that lose their writer when these hosts end, each with its remaining readers."""
         hosts = {entry.index for entry in entries}
         found = []
         for channel in self._plan.channels:
@@ -97,7 +97,7 @@ class Steering:
                 found.append({"channel": channel.name, "readers": [self._name(index) for index in readers]})
         return found
 
-    def _entry(self, index: int) -> HostEntry:
+    def _entry(self, index: int) -> HostProcess:
         return self._table[self._plan.components[index].host]
 
     def _runs(self, index: int) -> bool:
@@ -108,10 +108,10 @@ class Steering:
         return self._plan.components[index].name
 
     def check_needs(self, chosen: Sequence[int]) -> None:
-        """Whether everything runs that these components need.
+        """Checks that everything runs that these components need.
 
         Raises:
-            RequestError: something does not; says what to type.
+            RequestError: a needed component does not run; says what to type.
         """
         for index in chosen:
             missing = [
@@ -130,14 +130,14 @@ class Steering:
                 raise RequestError(f"{name} is needed by {by}; unload them too: {more}")
 
     def _check_code(self, chosen: Sequence[int]) -> None:
-        """A file that is no Python is found while the old code still runs."""
+        """Refuses files with syntax errors while the old code still runs."""
         files = {file for index in chosen for file in self._sources.files(self._plan.components[index])}
         if found := mistakes(files):
             names = ", ".join(self._name(index) for index in chosen)
             raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code runs on: {names}")
 
-    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostEntry]) -> None:
-        """A process starts and stops as a whole."""
+    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostProcess]) -> None:
+        """Refuses to start or stop a part of a process."""
         for host, entry in entries.items():
             others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
             if others:

@@ -1,0 +1,187 @@
+"""The barrier at the end of each stage: lockstep waits for all hosts, real time goes on without late ones."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+
+from fwk.bus.network import Steps
+from fwk.model.tick_events import HostLate, StageBegun
+from fwk.supervisor.core import Core
+from fwk.supervisor.host_process import HostProcess
+from fwk.supervisor.loop_times import LoopTimes
+from fwk.supervisor.processes.hosts import Hosts
+from fwk.supervisor.retransmission_timeout import RetransmissionTimeout
+from fwk.supervisor.schedule import Turn
+from fwk.supervisor.tick_log import TickLog
+from fwk.supervisor.tick_sender import Tick, TickSender
+from fwk.supervisor.wait_report import WaitReport
+
+NEVER_US = 1 << 62
+REPEAT_LONGEST_US = 100_000
+LOOK_US = 20_000
+"""How often a stage that waits looks after hosts that are being started again."""
+STUCK_US = 1_000_000
+"""How long a host that shall stop may keep the loop from its next boundary."""
+WINDOW = 16
+"""Ticks that the loop may be ahead of the gateway."""
+REAL_TIME_WINDOW_US = 4_000_000
+"""In real time as many ticks as take this long: the loop goes on while the gateway stands still."""
+ANNOUNCE_US = 20_000
+"""How long a gateway that stands still may hold up real time when channels are opened."""
+
+
+class Barrier(ABC):
+    """Runs stages: sends the tick, waits for the dones, repeats what may be lost."""
+
+    window: int
+    """Ticks that the loop may be ahead of the gateway."""
+    announce_us = 0
+    """How long the gateway may take to listen to new channels; 0: as long as it takes."""
+
+    def __init__(self, core: Core, hosts: Hosts, tick_log: TickLog, times: LoopTimes, report: WaitReport) -> None:
+        self.repeated = 0
+        """Ticks that had to be repeated."""
+        self.late = 0
+        """Iterations that were not done in their stage's time."""
+        self.outstanding: set[int] = set()
+        """Hosts that have not answered the running stage."""
+        self.turn = Turn(-1, -1, [])
+        """The newest stage."""
+        self.ledger_step = 0
+        """Step of the ledger at which it began."""
+        self.sender = TickSender(core)
+        self.report = report
+        self._core = core
+        self._hosts = hosts
+        self._tick_log = tick_log
+        self._times = times
+        self._timeouts = [RetransmissionTimeout() for _ in core.plan.stages]
+        self._tick = Tick(0, 0, -1)
+        self._rejoined = False  # a host joined the running stage: tell it at once
+
+    def run(self, tick: Tick, turn: Turn) -> Steps[None]:
+        """Runs one stage of a tick to its end."""
+        core, stage = self._core, turn.stage
+        self._tick, self.turn = tick, turn
+        self.ledger_step = core.ledger.begin()
+        self.outstanding = self._participants(turn.hosts)
+        self._tick_log.event(StageBegun(stage, turn.step))
+        self.sender.broadcast(tick, turn, self.outstanding)
+        began_us = sent_us = now_us = core.now_us()
+        look_us = began_us + LOOK_US
+        ends_us = self._ends_us(began_us)
+        repeat_us = first_us = self._timeouts[stage].wait_us
+        while self.outstanding and not core.interrupted():
+            if now_us >= look_us:
+                self._look_after(began_us)
+                look_us = now_us + LOOK_US
+            yield from core.events.wait(min(sent_us + repeat_us, look_us, ends_us))
+            now_us = core.now_us()
+            if not self.outstanding:
+                self._timeouts[stage].took(now_us - sent_us)
+            elif now_us >= ends_us:
+                self._leave_behind()
+            elif self._rejoined or now_us >= sent_us + repeat_us:
+                self.repeated += not self._rejoined
+                repeat_us = first_us if self._rejoined else min(2 * repeat_us, max(first_us, REPEAT_LONGEST_US))
+                self._rejoined = False
+                self.sender.broadcast(tick, turn, self.outstanding)
+                sent_us = core.now_us()
+        self.report.ended()
+        self._times.stage_ended(stage, now_us - began_us)
+
+    def answered(self, host: HostProcess) -> None:
+        """Takes note that a host has answered the running stage."""
+        self.outstanding.discard(host.index)
+        host.answered_step = self.ledger_step
+
+    def joined(self) -> None:
+        """Takes note that a host is ready: it may belong to the running stage."""
+        self._rejoined = True
+
+    @abstractmethod
+    def lost(self, host: HostProcess) -> None:
+        """Takes note that the process of a host ended."""
+
+    @abstractmethod
+    def _participants(self, hosts: Sequence[HostProcess]) -> set[int]:
+        """Returns the hosts that a stage waits for."""
+
+    @abstractmethod
+    def _ends_us(self, began_us: int) -> int:
+        """Returns the wall time at which a stage ends at the latest."""
+
+    def _leave_behind(self) -> None:
+        """Ends the stage without the hosts that have not answered."""
+        turn = self.turn
+        for host in turn.hosts:
+            if host.index in self.outstanding:
+                host.late_with, host.answered_step = (self._tick.number, turn.step), self.ledger_step
+                self.sender.keep_for(host, turn)
+                self._tick_log.event(HostLate(host.index))
+                self.late += not host.held
+                self._times.late(host, turn.stage, self._tick.number, self._ends_us(0))
+        self.outstanding = set()
+
+    def _look_after(self, began_us: int) -> None:
+        """Starts hosts again that crashed, and gives up those that do not come back."""
+        now_us = self._core.now_us()
+        for index in sorted(self.outstanding):
+            host = self._core.hosts[index]
+            if host.must_leave and now_us >= host.asked_us + STUCK_US:
+                self._break_off(host, now_us)
+        if self._hosts.unsettled:
+            self._hosts.enforce_timeouts()
+            self._hosts.start_due()
+            self.outstanding &= {host.index for host in self.turn.hosts if host.expected}
+        waited_for = [host for host in self.turn.hosts if host.index in self.outstanding]
+        self.report.waiting(began_us, waited_for, f"tick {self._tick.number}")
+
+    def _break_off(self, host: HostProcess, now_us: int) -> None:
+        """Kills a host that shall stop but keeps the loop from reaching the boundary at which it would."""
+        host.asked_us, host.reason = now_us, "did not come out of its iteration; killed"
+        self._core.log.warning(f"{host.name}: shall stop, but {host.reason}")
+        self._hosts.kill(host)
+
+
+class Lockstep(Barrier):
+    """A stage ends when all hosts have answered, also those that are being started again."""
+
+    window = WINDOW
+
+    def lost(self, host: HostProcess) -> None:
+        """Goes on waiting for a host that is started again."""
+        if not host.expected:
+            self.outstanding.discard(host.index)
+
+    def _participants(self, hosts: Sequence[HostProcess]) -> set[int]:
+        return {host.index for host in hosts if host.expected}
+
+    def _ends_us(self, began_us: int) -> int:
+        return began_us + NEVER_US
+
+
+class RealTime(Barrier):
+    """A stage ends when all running hosts have answered, or when its time is up; late hosts are absent meanwhile."""
+
+    announce_us = ANNOUNCE_US
+
+    def __init__(self, core: Core, hosts: Hosts, tick_log: TickLog, times: LoopTimes, report: WaitReport) -> None:
+        super().__init__(core, hosts, tick_log, times, report)
+        self.window = max(WINDOW, REAL_TIME_WINDOW_US // core.plan.period_us)
+        self._stage_time_us = core.plan.stage_time_us or core.plan.period_us
+
+    def lost(self, host: HostProcess) -> None:
+        """Goes on without a host that ended."""
+        self.outstanding.discard(host.index)
+
+    def _participants(self, hosts: Sequence[HostProcess]) -> set[int]:
+        return {host.index for host in hosts if host.running and not host.late_with}
+
+    def _ends_us(self, began_us: int) -> int:
+        return began_us + self._stage_time_us
+
+
+def barrier_of(core: Core, hosts: Hosts, tick_log: TickLog, times: LoopTimes, report: WaitReport) -> Barrier:
+    """Makes the barrier that the plan's clock asks for."""
+    kind = Lockstep if core.lockstep else RealTime
+    return kind(core, hosts, tick_log, times, report)

@@ -1,0 +1,48 @@
+"""What all parts of a supervisor share."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from fwk.bus.sender import Sender
+from fwk.component.log import Logger
+from fwk.engine.visibility import Ledger
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+from fwk.supervisor.event_loop import EventLoop
+from fwk.supervisor.host_process import HostProcess
+from fwk.supervisor.run_clock import RunClock
+
+
+@dataclass(frozen=True)
+class Core:
+    """The plan and its run number, the bus, the clock, the marks, the table of hosts and the log."""
+
+    plan: Plan
+    run: int
+    ports: Ports
+    events: EventLoop
+    sender: Sender
+    clock: RunClock
+    ledger: Ledger
+    hosts: list[HostProcess]
+    """All host processes, by index."""
+    log: Logger
+    interrupted: Callable[[], bool]
+    """Whether the run is asked to end; then no wait continues."""
+
+    def now_us(self) -> int:
+        """Returns the wall time in microseconds."""
+        return self.events.now_us()
+
+    @property
+    def lockstep(self) -> bool:
+        """Whether a stage waits for all hosts, however long that takes."""
+        return self.plan.clock == "simulated"
+
+    def host_of(self, component: int) -> HostProcess:
+        """Returns the host of the component with that index."""
+        return self.hosts[self.plan.components[component].host]
+
+    def components_of(self, host: HostProcess) -> tuple[int, ...]:
+        """Returns the indices of a host's components."""
+        return self.plan.hosts[host.index].components

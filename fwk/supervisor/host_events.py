@@ -1,0 +1,26 @@
+"""Events of host processes that the parts of a supervisor tell each other."""
+
+from dataclasses import dataclass
+
+from fwk.supervisor.host_process import HostProcess
+
+
+@dataclass(frozen=True)
+class HostReady:
+    """All components of a host are initialised: it takes part in the loop from now on."""
+
+    host: HostProcess
+
+
+@dataclass(frozen=True)
+class HostLost:
+    """The process of a host ended without having been asked to."""
+
+    host: HostProcess
+
+
+@dataclass(frozen=True)
+class HostLeaves:
+    """A host leaves the loop as it was asked to; it finalizes its components and may still send a final done."""
+
+    host: HostProcess

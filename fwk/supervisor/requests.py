@@ -1,0 +1,56 @@
+"""Checks what a done says before anything of it counts."""
+
+from fwk.lcm.messages import MessageError
+from fwk.model.requests import mistake_in
+from fwk.supervisor.core import Core
+from lcmtypes.core import done_t, recorded_t
+
+_SEQUENCES = range(1 << 62)
+
+
+class DoneCheck:
+    """Refuses dones that cannot be, so that a broken process does not bring the supervisor down."""
+
+    def __init__(self, core: Core) -> None:
+        plan = core.plan
+        dynamic = range(len(plan.channels), len(plan.channels) + plan.spare_channels)
+        self._sizes = len(plan.components), dynamic.stop, len(plan.stages)
+        self._hosts = core.hosts
+        self._components = [set(host.components) for host in plan.hosts]
+        self._may_write = [
+            {channel.index for channel in plan.channels if channel.writer in host.components} | set(dynamic)
+            for host in plan.hosts
+        ]
+        self._outside = {channel.index for channel in plan.channels if channel.writer < 0}
+
+    def check(self, done: done_t) -> None:
+        """Checks the done of a host.
+
+        Raises:
+            MessageError: the done names channels, components or stages that its host does not have.
+        """
+        mistake = self._foreign_mark(done, self._may_write[done.host]) or mistake_in(done, *self._sizes)
+        if not mistake:
+            asking = {each.component for asked in (done.main_loop, done.plugins, done.channels) for each in asked}
+            asking |= {each.component for each in done.lost_frames}
+            foreign = asking - self._components[done.host]
+            mistake = f"a request of component {min(foreign)}, which it does not have" if foreign else ""
+        if mistake:
+            raise MessageError(f"done of {self._hosts[done.host].name} with {mistake}")
+
+    def check_recorded(self, recorded: recorded_t) -> None:
+        """Checks a report of the gateway.
+
+        Raises:
+            MessageError: the report has a mark of a channel that programs outside do not write.
+        """
+        mistake = self._foreign_mark(recorded, self._outside)
+        if mistake:
+            raise MessageError(f"report of the gateway with {mistake}")
+
+    def _foreign_mark(self, message: done_t | recorded_t, may_write: set[int]) -> str:
+        if not may_write.issuperset(message.channel):
+            return f"a mark of channel {min(set(message.channel) - may_write)}, which it does not write"
+        if any(sequence not in _SEQUENCES for sequence in message.sequence):
+            return "a mark that is not a sequence number"
+        return ""
