@@ -10,7 +10,7 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from fwk.cli.run_options import BusPort, Json, asking
+from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import US_PER_S
 from fwk.control import client
 
@@ -29,14 +29,14 @@ def list_channels(
     patterns: Annotated[
         list[str] | None, typer.Argument(metavar="PATTERN...", help="such as 'cyan1/*'; all by default")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Lists channels with type, writer, readers, newest sequence number, tick and age.
 
     The age is wall time since the newest message.
     """
-    with asking(), client.gateway(bus_port) as run:
+    with asking(), client.gateway(chosen) as run:
         rows = run.ask("channels")["channels"]
     wanted = [row for row in rows if not patterns or any(fnmatchcase(row["channel"], each) for each in patterns)]
     if as_json:
@@ -46,9 +46,9 @@ def list_channels(
 
 
 @bb.command()
-def show(channel: Channel, bus_port: BusPort = None, as_json: Json = False) -> None:
+def show(channel: Channel, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Shows a channel's newest message, field by field."""
-    with asking(), client.gateway(bus_port) as run:
+    with asking(), client.gateway(chosen) as run:
         answer = run.ask("show", channel=channel)
     typer.echo(json.dumps(answer, indent=2) if as_json else "\n".join(_message(answer)))
 
@@ -59,14 +59,14 @@ def watch(
     count: Annotated[
         int | None, typer.Option("--count", min=1, metavar="N", help="end after N messages; otherwise with Ctrl-C")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Shows a channel's newest message, and from then on each new one, until the run ends.
 
     Who is slower than the channel misses messages and is told how many. With `--json` there is a line for each message.
     """
-    with asking(), client.gateway(bus_port) as run:
+    with asking(), client.gateway(chosen) as run:
         for seen, answer in enumerate(run.follow("watch", channel=channel), 1):
             typer.echo(json.dumps(answer) if as_json else "\n".join([*_message(answer), ""]))
             if seen == count:

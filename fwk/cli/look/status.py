@@ -8,23 +8,23 @@ import typer
 from rich.console import Console
 from rich.table import Table
 
-from fwk.cli.run_options import BusPort, Json, SomeNames, ask, asking
+from fwk.cli.run_options import Json, RunChoice, SomeNames, ask, asking
 from fwk.clock import US_PER_S, rate_word
 
 WIDTH_IN_A_PIPE = 220
 _STYLES = {"running": "green", "failed": "bold red", "late": "yellow", "held": "yellow", "stopped": "dim"}
 
 
-def status(names: SomeNames = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+def status(names: SomeNames = None, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Shows the run, and of each component state, process, iterations, times, losses and reason.
 
     For one component alone it shows everything that is known of it, its settings too.
     """
     with asking():
-        answer = ask(bus_port, "status", names=names or [])
+        answer = ask(chosen, "status", names=names or [])
         alone = answer["components"][0] if names and len(answer["components"]) == 1 else None
         if alone:
-            alone["parameters"] = ask(bus_port, "parameters", name=alone["name"])["parameters"]
+            alone["parameters"] = ask(chosen, "parameters", name=alone["name"])["parameters"]
     if as_json:
         typer.echo(json.dumps(answer, indent=2))
         return

@@ -13,7 +13,7 @@ from rich.text import Text
 
 from fwk.cli.look.status import WIDTH_IN_A_PIPE, headline
 from fwk.cli.look.times import TITLES, Since, Stopwatch, stage_table, words
-from fwk.cli.run_options import BusPort, Json, asking
+from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import sleep_s
 from fwk.control import client
 from fwk.control.client import Client
@@ -32,7 +32,7 @@ def top(
             metavar="start|now|picture", help="since when times count: the run's start, now, the last picture"
         ),
     ] = "start",
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Shows CPU, memory and times of each process of a run, those that take most first; Ctrl-C ends it.
@@ -41,7 +41,7 @@ def top(
     beginning to its end (loop) and to the next one's beginning (cycle). With `--json` there is a line for each picture,
     with the histograms in it: pairs of the longest time that a bucket counts and how many it has.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         meter = _Meter(since)
         meter.measure(run)
         sleep_s(interval_s)

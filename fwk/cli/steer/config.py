@@ -11,7 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from fwk.cli.conditions import pattern
-from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, Json, asking
+from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
 from fwk.control import client
 from fwk.control.client import ControlError
 from fwk.control.host_file import KeepError, Kept, forget, keep
@@ -43,10 +43,10 @@ def settings() -> None:
 
 @config.command("list")
 def list_settings(
-    names: SomeSettings = None, file: LaunchFile = None, bus_port: BusPort = None, as_json: Json = False
+    names: SomeSettings = None, file: LaunchFile = None, chosen: RunChoice = None, as_json: Json = False
 ) -> None:
     """Lists every effective setting with its origin and meaning."""
-    _show(_rows(names or [], file, bus_port), as_json)
+    _show(_rows(names or [], file, chosen), as_json)
 
 
 @config.command()
@@ -55,12 +55,12 @@ def search(
         str, typer.Argument(metavar="REGEXP", help="found in name, value, origin or meaning, in capitals or not")
     ],
     file: LaunchFile = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Lists the settings in which a text is found; exit code 1 if there is none."""
     wanted = pattern(text, "REGEXP")
-    rows = [row for row in _rows([], file, bus_port) if any(map(wanted.search, _texts(row)))]
+    rows = [row for row in _rows([], file, chosen) if any(map(wanted.search, _texts(row)))]
     if not rows and not as_json:
         typer.echo(f"error: '{text}' is found in no setting", err=True)
         raise typer.Exit(FAILED)
@@ -95,11 +95,11 @@ def schema(
 def get(
     path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
     file: LaunchFile = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Prints the value of a setting; of several, if the name is a pattern, one a line with its own name."""
-    rows = _rows([path], file, bus_port)
+    rows = _rows([path], file, chosen)
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
     elif len(rows) == 1:
@@ -115,7 +115,7 @@ def set_settings(
         list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.gain=0.5")
     ],
     save: Annotated[bool, typer.Option("--save", help="keep them in the host-specific file for later runs")] = False,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Changes settings between two ticks, all of them or none; says since which tick the components have them.
@@ -124,7 +124,7 @@ def set_settings(
     is changed.
     """
     origin = "fwk config set"
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         if save:
             run.ask("set", changes=changes, check=True)
             file = host_file(Path(run.ask("run")["file"]))
@@ -143,14 +143,14 @@ def set_settings(
 @config.command()
 def unset(
     paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.gain")],
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Takes settings out of the host-specific file, all or none; the run takes over what the files say then.
 
     NAME is what was typed with `fwk config set --save`, a pattern for example.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         run.ask("settings", names=paths)
         try:
             forget(host_file(Path(run.ask("run")["file"])), paths)
@@ -161,13 +161,13 @@ def unset(
 
 
 @config.command()
-def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Reads the launch files again and takes over what they say otherwise of settings.
 
     What was typed with --set when the run began stays; live changes that were not kept are undone. Settings that
     cannot be changed while the run goes on are named.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         _take_over(run, names or [], "fwk config reload", as_json)
 
 
@@ -191,9 +191,9 @@ def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool)
 
 
 @config.command()
-def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+def watch(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Shows each change of a setting as it happens, until the run ends."""
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         known: dict[str, Any] = {}
         for answer in run.follow("watch_settings", names=names or []):
             now = {_path(row): row for row in answer["settings"]}
@@ -206,10 +206,10 @@ def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = 
                     typer.echo(f"tick {answer['tick']}: {path} = {_value(row['value'])} ({row['origin']})")
 
 
-def _rows(names: list[str], file: str | None, bus_port: int | None) -> list[dict[str, Any]]:
+def _rows(names: list[str], file: str | None, chosen: str | None) -> list[dict[str, Any]]:
     with asking():
         if file is None:
-            with client.supervisor(bus_port) as run:
+            with client.supervisor(chosen) as run:
                 found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
             return found
         try:

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import FAILED, BusPort, Json, Names, Timeout, ask, asking
+from fwk.cli.run_options import FAILED, Json, Names, RunChoice, Timeout, ask, asking
 from fwk.control.requests import Action
 
 WAIT_S = 30.0
@@ -15,8 +15,8 @@ _EXIT_CODES = "Exit code 0: done; 1: a component failed, or the time-out passed;
 def _command(action: Action, explanation: str) -> Any:
     """Returns the typer function of one action; `explanation` is its help."""
 
-    def command(names: Names, bus_port: BusPort = None, timeout_s: Timeout = WAIT_S, as_json: Json = False) -> None:
-        _steer(action, names, bus_port, timeout_s, as_json)
+    def command(names: Names, chosen: RunChoice = None, timeout_s: Timeout = WAIT_S, as_json: Json = False) -> None:
+        _steer(action, names, chosen, timeout_s, as_json)
 
     command.__doc__ = f"{explanation}\n    {_EXIT_CODES}"
     return command
@@ -64,7 +64,7 @@ kill = _command(
 def unload(
     names: Names,
     force: Annotated[bool, typer.Option("--force", help="also unload the components that need them")] = False,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     timeout_s: Timeout = WAIT_S,
     as_json: Json = False,
 ) -> None:
@@ -75,15 +75,15 @@ def unload(
     and the answer names it.
     Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
     """
-    _steer("unload", names, bus_port, timeout_s, as_json, force)
+    _steer("unload", names, chosen, timeout_s, as_json, force)
 
 
 def _steer(
-    action: Action, names: list[str], bus_port: int | None, timeout_s: float, as_json: bool, force: bool = False
+    action: Action, names: list[str], chosen: str | None, timeout_s: float, as_json: bool, force: bool = False
 ) -> None:
     """Sends the request, waits for its effect and prints it; exit code 1 if a component failed."""
     with asking():
-        answer = ask(bus_port, "steer", timeout_s, action=action, names=names, force=force)
+        answer = ask(chosen, "steer", timeout_s, action=action, names=names, force=force)
     if as_json:
         typer.echo(json.dumps(answer))
     else:
