@@ -13,6 +13,8 @@ class RunOptions:
 
     run_dir: Path
     """Folder of this run, already there: resolved plan, effective configuration, text log, recording."""
+    name: str = ""
+    """Name of the run for tools; empty: that of the plan."""
     ticks: int | None = None
     """Stop after so many ticks."""
     time_s: float | None = None

@@ -1,11 +1,16 @@
 """`fwk start`, `stop`, `restart`, `reload`, `load`, `unload` and `kill`: the life of components in a run."""
 
 import json
+import os
+import select
+import signal
 from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import FAILED, Json, Names, RunChoice, Timeout, ask, asking
+from fwk.cli.run_options import FAILED, Json, Names, RunChoice, SomeNames, Timeout, ask, asking
+from fwk.control import client
+from fwk.control.client import NoAnswerError, RefusedError
 from fwk.control.requests import Action
 
 WAIT_S = 30.0
@@ -27,12 +32,6 @@ start = _command(
     """Starts components that were stopped or have failed.
 
     Their channels continue with the next sequence number. A component is refused while its needs do not run.""",
-)
-stop = _command(
-    "stop",
-    """Stops components between two ticks: they finalize and leave the loop.
-
-    Their last messages stay visible to readers. Stopped components do not start again by themselves.""",
 )
 restart = _command(
     "restart",
@@ -61,6 +60,27 @@ kill = _command(
 )
 
 
+def stop(
+    names: SomeNames = None,
+    whole: Annotated[bool, typer.Option("--all", help="end the whole run, as Ctrl-C in its terminal does")] = False,
+    chosen: RunChoice = None,
+    timeout_s: Timeout = WAIT_S,
+    as_json: Json = False,
+) -> None:
+    """Stops components between two ticks: they finalize and leave the loop. With --all, ends the run.
+
+    The last messages of stopped components stay visible to readers. Stopped components do not start again by
+    themselves.
+    Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
+    """
+    if bool(names) == whole:
+        raise typer.BadParameter("name components, or end the whole run with --all")
+    if whole:
+        _end_run(chosen, timeout_s, as_json)
+    else:
+        _steer("stop", names or [], chosen, timeout_s, as_json)
+
+
 def unload(
     names: Names,
     force: Annotated[bool, typer.Option("--force", help="also unload the components that need them")] = False,
@@ -76,6 +96,25 @@ def unload(
     Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
     """
     _steer("unload", names, chosen, timeout_s, as_json, force)
+
+
+def _end_run(chosen: str | None, timeout_s: float, as_json: bool) -> None:
+    """Interrupts the process of the run, which the kernel names, and waits until it has ended."""
+    with asking():
+        with client.supervisor(chosen) as run:
+            about = run.ask("run")
+            if run.pid != about["pid"]:
+                raise RefusedError(f"process {about['pid']} of the run is not visible from here; end it there")
+            process = os.pidfd_open(run.pid)
+            signal.pidfd_send_signal(process, signal.SIGINT)
+        ended = bool(select.select([process], [], [], timeout_s)[0])
+        os.close(process)
+        if not ended:
+            raise NoAnswerError(f"{about['name']}: not ended within {timeout_s:g} s; pid {about['pid']}")
+    if as_json:
+        typer.echo(json.dumps({key: about[key] for key in ("name", "pid", "run_dir")}))
+    else:
+        typer.echo(f"{about['name']}: ended; run directory: {about['run_dir']}")
 
 
 def _steer(

@@ -149,6 +149,7 @@ class Control:
     def _run(self) -> dict[str, Any]:
         record = self._options.record
         return {
+            "name": self._options.name or self._plan.name,
             "plan": self._plan.name,
             "file": self._plan.file,
             "folders": list(self._plan.folders),
