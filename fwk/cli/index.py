@@ -4,15 +4,13 @@
 """
 
 import json
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+import os
+from typing import Any, NamedTuple
 
-FILE = Path(__file__).parent / "index.json"
+FILE = os.path.join(os.path.dirname(__file__), "index.json")
 
 
-@dataclass(frozen=True)
-class Parameter:
+class Parameter(NamedTuple):
     """Argument or option of a command."""
 
     name: str
@@ -24,13 +22,12 @@ class Parameter:
     many: bool
     required: bool
     kind: str
-    """Type of the value: `text`, `integer` and so on."""
+    """Type of the value: `text`, `boolean`, or `other`, which only the command itself can judge."""
     choices: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Command:
-    """Command as it is typed, such as `fwk config list`."""
+class Command(NamedTuple):
+    """Command as it is typed, such as `fwk config list`, or a group of commands, such as `fwk config`."""
 
     words: tuple[str, ...]
     summary: str
@@ -48,7 +45,8 @@ class Command:
 
 def read() -> list[Command]:
     """Returns all commands, in the order of the help."""
-    rows = json.loads(FILE.read_bytes())
+    with open(FILE, "rb") as file:
+        rows = json.load(file)
     return [Command(tuple(row["words"]), row["summary"], tuple(map(_parameter, row["parameters"]))) for row in rows]
 
 
@@ -60,6 +58,6 @@ def subcommands(commands: list[Command], words: tuple[str, ...]) -> dict[str, st
     """Returns the words that may follow `words`, each with its summary."""
     found: dict[str, str] = {}
     for each in commands:
-        if each.words[: len(words)] == words and len(each.words) > len(words):
-            found.setdefault(each.words[len(words)], each.summary)
+        if each.words[:-1] == words:
+            found[each.words[-1]] = each.summary
     return found

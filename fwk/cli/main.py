@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable
 
 from fwk.cli.output import imported, run_program, say
+from fwk.display.table import Column, Table, terminal_width
 
 HIDDEN = "__complete"
 """First word of the calls that the shells' completion makes."""
@@ -55,9 +56,10 @@ def help_text() -> str:
     """Returns the overview of all commands."""
     from fwk.cli.index import read, subcommands
 
-    found = subcommands(read(), ("fwk",))
-    width = max(map(len, found))
-    return _HELP + "\n".join(f"  {name:{width}}  {summary}" for name, summary in found.items()) + "\n" + _EXIT_CODES
+    table = Table("", Column("", prose=True))
+    for name, summary in subcommands(read(), ("fwk",)).items():
+        table.add(f"  {name}", summary)
+    return _HELP + "\n".join(table.lines(terminal_width())) + "\n" + _EXIT_CODES.rstrip()
 
 
 def version() -> str:

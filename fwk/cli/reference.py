@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from enum import Enum
 from inspect import cleandoc
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import typer
 
@@ -78,28 +78,32 @@ def _cell(text: str | None) -> str:
 
 def index() -> str:
     """Returns the index of commands as JSON, a command a line."""
-    commands = [*_leaves(("fwk-launch",), _made(launch_command.app)), *_leaves(("fwk",), _made(commands_of_fwk.app))]
+    commands = [*_all(("fwk-launch",), _made(launch_command.app)), *_all(("fwk",), _made(commands_of_fwk.app))]
     return "[\n" + ",\n".join(json.dumps(_entry(words, each)) for words, each in commands) + "\n]\n"
 
 
-def _leaves(words: tuple[str, ...], command: Any) -> Iterator[tuple[tuple[str, ...], Any]]:
-    below = getattr(command, "commands", None)
-    if below is None:
-        yield words, command
-        return
+def _all(words: tuple[str, ...], command: Any) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """Yields a command, and below a group of commands, each of these."""
+    yield words, command
+    below = getattr(command, "commands", {})
     for name in below:
-        yield from _leaves((*words, name), below[name])
+        yield from _all((*words, name), below[name])
 
 
 def _entry(words: tuple[str, ...], command: Any) -> dict[str, Any]:
+    hints = get_type_hints(command.callback)
+    parameters = [each for each in command.params if each.name in hints]  # not --help
     return {
         "words": words,
         "summary": " ".join(cleandoc(command.help or "").split("\n\n")[0].split()),
-        "parameters": [_parameter(each) for each in command.params if not each.hidden],
+        "parameters": [_parameter(each, hints[each.name]) for each in parameters],
     }
 
 
-def _parameter(each: Any) -> dict[str, Any]:
+def _parameter(each: Any, hint: Any) -> dict[str, Any]:
+    kinds = [kind for kind in get_args(hint) or (hint,) if kind is not type(None)]
+    is_enum = isinstance(kinds[0], type) and issubclass(kinds[0], Enum)
+    literals = [kind for kind in kinds if isinstance(kind, str)]
     is_option = each.param_type_name == "option"
     return {
         "name": each.name,
@@ -108,11 +112,11 @@ def _parameter(each: Any) -> dict[str, Any]:
         "flag": is_option and each.is_flag,
         "many": each.nargs == -1 or bool(getattr(each, "multiple", False)),
         "required": each.required,
-        "kind": each.type.name,
-        "choices": [str(choice) for choice in getattr(each.type, "choices", ())],
+        "kind": "boolean" if kinds == [bool] else "text" if kinds in ([str], [list[str]]) else "other",
+        "choices": [str(choice) for choice in kinds[0]] if is_enum else literals,
     }
 
 
 if __name__ == "__main__":
     Path(sys.argv[1]).write_text(reference())
-    INDEX.write_text(index())
+    Path(INDEX).write_text(index())

@@ -1,16 +1,13 @@
 """Control sockets of the runs on this machine: their addresses, which runs exist, and who owns and who may use them."""
 
 import os
-import re
 import socket
 import struct
-from pathlib import Path
 
 _SUPERVISOR = "fwk-control-"
 _GATEWAY = "fwk-board-"
 _CREDENTIALS = struct.Struct("3i")  # pid, uid, gid
 _ROOT = 0
-_LISTED = re.compile(rb"@" + _SUPERVISOR.encode() + rb"([0-9]{1,5})$")
 
 
 def supervisor_address(bus_port: int) -> str:
@@ -28,8 +25,10 @@ def running() -> list[int]:
 
     Any user can bind a socket of any name, also of bytes that are not UTF-8; such names are ignored.
     """
-    lines = Path("/proc/net/unix").read_bytes().splitlines()
-    return sorted({int(found[1]) for found in map(_LISTED.search, lines) if found})
+    mark = f"@{_SUPERVISOR}".encode()
+    with open("/proc/net/unix", "rb") as sockets:
+        ports = [line.rstrip(b"\n").rpartition(mark)[2] for line in sockets if mark in line]
+    return sorted({int(port) for port in ports if port.isdigit() and len(port) < 6})
 
 
 def peer_of(connection: socket.socket) -> tuple[int, int]:

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 from unicodedata import east_asian_width
 
 _GAP = "  "
@@ -11,8 +11,7 @@ _RESET = "\x1b[0m"
 STYLES = {"green": "32", "yellow": "33", "red": "31;1", "cyan": "36", "dim": "2", "bold": "1"}
 
 
-@dataclass(frozen=True)
-class Column:
+class Column(NamedTuple):
     """Column of a table."""
 
     title: str
@@ -47,7 +46,8 @@ class Table:
             yield from self._row(titles, shown, widths, "dim" if colour else "")
         for cells, style in self._rows:
             yield from self._row(cells, shown, widths, style if colour else "")
-        missing = [column.title for index, column in enumerate(self._columns) if index not in shown]
+        full = self._fitting(None)
+        missing = [self._columns[index].title for index in full if index not in shown]
         if missing:
             note = f"(not shown, for want of room: {', '.join(missing)})"
             yield _styled(note, "dim" if colour else "")

@@ -32,8 +32,9 @@ def _candidates(typed: list[str], begun: str) -> Iterable[str]:
     while typed and (*path, typed[0]) in {each.words[: len(path) + 1] for each in commands}:
         path = (*path, typed.pop(0))
     command = next((each for each in commands if each.words == path), None)
-    if command is None:
-        return [*subcommands(commands, path), "--help"]
+    below = subcommands(commands, path)
+    if command is None or below:
+        return [] if typed else [*below, "--help"]
     option = command.option(typed[-1]) if typed else None
     if option and not option.flag:
         return _values(command, option, typed)
