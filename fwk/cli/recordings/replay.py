@@ -1,7 +1,6 @@
 """`fwk replay`: feeds recorded inputs to real components and compares their outputs."""
 
 import json
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -9,11 +8,11 @@ from typing import Annotated
 import typer
 
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
 from fwk.host.failures import Failure
-from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import hint
 from fwk.recording.difference import Difference
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -87,10 +86,7 @@ def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, obj
 
 def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None) -> Replay:
     recording = Recording(log)
-    for folder in recording.plan.folders:
-        use_types_of(Path(folder))
-        if folder not in sys.path:
-            sys.path.append(folder)
+    use_folders(recording.plan.folders)
     made = Replay(recording, only)
     if debugged:
         _debug(made, debugged, from_tick, to_tick)

@@ -23,6 +23,7 @@ from fwk.cli.run.run_files import write_run_files
 from fwk.cli.run.run_record import write_result, write_start
 from fwk.control.client import look
 from fwk.control.server import ControlNameError
+from fwk.display.keys import restore, terminal_settings
 from fwk.display.summary import introduction, summary
 from fwk.launcher.machine import MachineError, advice, check_machine
 from fwk.launcher.run import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
@@ -159,11 +160,14 @@ def launch(
         removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
         if removed:
             typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' keeps one")
+        terminal = terminal_settings()
         try:
             outcome = run(plan, options)
         except NOT_BEGUN:
             shutil.rmtree(run_dir, ignore_errors=True)  # of no run; 'fwk log' would take it for the newest
             raise
+        finally:
+            restore(0, terminal)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_IGN)  # repeated signals mean the run, which has ended
     write_result(run_dir, outcome.exit_code, outcome.reason, outcome.ticks, outcome.wall_s)
@@ -211,12 +215,16 @@ def _check_video(plan: Plan, video: Path | None) -> None:
 
 
 def _draw(plan: Plan, record: Path, video: Path) -> None:
-    from fwk.recording.video import VideoError, drawing, render_video  # OpenCV, for those who ask for it
+    from fwk.cli.recordings.rendering import render  # imports OpenCV, only with --video
+    from fwk.recording.video import VideoError, drawing
 
     try:
         video.parent.mkdir(parents=True, exist_ok=True)
-        pictures = render_video(record, video, drawing(plan.video))
+        first, *others = render(record, video, drawing(plan.video))
     except (VideoError, LogError, OSError) as error:
         typer.echo(f"no video: {error}", err=True)
         raise typer.Exit(RUN_BROKEN) from error
-    typer.echo(f"video: {video}, {pictures} pictures")
+    except KeyboardInterrupt:
+        return
+    for line in (f"video: {first}", *others):
+        typer.echo(line)

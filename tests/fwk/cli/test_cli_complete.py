@@ -8,8 +8,8 @@ import pytest
 from typer.testing import CliRunner
 
 from fwk.cli.commands import app
-from fwk.cli.complete import candidates
 from fwk.cli.complete.candidates import complete
+from fwk.control import client
 from fwk.control.client import ControlError
 
 ANSWERS: dict[str, Any] = {
@@ -38,9 +38,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
         chosen.append(name)
         return Run()
 
-    monkeypatch.setattr(candidates.client, "supervisor", connect)
-    monkeypatch.setattr(candidates.client, "gateway", connect)
-    monkeypatch.setattr(candidates.client, "look", lambda: {17700: {"name": "match"}, 18000: {"name": ""}})
+    monkeypatch.setattr(client, "supervisor", connect)
+    monkeypatch.setattr(client, "gateway", connect)
+    monkeypatch.setattr(client, "look", lambda: {17700: {"name": "match"}, 18000: {"name": ""}})
     return chosen
 
 
@@ -88,7 +88,7 @@ def test_without_a_run_there_are_no_names(monkeypatch: pytest.MonkeyPatch) -> No
     def refuse(_: object) -> Run:
         raise ControlError("nothing runs on this machine")
 
-    monkeypatch.setattr(candidates.client, "supervisor", refuse)
+    monkeypatch.setattr(client, "supervisor", refuse)
     assert complete(["fwk", "stop", "c"]) == []
 
 

@@ -11,20 +11,8 @@ import pytest
 from fwk.cli import commands, index, reference
 from fwk.cli.thin import FUNCTIONS, prepared
 
-HEAVY = (
-    "numpy",
-    "pydantic",
-    "cv2",
-    "typer",
-    "click",
-    "rich",
-    "yaml",
-    "lcm",
-    "dataclasses",
-    "inspect",
-    "pathlib",
-    "asyncio",
-)
+HEAVY = {"numpy", "pydantic", "cv2", "typer", "click", "rich", "yaml", "lcm", "asyncio"}
+SLOW = {"dataclasses", "inspect", "pathlib"}
 PROGRAM = """
 import sys
 sys.argv = ["fwk", *sys.argv[1:]]
