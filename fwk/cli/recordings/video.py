@@ -24,7 +24,7 @@ def video(
         Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
     ] = Path(),
 ) -> None:
-    """Draws a recording into an mp4 video: H.264 or VP9 where available, else MPEG-4 part 2, which browsers do not play.
+    """Draws a recording into an mp4 video, as H.264 or VP9 where available, else as MPEG-4 part 2.
 
     Exit codes: 0 drawn; 1 it cannot be drawn; 2 bad input. Ctrl-C leaves a video of the pictures until then.
     """
