@@ -46,8 +46,8 @@ $(DOCS_READY): $(READY)
 	$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[docs]'
 	@touch $@
 
-docs: types $(DOCS_READY)  ## Writes docs/commands.md, and the documentation site to build/site
-	$(BIN)/python -m fwk.cli.reference > .venv/commands.md && mv .venv/commands.md docs/commands.md
+docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, and the documentation site to build/site
+	$(BIN)/python -m fwk.cli.reference docs/commands.md
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
 
 clean:  ## Removes what was made, the environment too

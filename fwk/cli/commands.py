@@ -11,6 +11,7 @@ from fwk.cli.arguments import SeveralNames
 
 MODULES = {
     "check": "check.check",
+    "ps": "look.ps",
     "status": "look.status",
     "top": "look.top",
     **dict.fromkeys(("start", "stop", "restart", "reload", "load", "unload", "kill"), "steer.lifecycle"),
@@ -30,6 +31,7 @@ MODULES = {
     "cam": "look.cam",
     "spy": "look.spy",
     "doctor": "check.doctor",
+    "completion": "complete.completion",
 }
 """Command, as typed and in the order of the help, to its module in `fwk.cli`. The function or typer application there
 has the command's name: `log-info` is `log_info`.
@@ -79,7 +81,7 @@ def _command(name: str) -> Any:
     return command
 
 
-app = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True)
+app = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
 
 
 @app.callback()

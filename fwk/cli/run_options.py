@@ -1,4 +1,4 @@
-"""What the commands that ask a run share: which run, and ending with a plain sentence."""
+"""Options and error handling shared by the commands that ask a run."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,19 +8,25 @@ import typer
 
 from fwk.cli.arguments import seconds
 from fwk.control import client
-from fwk.control.client import ControlError, RefusedError
+from fwk.control.client import RUN_VARIABLE, ControlError, RefusedError
 
 FAILED = 1
 BAD_INPUT = 2
 
-BusPort = Annotated[
-    int | None, typer.Option("--bus-port", metavar="N", help="which run, if there are several; as for fwk-launch")
+RunChoice = Annotated[
+    str | None,
+    typer.Option(
+        "--run",
+        "--bus-port",
+        metavar="NAME|N",
+        help=f"the run, by name or bus port; default: {RUN_VARIABLE}, or the only one",
+    ),
 ]
 Timeout = Annotated[
     float,
-    typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait until it has happened"),
+    typer.Option("--timeout", parser=seconds, metavar="SECONDS", help="how long to wait until the request took effect"),
 ]
-Json = Annotated[bool, typer.Option("--json", help="for programs")]
+Json = Annotated[bool, typer.Option("--json", help="output for programs")]
 Names = Annotated[list[str], typer.Argument(metavar="NAME...", help="components, or patterns such as 'cyan1/*'")]
 SomeNames = Annotated[
     list[str] | None,
@@ -30,24 +36,26 @@ SomeNames = Annotated[
 
 @contextmanager
 def asking() -> Iterator[None]:
-    """Turns what goes wrong into its sentence on stderr and an exit code; Ctrl-C ends a command that watches."""
+    """Turns errors of a run into a sentence on stderr and an exit code; Ctrl-C ends a command that watches."""
     try:
         yield
-    except RefusedError as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
     except ControlError as error:
         typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(FAILED) from error
+        raise typer.Exit(exit_code(error)) from error
     except KeyboardInterrupt as interrupt:
         raise typer.Exit(0) from interrupt
 
 
-def ask(bus_port: int | None, verb: str, timeout_s: float | None = None, **fields: Any) -> dict[str, Any]:
-    """One request to the supervisor of the run that is meant.
+def exit_code(error: ControlError) -> int:
+    """Returns 2 for bad input, 1 for a run that does not answer or does not exist."""
+    return BAD_INPUT if isinstance(error, RefusedError) else FAILED
+
+
+def ask(chosen: str | int | None, verb: str, timeout_s: float | None = None, **fields: Any) -> dict[str, Any]:
+    """Sends one request to the supervisor of a run.
 
     Raises:
         ControlError: refused, or no answer.
     """
-    with client.supervisor(bus_port) as run:
+    with client.supervisor(chosen) as run:
         return run.ask(verb, timeout_s, **fields)

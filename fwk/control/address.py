@@ -1,9 +1,8 @@
-"""Where runs listen for requests, which runs there are, and whom they obey."""
+"""Control sockets of the runs on this machine: their addresses, which runs exist, and who owns and who may use them."""
 
 import os
 import socket
 import struct
-from pathlib import Path
 
 _SUPERVISOR = "fwk-control-"
 _GATEWAY = "fwk-board-"
@@ -12,29 +11,38 @@ _ROOT = 0
 
 
 def supervisor_address(bus_port: int) -> str:
-    """The abstract unix socket of the supervisor of the run on that port."""
+    """Returns the abstract unix socket of the supervisor of the run on that port."""
     return f"\0{_SUPERVISOR}{bus_port}"
 
 
 def gateway_address(bus_port: int) -> str:
-    """The abstract unix socket of that run's gateway, which knows every channel's newest message."""
+    """Returns the abstract unix socket of that run's gateway, which holds the newest message of each channel."""
     return f"\0{_GATEWAY}{bus_port}"
 
 
 def running() -> list[int]:
-    """Bus ports of the runs on this machine, from the kernel's list of sockets."""
-    mark = f"@{_SUPERVISOR}"
-    names = {line.split()[-1] for line in Path("/proc/net/unix").read_text().splitlines() if mark in line}
-    return sorted(int(name.removeprefix(mark)) for name in names if name.removeprefix(mark).isdecimal())
+    """Returns the bus ports of the runs on this machine, from the kernel's list of sockets.
+
+    Any user can bind a socket of any name, also of bytes that are not UTF-8; such names are ignored.
+    """
+    mark = f"@{_SUPERVISOR}".encode()
+    with open("/proc/net/unix", "rb") as sockets:
+        ports = [line.rstrip(b"\n").rpartition(mark)[2] for line in sockets if mark in line]
+    return sorted({int(port) for port in ports if port.isdigit() and len(port) < 6})
 
 
 def peer_of(connection: socket.socket) -> tuple[int, int]:
-    """Numbers of process and user at the other end, as the kernel knows them; process 0: it cannot be seen."""
+    """Returns process and user number of the other end, as the kernel knows them; process 0: not visible from here."""
     data = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
     pid, uid, _ = _CREDENTIALS.unpack(data)
     return pid, uid
 
 
 def obeys(uid: int) -> bool:
-    """Whether a run of ours does what this user says: the user who started it, or root."""
+    """Whether a run of this user obeys that user: the user who started the run, and root, are obeyed."""
     return uid in (os.geteuid(), _ROOT)
+
+
+def trusts(uid: int) -> bool:
+    """Whether a tool of this user believes a socket of that user; root uses the runs of all users."""
+    return uid in (os.geteuid(), _ROOT) or os.geteuid() == _ROOT

@@ -1,7 +1,8 @@
-"""The side that asks: finds the run and talks to it."""
+"""Client side of the control sockets: finds a run and sends it requests. Imports nothing heavy."""
 
 import contextlib
 import json
+import os
 import socket
 from collections.abc import Iterator
 from typing import Any, Self
@@ -10,24 +11,31 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import address
 
 TIMEOUT_S = 5.0
+RUN_VARIABLE = "FWK_RUN"
+"""Environment variable that names the run that commands use by default."""
 _CHUNK = 64 << 10
 _DESCRIPTORS_MAX = 4
+_LOOK_S = 1.0
 
 
 class ControlError(Exception):
-    """The run cannot be asked, or refuses; says why and what would be right."""
+    """A run cannot be asked; the text says why and what would be right."""
 
 
 class NoAnswerError(ControlError):
-    """The run has not answered in time; says whom its loop waits for."""
+    """A run has not answered in time; the text names the components that its main loop waits for."""
 
 
 class RefusedError(ControlError):
-    """The run was asked for something that it cannot do, or that does not exist."""
+    """A run refuses a request, or the run that was named does not exist."""
 
 
 class Client:
-    """A connection to a run's supervisor or gateway."""
+    """Connection to the supervisor or gateway of a run.
+
+    Raises:
+        ControlError: no process listens, or the socket belongs to another user.
+    """
 
     def __init__(self, socket_address: str, timeout_s: float = TIMEOUT_S) -> None:
         self._rest = b""
@@ -37,9 +45,14 @@ class Client:
         self._socket.settimeout(timeout_s)
         try:
             self._socket.connect(socket_address)
+            self.pid, self.uid = address.peer_of(self._socket)
         except OSError as error:
             self._socket.close()
-            raise ControlError(f"the run does not answer ({error.strerror}); it is perhaps just ending") from error
+            raise ControlError(f"the run does not answer ({error.strerror}); it may just be ending") from error
+        if not address.trusts(self.uid):
+            self._socket.close()
+            name = socket_address.lstrip("\0")
+            raise ControlError(f"the socket {name} belongs to user {self.uid}, not to you; nothing was sent to it")
 
     def __enter__(self) -> Self:
         return self
@@ -60,7 +73,7 @@ class Client:
             raise NoAnswerError(f"{error}{self._waits() if verb != 'status' else ''}") from error
 
     def follow(self, verb: str, within_s: float | None = None, **fields: Any) -> Iterator[dict[str, Any]]:
-        """Sends a request and gives all its answers, until the run ends or that much time has passed.
+        """Sends a request and yields all its answers until the run ends or `within_s` has passed.
 
         Raises:
             ControlError: refused.
@@ -74,11 +87,15 @@ class Client:
                 return
 
     def _send(self, verb: str, fields: dict[str, Any]) -> None:
-        with contextlib.suppress(BrokenPipeError):  # refused: the reason can be read
+        with contextlib.suppress(BrokenPipeError):  # the connection was refused: the reason can still be read
             self._socket.sendall(json.dumps({"verb": verb, **fields}).encode() + b"\n")
 
     def _answer(self, timeout_s: float | None, end_us: int | None = None) -> dict[str, Any]:
-        """The next answer. EOFError: there is none any more, or none before `end_us`."""
+        """Returns the next answer.
+
+        Raises:
+            EOFError: the connection has ended, or `end_us` has passed.
+        """
         parts, descriptors = [self._rest], list[int]()
         while b"\n" not in parts[-1]:
             left_s = timeout_s if end_us is None else max(1, end_us - monotonic_us()) / US_PER_S
@@ -104,7 +121,7 @@ class Client:
         return {**answer, "descriptors": descriptors} if descriptors else answer
 
     def _waits(self) -> str:
-        """For what happens at a tick's end only: what keeps the tick from ending."""
+        """Names the components that keep the current tick from ending; most requests take effect after it."""
         try:
             with Client(self._address, 1.0) as other:
                 waits_for = other.ask("status").get("waits_for", [])
@@ -112,55 +129,71 @@ class Client:
             return ""
         if not waits_for:
             return ""
-        hint = "" if waits_for == ["gateway"] else ": what does not come back can be stopped"
+        hint = "" if waits_for == ["gateway"] else ": a component that does not come back can be stopped"
         return f"; its loop waits for {', '.join(waits_for)}{hint}"
 
 
-def find_run(bus_port: int | None) -> int:
-    """The bus port of the run that is meant: the one that is named, or the only one.
+def look() -> dict[int, dict[str, Any]]:
+    """Returns what each run of this user says about itself, by bus port; runs that do not answer in a second have
+    no entry.
+    """
+    found = {}
+    for port in address.running():
+        with contextlib.suppress(ControlError, ValueError), Client(address.supervisor_address(port), _LOOK_S) as client:
+            found[port] = client.ask("run")
+    return found
+
+
+def find_run(chosen: str | int | None) -> int:
+    """Returns the bus port of a run: the one with that name or bus port, else the one that FWK_RUN names, else the only
+    one.
 
     Raises:
-        ControlError: there is none, or several.
+        RefusedError: no run, or more than one, has that name; or several runs exist and none is named.
+        ControlError: no run exists.
     """
-    ports = address.running()
-    if bus_port is not None:
-        if bus_port not in ports:
-            others = f"; there is one with --bus-port {_listed(ports)}" if ports else ""
-            raise ControlError(f"no run on this machine has --bus-port {bus_port}{others}")
-        return bus_port
-    if not ports:
+    wanted = str(chosen if chosen is not None else os.environ.get(RUN_VARIABLE, ""))
+    if wanted.isascii() and wanted.isdecimal() and int(wanted) in address.running():
+        return int(wanted)
+    if not wanted and len(ports := address.running()) == 1:
+        return ports[0]
+    runs = look()
+    if wanted:
+        ports = [port for port, run in runs.items() if wanted in (run.get("name"), str(port))]
+        if len(ports) == 1:
+            return ports[0]
+        if ports:
+            raise RefusedError(f"several runs are called '{wanted}'; name one by its port: {_listed(runs, ports)}")
+        others = f"; there is {_listed(runs, list(runs))}" if runs else ""
+        raise RefusedError(f"no run '{wanted}' on this machine{others}")
+    if not runs:
         raise ControlError("nothing runs on this machine; start something with: fwk-launch FILE")
-    if len(ports) > 1:
-        raise ControlError(f"several runs are on this machine; say which: --bus-port {_listed(ports)}")
-    return ports[0]
+    if len(runs) > 1:
+        raise RefusedError(f"several runs on this machine; choose one: {_listed(runs, list(runs))}")
+    (port,) = runs
+    return port
 
 
-def supervisor(bus_port: int | None) -> Client:
-    """A connection to the supervisor of the run that is meant.
-
-    Raises:
-        ControlError: as `find_run`.
-    """
-    return Client(address.supervisor_address(find_run(bus_port)))
-
-
-def gateway(bus_port: int | None) -> Client:
-    """A connection to the gateway of the run that is meant.
+def supervisor(chosen: str | int | None) -> Client:
+    """Connects to the supervisor of a run.
 
     Raises:
         ControlError: as `find_run`.
     """
-    return Client(address.gateway_address(find_run(bus_port)))
+    return Client(address.supervisor_address(find_run(chosen)))
 
 
-def _listed(ports: list[int]) -> str:
-    return " or ".join(f"{port}{_name_of(port)}" for port in ports)
+def gateway(chosen: str | int | None) -> Client:
+    """Connects to the gateway of a run.
+
+    Raises:
+        ControlError: as `find_run`.
+    """
+    return Client(address.gateway_address(find_run(chosen)))
 
 
-def _name_of(port: int) -> str:
-    try:
-        with Client(address.supervisor_address(port), 1.0) as client:
-            run = client.ask("run")
-            return f" ({run['plan']}, pid {run['pid']})"
-    except ControlError:
-        return ""
+def _listed(runs: dict[int, dict[str, Any]], ports: list[int]) -> str:
+    names = [run.get("name", "") for run in runs.values()]
+    own = {port: runs[port].get("name", "") for port in ports}
+    words = {port: name if name and names.count(name) == 1 else port for port, name in own.items()}
+    return " or ".join(f"--run {word} ({runs[port]['plan']}, pid {runs[port]['pid']})" for port, word in words.items())

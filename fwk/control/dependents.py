@@ -1,4 +1,4 @@
-"""Who depends on whom: what has to run before a component starts, and who has to leave before it is unloaded."""
+"""Needs and dependents: what has to run before a component starts, and what has to stop before it is unloaded."""
 
 from collections.abc import Callable, Sequence
 
@@ -6,17 +6,17 @@ from fwk.model.plan import ComponentPlan
 
 
 def with_needs(chosen: Sequence[int], components: Sequence[ComponentPlan]) -> list[int]:
-    """These components and everything that they need, in the order of the plan."""
+    """Returns these components and all that they need, in the order of the plan."""
     return _closure(chosen, lambda index: components[index].needs)
 
 
 def with_users(chosen: Sequence[int], components: Sequence[ComponentPlan]) -> list[int]:
-    """These components and everybody who needs them, in the order of the plan."""
+    """Returns these components and all their dependents, in the order of the plan."""
     return _closure(chosen, lambda index: users_of(index, components))
 
 
 def users_of(index: int, components: Sequence[ComponentPlan]) -> list[int]:
-    """Those that need a component."""
+    """Returns the components that need a component."""
     return [component.index for component in components if index in component.needs]
 
 

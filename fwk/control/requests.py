@@ -1,4 +1,4 @@
-"""What can be asked of a run, one model a request; a request is one JSON object on one line.
+"""Requests to a run, one model each; a request is one JSON object on one line.
 
 Every answer is a JSON object with `ok`; where that is false, `error` says what is wrong and what would be right.
 """
@@ -10,6 +10,8 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, TypeAdapter, 
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 
 R = TypeVar("R")
+NESTED_MAX = 32
+"""How deeply lists and mappings of a new value may be nested."""
 Action = Literal["start", "stop", "restart", "reload", "load", "unload", "kill"]
 Names = Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=1000)]
 
@@ -19,41 +21,51 @@ class _Request(BaseModel):
 
 
 class Run(_Request):
-    """Which run is this: plan, file, run directory, process, ports."""
+    """Asks for the run's identity: plan, file, run directory, process, ports."""
 
     verb: Literal["run"]
 
 
 class Status(_Request):
-    """The run and its components; of all, or of those that the patterns mean."""
+    """Asks for the state of the run and of its components, or of those that match the patterns."""
 
     verb: Literal["status"]
     names: Names = []
 
 
 class Times(_Request):
-    """Histograms of wall time: of ticks, stages and components."""
+    """Asks for histograms of wall time: of ticks, stages and components."""
 
     verb: Literal["times"]
 
 
 class Steer(_Request):
-    """Another desired state for some components; answered when they have it."""
+    """Changes the desired state of components; answered when they have it."""
 
     verb: Literal["steer"]
     action: Action
     names: Names
     force: bool = False
-    """Of `unload`: who needs the components is unloaded too."""
+    """Of `unload`: also unload the dependents."""
 
 
 class TakePlace(_Request):
-    """The process that asks takes a component's place in the loop; answered at its turn, with what it needs."""
+    """Attaches the process of the client as a component's host; answered at its turn, with what it needs."""
 
     verb: Literal["take_place"]
     name: str
     held: bool = False
-    """Whether a debugger has it: then nobody hurries it."""
+    """Whether a debugger holds the process, so that no time-out applies."""
+
+
+def _flat(change: str) -> str:
+    """Refuses deeply nested values before the YAML reader, which takes quadratic time, sees them."""
+    depth = 0
+    for letter in change:
+        depth += (letter in "[{") - (letter in "]}")
+        if depth > NESTED_MAX:
+            raise ValueError(f"a value may be nested {NESTED_MAX} deep, this one is deeper")
+    return change
 
 
 def _possible(speed: float) -> float:
@@ -63,47 +75,47 @@ def _possible(speed: float) -> float:
 
 
 class Clock(_Request):
-    """Simulated time stands still, goes on, goes on for some ticks, or at another speed; answered when it does."""
+    """Pauses, resumes or steps simulated time, or sets its speed; answered when it has happened."""
 
     verb: Literal["pause", "resume", "step", "speed"]
     ticks: int = Field(1, ge=1)
     """To step."""
     speed: Annotated[float, Field(ge=0.0, le=SPEED_MAX), AfterValidator(_possible)] | None = None
-    """Logical seconds per wall second, 0: as fast as it goes; without it the speed is only told."""
+    """Logical seconds per wall second, 0: as fast as possible; without it, the speed is only reported."""
 
 
 class Settings(_Request):
-    """Every effective setting with its origin, type and meaning."""
+    """Asks for every effective setting with its origin, type and meaning."""
 
     verb: Literal["settings"]
     names: Names = []
 
 
 class SetSettings(_Request):
-    """New values as `NAME.SETTING=VALUE`; answered when the components have them, `check`: only whether they could."""
+    """Sets values, `NAME.SETTING=VALUE` each; answered when the components have them. `check` only checks them."""
 
     verb: Literal["set"]
-    changes: Annotated[list[str], Field(max_length=1000)]  # as long as a request may be
+    changes: Annotated[list[Annotated[str, AfterValidator(_flat)]], Field(max_length=1000)]
     check: bool = False
     origin: str = Field("fwk config set", max_length=500)
 
 
 class WatchSettings(_Request):
-    """From now on an answer for each change of a setting."""
+    """Asks for an answer at each change of a setting from now on."""
 
     verb: Literal["watch_settings"]
     names: Names = []
 
 
 class Common(_Request):
-    """The common interface of one component."""
+    """Uses the common interface of one component."""
 
     verb: Literal["state", "period", "time_awake", "parameters", "kill"]
     name: str
 
 
 class Note(_Request):
-    """A line for the run's log, at the tick that is now."""
+    """Adds a line to the run's log, at the current tick."""
 
     verb: Literal["note"]
     text: str = Field(min_length=1, max_length=4000)
@@ -111,34 +123,34 @@ class Note(_Request):
 
 
 class Channels(_Request):
-    """Asked of the gateway: all channels with type, writer, readers, newest sequence number, tick and time."""
+    """Asks the gateway for all channels with type, writer, readers, newest sequence number, tick and time."""
 
     verb: Literal["channels"]
 
 
 class Show(_Request):
-    """Asked of the gateway: a channel's newest message."""
+    """Asks the gateway for a channel's newest message."""
 
     verb: Literal["show"]
     channel: str
 
 
 class Watch(_Request):
-    """Asked of the gateway: a channel's newest message, and from now on each new one."""
+    """Asks the gateway for a channel's newest message, and from now on for each new one."""
 
     verb: Literal["watch"]
     channel: str
 
 
 class Call(_Request):
-    """Asked of the gateway: a command for a component; an answer at once and for each answer of the component."""
+    """Sends a command to a component through the gateway; answered at once and for each answer of the component."""
 
     verb: Literal["call"]
     name: str
     data: str
     """The command's message, encoded, in hexadecimal digits; header and expiry are filled in."""
     expires_s: float = Field(gt=0.0, allow_inf_nan=False, le=SECONDS_MAX)
-    """Logical time after which it is not begun any more."""
+    """Logical time after which the command is not begun any more."""
 
 
 SupervisorRequest = (
@@ -150,18 +162,18 @@ to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, 
 
 
 class RequestError(Exception):
-    """A request that cannot be understood or fulfilled; says why and what would be right."""
+    """A request that cannot be read or fulfilled; the text says why and what would be right."""
 
 
 def parsed(adapter: TypeAdapter[R], line: bytes) -> R:
     """Reads a request.
 
     Raises:
-        RequestError: it is none.
+        RequestError: the line is not a request.
     """
     try:
         return adapter.validate_json(line)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(map(str, first["loc"]))
-        raise RequestError(f"no request: {f'{place}: ' if place else ''}{first['msg']}") from error
+        raise RequestError(f"not a request: {f'{place}: ' if place else ''}{first['msg']}") from error

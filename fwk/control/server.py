@@ -1,6 +1,7 @@
-"""The side that is asked: takes requests, one JSON object a line, and never waits for who asks."""
+"""Server side of the control sockets: takes requests, one JSON object a line, and never waits for a client."""
 
 import contextlib
+import errno
 import json
 import select
 import socket
@@ -10,21 +11,28 @@ from typing import Any
 from fwk.control.address import obeys, peer_of
 
 REQUEST_MAX = 64 << 10
-REPLIES_MAX = 8 << 20  # bytes that wait for one who does not read
+REPLIES_MAX = 8 << 20  # bytes kept for a client that does not read
 CONNECTIONS_MAX = 32
-REQUESTS_MAX = 64  # that may arrive at once
+REQUESTS_MAX = 64  # in one piece of input
 _CHUNK = 64 << 10
 
 Answer = Callable[[bytes, "Connection"], None]
 """Takes a request; replies at once, later, or again and again."""
 
 
+class ControlNameError(Exception):
+    """Another process holds the name of a control socket; the text says what would be right."""
+
+
 class Connection:
-    """One who asks."""
+    """Connection of one client."""
 
     def __init__(self, connection: socket.socket, changed: Callable[["Connection"], None]) -> None:
         self.open = True
-        self.skipped = 0  # messages of a stream that found no room
+        self.skipped = 0  # messages of a stream left out because the client did not read
+        self.asked = 0  # requests taken
+        self.waiting = 0  # requests not answered yet
+        self.streams = False
         self.pid, self.uid = peer_of(connection)
         self._socket = connection
         self._changed = changed
@@ -33,18 +41,24 @@ class Connection:
         connection.setblocking(False)
 
     def fileno(self) -> int:
-        """For waiting."""
+        """Returns the descriptor to wait for."""
         return self._socket.fileno()
 
     @property
     def full(self) -> bool:
-        """Whether something waits to be sent."""
+        """Whether bytes wait to be sent."""
         return bool(self._replies)
 
+    @property
+    def idle(self) -> bool:
+        """Whether the client waits for nothing."""
+        return not (self.waiting or self.streams or self.full)
+
     def reply(self, message: dict[str, Any], descriptors: Sequence[int] = ()) -> None:
-        """Sends as much as goes, keeps the rest; who does not read for long is left."""
+        """Sends as much as the socket takes and keeps the rest; disconnects a client that does not read."""
         if not self.open:
             return
+        self.waiting = max(0, self.waiting - 1)
         self._replies += json.dumps(message).encode() + b"\n"
         if descriptors:
             with contextlib.suppress(OSError):  # `flush` finds out
@@ -54,7 +68,8 @@ class Connection:
             self.close()
 
     def stream(self, message: dict[str, Any]) -> None:
-        """As `reply`, for one of many: left out if the last ones are not read yet, and counted."""
+        """Sends one message of a stream; leaves it out, and counts it, while the client has not read earlier ones."""
+        self.streams = True
         if self._replies:
             self.skipped += 1
             return
@@ -62,11 +77,11 @@ class Connection:
         self.skipped = 0
 
     def refuse(self, error: str) -> None:
-        """Says what is wrong, and what would be right."""
+        """Replies with an error: what is wrong and what would be right."""
         self.reply({"ok": False, "error": error})
 
     def flush(self) -> None:
-        """Sends what waits."""
+        """Sends kept bytes."""
         try:
             while self._replies:
                 del self._replies[: self._socket.send(self._replies[:_CHUNK])]
@@ -78,7 +93,7 @@ class Connection:
             self._changed(self)
 
     def lines(self) -> list[bytes]:
-        """Whole requests that have arrived."""
+        """Returns the complete requests that have arrived."""
         try:
             data = self._socket.recv(_CHUNK)
         except BlockingIOError:
@@ -96,7 +111,7 @@ class Connection:
         return found
 
     def close(self) -> None:
-        """Leaves it."""
+        """Disconnects the client."""
         if self.open:
             self.open = False
             self._changed(self)
@@ -104,12 +119,25 @@ class Connection:
 
 
 class Server:
-    """Listens; `fileno` is readable when `handle` has something to do."""
+    """Listens on an abstract unix socket; `fileno` is readable when `handle` has something to do.
+
+    Raises:
+        ControlNameError: another process has bound the address.
+    """
 
     def __init__(self, address: str, answer: Answer) -> None:
         self._answer = answer
         self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        self._listener.bind(address)
+        try:
+            self._listener.bind(address)
+        except OSError as error:
+            self._listener.close()
+            if error.errno != errno.EADDRINUSE:
+                raise
+            name = address.lstrip("\0")
+            raise ControlNameError(
+                f"another process has the control socket @{name}; end it, or start this run with another --bus-port"
+            ) from error
         self._listener.listen()
         self._listener.setblocking(False)
         self._epoll = select.epoll()
@@ -117,11 +145,11 @@ class Server:
         self._connections: dict[int, Connection] = {}
 
     def fileno(self) -> int:
-        """For waiting."""
+        """Returns the descriptor to wait for."""
         return self._epoll.fileno()
 
     def close(self) -> None:
-        """Leaves everybody."""
+        """Disconnects all clients and stops listening."""
         for connection in list(self._connections.values()):
             connection.flush()
             connection.close()
@@ -129,7 +157,7 @@ class Server:
         self._listener.close()
 
     def handle(self) -> None:
-        """Does what can be done without waiting: at most a chunk for each who asks."""
+        """Does what can be done without waiting: at most one chunk of input for each client."""
         for descriptor, events in self._epoll.poll(0):
             connection = self._connections.get(descriptor)
             if connection is None:
@@ -142,7 +170,7 @@ class Server:
                     self._take(line, connection)
 
     def _accept(self) -> None:
-        with contextlib.suppress(OSError):  # gone again, or no descriptor is left; the run goes on
+        with contextlib.suppress(OSError):  # the client has left again, or no descriptor is free; the run goes on
             accepted, _ = self._listener.accept()
             connection = Connection(accepted, self._changed)
             self._connections[connection.fileno()] = connection
@@ -152,13 +180,24 @@ class Server:
                     f"user {connection.uid} did not start this run; only its own user and root are obeyed"
                 )
                 connection.close()
-            elif len(self._connections) > CONNECTIONS_MAX:
-                connection.refuse(f"there are {CONNECTIONS_MAX} connections already; end one")
+            elif len(self._connections) > CONNECTIONS_MAX and not self._make_room(connection):
+                connection.refuse(f"{CONNECTIONS_MAX} connections are open and in use already; end one")
                 connection.close()
+
+    def _make_room(self, newest: Connection) -> bool:
+        """Disconnects the oldest idle client, preferring those that never asked; returns whether there was one."""
+        idle = [each for each in self._connections.values() if each is not newest and each.idle]
+        if idle:
+            chosen = min(idle, key=lambda each: each.asked > 0)  # the first of equals: the oldest
+            chosen.refuse("disconnected: idle, and another client needs the connection")
+            chosen.close()
+        return bool(idle)
 
     def _take(self, line: bytes, connection: Connection) -> None:
         if not connection.open or not line.strip():
             return
+        connection.asked += 1
+        connection.waiting += 1
         self._answer(line, connection)
 
     def _changed(self, connection: Connection) -> None:

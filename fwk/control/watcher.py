@@ -1,4 +1,4 @@
-"""Watches the components' source files and has those reloaded whose files changed: the work of a process of its own."""
+"""Reloads components when their source files change; runs in a process of its own."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -15,7 +15,7 @@ _TIMEOUT_S = 60.0
 
 
 class Watcher:
-    """Reloads what changed, as far as it can be read; what is wrong is told in the run's log."""
+    """Reloads components whose files changed; files that cannot be compiled are reported in the run's log."""
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
@@ -23,8 +23,8 @@ class Watcher:
         self._pending: set[Path] = set()  # changed, not reloaded yet because of a mistake
 
     def run(self, stopping: Callable[[], bool]) -> None:
-        """Works until it shall stop or the run has ended."""
-        from watchfiles import PythonFilter, watch  # for those who ask for it
+        """Watches until `stopping` returns true or the run has ended."""
+        from watchfiles import PythonFilter, watch  # imported only with --watch
 
         while not stopping():
             folders = self._folders()
@@ -42,7 +42,7 @@ class Watcher:
                     break
 
     def changed(self, files: set[Path]) -> None:
-        """Some files are other than before."""
+        """Handles changed files."""
         self._pending |= files
         concerned = self._concerned()
         if not concerned:
@@ -72,7 +72,7 @@ class Watcher:
             run.ask("steer", action="reload", names=names)
 
     def _concerned(self) -> dict[str, set[Path]]:
-        """Components that consist of a changed file, with all their files."""
+        """Returns the components that a changed file belongs to, each with all its files."""
         consists = {component.name: self._sources.files(component) for component in self._plan.components}
         return {name: files for name, files in consists.items() if files & self._pending}
 

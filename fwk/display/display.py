@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import select
 import signal
 import socket
 import sys
@@ -11,43 +12,56 @@ from typing import TextIO
 from rich.console import Console
 from rich.live import Live
 
-from fwk.clock import US_PER_S, monotonic_us
-from fwk.display.lines import log_line, progress_of, status_line
+from fwk.clock import SPEED_MAX, SPEED_MIN, US_PER_S, monotonic_us, wall_us
+from fwk.display.floods import FloodGate
+from fwk.display.keys import Keyboard
+from fwk.display.lines import held_back_line, log_line, progress_of, status_line
 from fwk.display.screen import screen
-from fwk.display.view import View
+from fwk.display.steering import Steering
+from fwk.display.view import LEVELS, View
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
 
 _PACKET_BYTES = 1 << 20
 _REDRAW_S = 0.25
 _STATUS_LINE_S = 5.0
+_WAITING_LINE_S = 10.0
+_LOOK_S = 0.5
 
 
 def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
     """Shows the run until the connection's other end is closed; for a process of its own.
 
     `connection` is of type SOCK_SEQPACKET; each packet is a channel's name, a zero byte and an encoded message:
-    `fwk/status`, `fwk/log` and the data channels that the scoreboard wants. The sender drops what does not fit, so that
-    nothing here slows the run; for the same reason this process takes the lowest priority.
+    `fwk/status`, `fwk/log` and the data channels of the scoreboard. The sender drops packets that find no room, and
+    this process has the lowest priority, so that nothing here slows the run.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the supervisor's; the display shows how it ends
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the run; the display shows how
     signal.signal(signal.SIGTERM, _leave)  # leaves by an exception, so that the terminal gets its cursor back
     os.nice(10)
-    with contextlib.suppress(BrokenPipeError):  # the reader of our output went away; the run goes on without
+    with contextlib.suppress(OSError):  # the reader of our output has gone; the run goes on without
         if plain or not sys.stdout.isatty():
-            show_lines(View(plan), connection, sys.stdout)
+            show_lines(View(plan), connection, sys.stdout, Steering(plan.bus_port))
         else:
-            show_live(View(plan), connection, Console())
+            with Keyboard() as keyboard:
+                show_live(View(plan), connection, Console(), keyboard, Steering(plan.bus_port))
 
 
-def show_lines(view: View, connection: socket.socket, out: TextIO) -> None:
-    """Every log line as it comes, and the state of the run in one line each few seconds, unless it stands still."""
-    due_us, shown = 0, ""
-    for packet in _packets(connection, _STATUS_LINE_S):
+def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Steering) -> None:
+    """Prints log lines as they come, and the state of the run in one line every few seconds while it advances.
+
+    A run that stands still for a second says whom it waits for, and says so again every ten seconds. Of many lines that
+    say the same, the first are printed and the others counted.
+    """
+    due_us, shown, waiting_due_us = 0, "", 0
+    gate = FloodGate()
+    for packet in _packets(connection, _LOOK_S):
         with contextlib.suppress(MessageError):
             line = view.take(packet) if packet else None
-            if line:
+            if line and gate.passes(line):
                 print(log_line(line), file=out, flush=True)
+        for line, count in gate.held_back(wall_us()):
+            print(held_back_line(line, count), file=out, flush=True)
         if view.status and monotonic_us() >= due_us:
             due_us = monotonic_us() + round(_STATUS_LINE_S * US_PER_S)
             progress = progress_of(view.status)
@@ -55,31 +69,77 @@ def show_lines(view: View, connection: socket.socket, out: TextIO) -> None:
                 headline = view.headline
                 print(status_line(view.status), *([headline] if headline else []), sep="   ", file=out, flush=True)
             shown = progress
+        if not view.standing_s:
+            waiting_due_us = 0
+        elif monotonic_us() >= waiting_due_us:
+            waiting_due_us = monotonic_us() + round(_WAITING_LINE_S * US_PER_S)
+            view.waits_for = steering.waits_for()
+            if view.waits_for:
+                print(f"tick {view.status.tick if view.status else 0}   {view.waiting}", file=out, flush=True)
+    for line, count in gate.held_back(sys.maxsize):
+        print(held_back_line(line, count), file=out, flush=True)
 
 
-def show_live(view: View, connection: socket.socket, console: Console) -> None:
-    """The picture, redrawn four times a second where it is; its last state stays on the terminal."""
-    due_us = 0
+def show_live(view: View, connection: socket.socket, console: Console, keyboard: Keyboard, steering: Steering) -> None:
+    """Redraws the picture four times a second and obeys the keys; the last picture stays on the terminal."""
+    due_us = look_us = 0
     with Live(console=console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False) as live:
-        for packet in _packets(connection, _REDRAW_S):
+        for packet in _packets(connection, _REDRAW_S, keyboard):
             with contextlib.suppress(MessageError):
                 if packet:
                     view.take(packet)
+            for key in keyboard.read() if select.select(keyboard.descriptors, [], [], 0)[0] else ():
+                press(key, view, steering)
+                due_us = 0
+            if view.standing_s and monotonic_us() >= look_us:
+                look_us = monotonic_us() + round(_LOOK_S * US_PER_S)
+                view.waits_for = steering.waits_for()
             if monotonic_us() >= due_us:
                 due_us = monotonic_us() + round(_REDRAW_S * US_PER_S)
-                live.update(screen(view, console.height), refresh=True)
-        live.update(screen(view, console.height), refresh=True)
+                picture = screen(view, console.height, console.width, keys=bool(keyboard.descriptors))
+                live.update(picture, refresh=True)
+        view.message = ""
+        live.update(screen(view, console.height, console.width), refresh=True)
 
 
-def _packets(connection: socket.socket, idle_s: float) -> Iterator[bytes]:
-    """Packets as they come, an empty one when nothing came for `idle_s`; ends with the connection."""
-    connection.settimeout(idle_s)
+def press(key: str, view: View, steering: Steering) -> None:
+    """Does what a key means."""
+    view.message = ""
+    if key in ("space", "p"):
+        steering.toggle_pause(bool(view.status and view.status.paused))
+    elif key == "s":
+        steering.step()
+    elif key in ("+", "=", "-"):
+        speed = steering.speed() or (view.status.speed if view.status else 1.0)
+        factor = 0.5 if key == "-" else 2.0
+        steering.change_speed(min(SPEED_MAX, max(SPEED_MIN, speed * factor)))
+    elif key == "m":
+        steering.change_speed(0.0)
+    elif key == "q":
+        steering.quit()
+    elif key in ("tab", "down", "j"):
+        view.select(1)
+    elif key in ("up", "k"):
+        view.select(-1)
+    elif key == "l":
+        view.level = (view.level + 1) % len(LEVELS)
+    elif key == "escape":
+        view.selected, view.level = "", 0
+    view.message, steering.said = steering.said, ""
+
+
+def _packets(connection: socket.socket, idle_s: float, keyboard: Keyboard | None = None) -> Iterator[bytes]:
+    """Yields packets as they come, and an empty one at a key or when nothing came for `idle_s`; ends with the
+    connection.
+    """
     while True:
-        try:
-            packet = connection.recv(_PACKET_BYTES)
-        except TimeoutError:
+        keys = keyboard.descriptors if keyboard else []
+        ready, _, _ = select.select([connection, *keys], [], [], idle_s)
+        if connection not in ready:
             yield b""
             continue
+        try:
+            packet = connection.recv(_PACKET_BYTES)
         except ConnectionError:
             return
         if not packet:

@@ -1,4 +1,4 @@
-"""What a status message says in sums: states, losses, restarts, and who takes the time."""
+"""Sums over a status message: states, losses, restarts, and the slowest components."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -15,18 +15,18 @@ class Totals:
     """Sums over components."""
 
     states: dict[str, int]
-    """State to number of components in it, the worrying ones first."""
+    """State to number of components in it, failed and held first."""
     lost: int
-    """Messages that could not be had any more."""
+    """Messages lost for good."""
     fetched: int
-    """Messages that were lost and came after asking."""
+    """Messages that were lost and fetched again."""
     strangers: int
     """Datagrams refused."""
 
 
 @dataclass(frozen=True)
 class LoopTime:
-    """How long a component's iterations take."""
+    """Time that a component's iterations take, in milliseconds of wall time."""
 
     name: str
     mean_ms: float
@@ -34,17 +34,17 @@ class LoopTime:
 
 
 def components(status: status_t) -> list[component_state_t]:
-    """All components, in the order of the hosts."""
+    """Returns all components, in the order of the hosts."""
     return [component for host in status.hosts for component in host.components]
 
 
 def restarts(status: status_t) -> int:
-    """How often hosts were started again."""
+    """Returns how often hosts were started again."""
     return sum(host.restarts for host in status.hosts)
 
 
 def totals(some: Iterable[component_state_t]) -> Totals:
-    """Sums over some components."""
+    """Returns sums over some components."""
     listed = list(some)
     counted = Counter(component.state for component in listed)
     order = sorted(counted, key=lambda state: (state not in _UNWELL_FIRST, state))
@@ -57,13 +57,13 @@ def totals(some: Iterable[component_state_t]) -> Totals:
 
 
 def loop_times(status: status_t, since: status_t | None = None) -> dict[str, LoopTime]:
-    """Component to its loop time since an earlier status, or since it started, in milliseconds of wall time."""
+    """Returns the loop time of each component since an earlier status, or since it started, in ms of wall time."""
     before = {component.name: component for component in components(since)} if since else {}
     found = {}
     for component in components(status):
         busy_us, iterations = component.busy_us, component.iterations
         earlier = before.get(component.name)
-        if earlier and 0 < earlier.iterations < iterations:  # otherwise it stands still, or was restarted meanwhile
+        if earlier and 0 < earlier.iterations < iterations:  # otherwise it stands still or was restarted
             busy_us, iterations = busy_us - earlier.busy_us, iterations - earlier.iterations
         mean_ms = busy_us / iterations / 1000 if iterations else 0.0
         found[component.name] = LoopTime(component.name, mean_ms, component.worst_us / 1000)
@@ -71,5 +71,5 @@ def loop_times(status: status_t, since: status_t | None = None) -> dict[str, Loo
 
 
 def slowest(times: dict[str, LoopTime], count: int) -> list[LoopTime]:
-    """The components with the longest mean loop time, longest first."""
+    """Returns the components with the longest mean loop time, longest first."""
     return sorted(times.values(), key=lambda time: (-time.mean_ms, time.name))[:count]

@@ -1,4 +1,4 @@
-"""Lines of text for people: a log line, and the state of a run in one line."""
+"""Lines of text for people: log lines, and the state of a run in one line."""
 
 from datetime import UTC, datetime
 
@@ -9,7 +9,7 @@ from lcmtypes.core import log_t, status_t
 
 
 def log_line(line: log_t) -> str:
-    """Wall time, tick, logical time, level, component, text and place in the source."""
+    """Returns wall time, tick, logical time, level, component, text and place in the source."""
     wall = datetime.fromtimestamp(line.wall_us / US_PER_S, UTC).astimezone().strftime("%H:%M:%S.%f")[:-3]
     level = LEVEL_NAMES.get(line.level, str(line.level))
     return (
@@ -18,8 +18,14 @@ def log_line(line: log_t) -> str:
     )
 
 
+def held_back_line(line: log_t, count: int) -> str:
+    """Returns the line that stands for lines that were not printed because they said the same."""
+    level = LEVEL_NAMES.get(line.level, str(line.level))
+    return f"... {count} more {level} {'line' if count == 1 else 'lines'} like: {line.component}: {line.text}"
+
+
 def status_line(status: status_t) -> str:
-    """Tick, logical time, pace and what went wrong so far."""
+    """Returns tick, logical time, pace, states and losses so far."""
     return (
         f"tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   "
         f"{status.ticks_per_s:.1f} ticks/s   {_states(status)}   {losses(status)}"
@@ -27,7 +33,7 @@ def status_line(status: status_t) -> str:
 
 
 def progress_of(status: status_t) -> str:
-    """What differs between two statuses of a run in which something happened meanwhile."""
+    """Returns a text that differs between two statuses when the run has advanced or a state has changed."""
     return f"{status.tick} {_states(status)}"
 
 
@@ -36,13 +42,13 @@ def _states(status: status_t) -> str:
 
 
 def pace(status: status_t) -> str:
-    """How fast logical time goes on."""
+    """Returns how fast logical time advances."""
     return "paused" if status.paused else f"speed {status.speed:.2f}"
 
 
 def losses(status: status_t) -> str:
-    """Messages lost for good and late iterations; if there were any, also messages fetched again, datagrams refused,
-    repeated ticks and restarts.
+    """Returns the numbers of lost messages and late iterations; if there are any, also of messages fetched again,
+    datagrams refused, repeated ticks and restarts.
     """
     sums = figures.totals(figures.components(status))
     always = {"lost": sums.lost, "late": status.late}

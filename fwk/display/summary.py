@@ -1,4 +1,4 @@
-"""What is printed before a run, and when it has ended: result, pace, what went wrong, where the recording lies."""
+"""Lines printed before a run, and at its end: result, pace, losses, failures, recording."""
 
 from fwk.display import figures
 from fwk.display.lines import losses
@@ -11,7 +11,7 @@ _SLOWEST = 3
 
 
 def introduction(plan: Plan) -> list[str]:
-    """The first lines of a run: what is started, and how to look at its messages."""
+    """Returns the first lines of a run: its parts, and how to look at its messages."""
     lines = overview(plan)
     if plan.public_url:
         url = "" if plan.public_url == Plan.public_url else f" --url '{plan.public_url}'"
@@ -20,13 +20,14 @@ def introduction(plan: Plan) -> list[str]:
 
 
 def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
-    """The closing lines of a run, the application's own first."""
+    """Returns the closing lines of a run, those of the application first."""
     status = outcome.status
     rate = outcome.ticks / outcome.wall_s if outcome.wall_s else 0.0
     pace = outcome.logical_s / outcome.wall_s if outcome.wall_s else 0.0
     lines = [
         *Scoreboard(plan.scoreboard).summary(outcome.newest.get),
         f"{plan.name}: {outcome.reason}",
+        *(_advice() if "not ready after" in outcome.reason else ()),
         f"{outcome.ticks} ticks, {outcome.logical_s:.2f} s of logical time in {outcome.wall_s:.2f} s: "
         f"{rate:.1f} ticks/s, {pace:.2f} times real time",
     ]
@@ -43,3 +44,8 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
         lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
         lines.append(f"recording: {options.record}{lacks}")
     return [*lines, f"run directory: {options.run_dir}"]
+
+
+def _advice() -> list[str]:
+    """Returns what helps when processes are not ready in time."""
+    return ["a busy machine starts many processes slowly; --hosting robot or --hosting single starts fewer"]

@@ -1,32 +1,38 @@
-"""Makes a video of a recording: one picture a tick, drawn from the newest messages as they were at its end."""
+"""Makes a video of a recording: one picture for each tick, drawn from the newest messages at its end."""
 
+import contextlib
 from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
-from typing import Any
-
-import cv2
-import numpy as np
-from numpy.typing import NDArray
+from typing import Any, NamedTuple
 
 from fwk.clock import US_PER_S
+from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import decoded, header_of
+from fwk.recording.video_encoder import Encoder, EncoderError, Picture, open_encoder
 
-Picture = NDArray[np.uint8]
-"""Height x width x 3, blue green red; the same size all the time, both even."""
 Newest = Callable[[str], Any]
 """Channel to its newest message, decoded, or None before the first."""
 Draw = Callable[[Newest], Picture | None]
-"""None: nothing to show yet."""
+"""Returns a picture, or None while there is nothing to show."""
+Progress = Callable[[int, float], None]
+"""Takes the number of pictures so far, and the logical time of the newest in seconds."""
+
+
+class Rendered(NamedTuple):
+    """A finished video."""
+
+    pictures: int
+    codec: str
 
 
 class VideoError(Exception):
-    """The video cannot be made; says which file or drawing and why."""
+    """A video cannot be made; the text says which file or drawing and why."""
 
 
 def drawing(name: str) -> Draw:
-    """The drawing that `module:name` stands for: a function, or a class whose `draw` is used.
+    """Returns the drawing named `module:name`: a function, or the `draw` of a class.
 
     Raises:
         VideoError: there is no such module or name.
@@ -40,46 +46,48 @@ def drawing(name: str) -> Draw:
     return draw
 
 
-def render_video(log: Path, out: Path, draw: Draw) -> int:
+def render_video(log: Path, out: Path, draw: Draw, progress: Progress = lambda *_: None) -> Rendered:
     """Draws every tick of a log into an mp4 file that plays at the speed of logical time.
 
-    Returns the number of pictures.
+    `progress` is called after each picture with the number of pictures and the logical time in seconds. When it, or the
+    drawing, raises an exception, the file holds the pictures until then and can be played.
 
     Raises:
         LogError: the log cannot be read.
         VideoError: there is nothing to show, the pictures differ in size, or the file cannot be written.
     """
     reader, newest = StampedLog(log), _Newest()
-    writer: cv2.VideoWriter | None = None
+    encoder: Encoder | None = None
     size, pictures = (0, 0), 0
     try:
-        for _ in _ends_of_ticks(reader, newest):
+        for head in _ends_of_ticks(reader, newest):
             picture = draw(newest)
             if picture is None:
                 continue
-            if writer is None:
+            if encoder is None:
                 size = (picture.shape[1], picture.shape[0])
-                writer = cv2.VideoWriter(str(out), cv2.VideoWriter.fourcc(*"mp4v"), _ticks_per_s(reader), size)
-                if not writer.isOpened():
-                    raise VideoError(f"{out}: cannot write a video there; is there such a folder, and may you write?")
+                encoder = open_encoder(out, _ticks_per_s(reader), *size)
             if (picture.shape[1], picture.shape[0]) != size:
                 wrong = f"{picture.shape[1]}x{picture.shape[0]}, not {size[0]}x{size[1]} as the first"
                 raise VideoError(f"{log}: picture {pictures + 1} is {wrong}")
-            writer.write(picture)
+            encoder.write(picture)
             pictures += 1
+            progress(pictures, head.time_us / US_PER_S)
+        if encoder is None:
+            raise VideoError(f"{log}: nothing to show: the drawing found none of the messages that it needs")
+        finished, encoder = encoder, None
+        finished.close()
+    except EncoderError as error:
+        raise VideoError(str(error)) from error
     finally:
-        if writer is not None:
-            writer.release()
-    if not pictures:
-        raise VideoError(f"{log}: nothing to show: the drawing found none of the messages that it needs")
-    written = round(cv2.VideoCapture(str(out)).get(cv2.CAP_PROP_FRAME_COUNT))  # the writer itself reports nothing
-    if written != pictures:
-        raise VideoError(f"{out}: cannot be written: {written} of {pictures} pictures are in it; is there room?")
-    return pictures
+        if encoder is not None:
+            with contextlib.suppress(EncoderError):
+                encoder.close()
+    return Rendered(pictures, finished.codec)
 
 
 class _Newest:
-    """The newest message of each channel, decoded when asked for."""
+    """Newest message of each channel, decoded on demand."""
 
     def __init__(self) -> None:
         self._raw: dict[str, bytes] = {}
@@ -99,23 +107,23 @@ class _Newest:
         return self._decoded.get(channel)
 
 
-def _ends_of_ticks(reader: StampedLog, newest: _Newest) -> Iterator[int]:
-    """Yields each tick when all its messages are in `newest`."""
-    tick = None
+def _ends_of_ticks(reader: StampedLog, newest: _Newest) -> Iterator[Header]:
+    """Yields a header of each tick when all messages of the tick are in `newest`."""
+    last: Header | None = None
     for event in reader:
         head = header_of(event.data)
         if head is None:
             continue
-        if tick is not None and head.tick > tick:
-            yield tick
-        tick = head.tick if tick is None else max(tick, head.tick)
+        if last is not None and head.tick > last.tick:
+            yield last
+        last = head if last is None or head.tick > last.tick else last
         newest.take(event.channel, event.data)
-    if tick is not None:
-        yield tick
+    if last is not None:
+        yield last
 
 
 def _ticks_per_s(reader: StampedLog) -> float:
-    """From the logical times of the first two ticks; one picture a second if there is only one."""
+    """Returns the rate of the first two ticks in logical time; 1 if there is only one tick."""
     heads = (header_of(event.data) for event in reader)
     first = None
     for head in heads:

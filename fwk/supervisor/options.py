@@ -13,6 +13,8 @@ class RunOptions:
 
     run_dir: Path
     """Existing folder of this run: resolved plan, effective configuration, text log, recording."""
+    name: str = ""
+    """Name of the run for tools; empty: that of the plan."""
     ticks: int | None = None
     """Number of ticks after which the run stops."""
     time_s: float | None = None

@@ -5,12 +5,14 @@ from collections.abc import Callable
 from typing import Any
 
 from lcmtypes.soccer import game_state_t
+from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
 """Gives the newest message of a channel, decoded, or None."""
 
 GAME_STATE = "world/game_state"
-CHANNELS = (GAME_STATE,)
+TRUTH = "world/ground_truth"
+CHANNELS = (GAME_STATE, TRUTH)
 """What the display sends here."""
 
 STATES = {
@@ -54,6 +56,12 @@ def headline(newest: Newest) -> str:
     if state is None:
         return ""
     return f"{score(state)}   half {state.half}  {play_time(state.time_in_half_s)}   {phase(state)}"
+
+
+def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str]]]:
+    """Returns the field with robots and ball for the display; nothing before the simulator has told where they are."""
+    truth = newest(TRUTH)
+    return field_drawing(truth, columns, rows) if truth else []
 
 
 def summary(newest: Newest) -> list[str]:

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 import typer
 
-from fwk.cli import commands, launch
+from fwk.cli import commands
+from fwk.cli.run import launch_command
 from tests.docs.docs_pages import PAGES, ROOT, blocks, spans
 
 _SHELL = {"sh", "console", "bash", ""}
@@ -18,7 +19,7 @@ _TARGET = re.compile(r"^([a-z-]+):", re.M)
 
 def roots() -> dict[str, Any]:
     """Returns the two programs as click commands."""
-    return {"fwk": typer.main.get_command(commands.app), "fwk-launch": typer.main.get_command(launch.app)}
+    return {"fwk": typer.main.get_command(commands.app), "fwk-launch": typer.main.get_command(launch_command.app)}
 
 
 def lines_of(page: Path) -> Iterator[str]:

@@ -1,21 +1,21 @@
-"""`fwk check FILE`: is there anything wrong in a launch file?"""
+"""`fwk check FILE`: finds all mistakes of a launch file."""
 
-import sys
-from typing import Annotated
+import json
+from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from fwk.cli.arguments import Hosting
+from fwk.cli.output import say, say_table
+from fwk.cli.run_options import Json
 from fwk.clock import rate_word
 from fwk.display.plan_overview import counted, overview, value_at
-from fwk.model.errors import PlanError
+from fwk.display.table import Column, Table
+from fwk.model.errors import PlanError, Problem
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.plan.load import LaunchOptions, load_plan
 
 BAD_INPUT = 2
-WIDTH_IN_A_PIPE = 240
 
 
 def check(
@@ -36,34 +36,45 @@ def check(
     without: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="all but these components; repeatable")
     ] = None,
+    as_json: Json = False,
 ) -> None:
     """Checks a launch file and everything it uses, and starts nothing.
 
-    Exit codes: 0 it can be run, 2 it cannot; then every mistake is listed with its place.
+    Exit codes: 0 the file can be run, 2 it cannot; then every mistake is listed with its place.
     """
     options = LaunchOptions(sets=sets or (), hosting=hosting.value, only=only or (), without=without or ())
     try:
         plan = load_plan(file, options)
     except PlanError as error:
+        if as_json:
+            say(json.dumps({"ok": False, "mistakes": [_plain(each) for each in error.problems]}, indent=2))
+            raise typer.Exit(BAD_INPUT) from error
         for problem in error.problems:
             place, rest = problem.place, str(problem).removeprefix(problem.place)
             typer.echo(typer.style(place, bold=True) + rest, err=True)
         typer.echo(counted(len(error.problems), "mistake"), err=True)
         raise typer.Exit(BAD_INPUT) from error
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
-    for line in overview(plan):
-        console.print(line, highlight=False, markup=False, soft_wrap=True)
+    if as_json:
+        say(json.dumps({"ok": True, "mistakes": [], "plan": plan.to_json()}, indent=2))
+        return
+    say(*overview(plan))
     if channels:
-        console.print(_channel_table(plan))
+        say_table(_channel_table(plan))
     if settings:
-        console.print(_settings_table(plan))
+        say_table(_settings_table(plan))
+
+
+def _plain(problem: Problem) -> dict[str, Any]:
+    return {"place": problem.place, "component": problem.who, "text": problem.text}
 
 
 def _channel_table(plan: Plan) -> Table:
-    table = Table("channel", "type", "writer", "stage", "readers", box=None, pad_edge=False)
+    table = Table(
+        "channel", Column("type", rank=2), "writer", Column("stage", rank=3), Column("readers", rank=1, prose=True)
+    )
     for channel in plan.channels:
         readers = ", ".join(plan.components[index].name for index in channel.readers)
-        table.add_row(channel.name, channel.type_name, *_writer(plan, channel), readers)
+        table.add(channel.name, channel.type_name, *_writer(plan, channel), readers)
     return table
 
 
@@ -77,8 +88,8 @@ def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
 
 
 def _settings_table(plan: Plan) -> Table:
-    table = Table("setting", "value", "origin", box=None, pad_edge=False)
+    table = Table("setting", "value", Column("origin", rank=1))
     for component in plan.components:
         for key, origin in component.origins.items():
-            table.add_row(f"{component.name}.{key}", str(value_at(component.config, key)), origin)
+            table.add(f"{component.name}.{key}", str(value_at(component.config, key)), origin)
     return table

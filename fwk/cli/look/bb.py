@@ -1,27 +1,28 @@
-"""`fwk bb`: the blackboard of a run from outside."""
+"""`fwk bb`: the channels of a run and their newest messages."""
 
 import json
-import sys
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from fwk.cli.run_options import BusPort, Json, asking
-from fwk.clock import US_PER_S
+from fwk.cli.output import say_table
+from fwk.cli.run_options import Json, RunChoice, asking
+from fwk.clock import US_PER_S, monotonic_us, sleep_s
 from fwk.control import client
+from fwk.display.table import Column, Table
 
-WIDTH_IN_A_PIPE = 240
+_RATE_S = 1.0
+_ITEMS_SHOWN = 12
+_ROW_SHOWN = 4
 bb = typer.Typer(add_completion=False, no_args_is_help=True)
 Channel = Annotated[str, typer.Argument(metavar="CHANNEL", help="its full name, such as cyan1/odometry")]
 
 
 @bb.callback()
 def blackboard() -> None:
-    """Shows the channels of a run and what was written on them last."""
+    """Shows the channels of a run and their newest messages."""
 
 
 @bb.command("list")
@@ -29,28 +30,39 @@ def list_channels(
     patterns: Annotated[
         list[str] | None, typer.Argument(metavar="PATTERN...", help="such as 'cyan1/*'; all by default")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Lists channels with type, writer, readers, newest sequence number, tick and age.
+    """Lists channels with type, writer, rate, readers, newest sequence number, tick and age.
 
-    The age is wall time since the newest message.
+    Rate and age are wall time: messages per second over one second, and time since the newest message.
     """
-    with asking(), client.gateway(bus_port) as run:
-        rows = run.ask("channels")["channels"]
+    with asking(), client.gateway(chosen) as run:
+        before, began_us = run.ask("channels")["channels"], monotonic_us()
+        sleep_s(_RATE_S)
+        rows, elapsed_us = run.ask("channels")["channels"], monotonic_us() - began_us
+    earlier = {row["channel"]: row["messages"] for row in before}
+    for row in rows:
+        new = row["messages"] - earlier.get(row["channel"], 0)
+        row["rate_hz"] = max(0, new) * US_PER_S / elapsed_us
     wanted = [row for row in rows if not patterns or any(fnmatchcase(row["channel"], each) for each in patterns)]
     if as_json:
         typer.echo(json.dumps(wanted, indent=2))
         return
-    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(_table(wanted))
+    say_table(_table(wanted))
 
 
 @bb.command()
-def show(channel: Channel, bus_port: BusPort = None, as_json: Json = False) -> None:
-    """Shows a channel's newest message, field by field."""
-    with asking(), client.gateway(bus_port) as run:
+def show(
+    channel: Channel,
+    whole: Annotated[bool, typer.Option("--all", help="also all items of long arrays")] = False,
+    chosen: RunChoice = None,
+    as_json: Json = False,
+) -> None:
+    """Shows a channel's newest message, field by field; long arrays are shortened, except with --json or --all."""
+    with asking(), client.gateway(chosen) as run:
         answer = run.ask("show", channel=channel)
-    typer.echo(json.dumps(answer, indent=2) if as_json else "\n".join(_message(answer)))
+    typer.echo(json.dumps(answer, indent=2) if as_json else "\n".join(_message(answer, whole)))
 
 
 @bb.command()
@@ -59,14 +71,15 @@ def watch(
     count: Annotated[
         int | None, typer.Option("--count", min=1, metavar="N", help="end after N messages; otherwise with Ctrl-C")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Shows a channel's newest message, and from then on each new one, until the run ends.
 
-    Who is slower than the channel misses messages and is told how many. With `--json` there is a line for each message.
+    A reader that is slower than the channel misses messages; their number is shown. `--json` prints a line for each
+    message.
     """
-    with asking(), client.gateway(bus_port) as run:
+    with asking(), client.gateway(chosen) as run:
         for seen, answer in enumerate(run.follow("watch", channel=channel), 1):
             typer.echo(json.dumps(answer) if as_json else "\n".join([*_message(answer), ""]))
             if seen == count:
@@ -74,18 +87,29 @@ def watch(
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:
-    table = Table("channel", "type", "writer", box=None, pad_edge=False)
-    for title in ("messages", "sequence", "tick", "age s", "bytes"):
-        table.add_column(title, justify="right")
-    table.add_column("readers")
+    table = Table(
+        "channel",
+        Column("type", rank=2),
+        Column("writer", rank=1),
+        Column("Hz", right=True, rank=3),
+        Column("messages", right=True, rank=8),
+        Column("sequence", right=True, rank=4),
+        Column("tick", right=True, rank=6),
+        Column("age s", right=True, rank=2),
+        Column("bytes", right=True, rank=7),
+        Column("readers", rank=5, prose=True),
+    )
     for row in rows:
         age = "never" if row["age_s"] is None else f"{row['age_s']:.2f}"
-        numbers = [str(row["messages"]), str(row["sequence"]), str(row["tick"]), age, str(row["bytes"])]
-        table.add_row(row["channel"], row["type"], row["writer"], *numbers, ", ".join(row["readers"]))
+        table.add(
+            *(row["channel"], row["type"], row["writer"], f"{row['rate_hz']:.1f}", row["messages"], row["sequence"]),
+            *(row["tick"], age, row["bytes"], ", ".join(row["readers"])),
+            style="dim" if row["age_s"] is None else "",
+        )
     return table
 
 
-def _message(answer: dict[str, Any]) -> Iterator[str]:
+def _message(answer: dict[str, Any], whole: bool = False) -> Iterator[str]:
     skipped = f", {answer['skipped']} left out" if answer.get("skipped") else ""
     if answer["value"] is None:
         yield f"{answer['channel']} ({answer['type']}): never written"
@@ -96,23 +120,43 @@ def _message(answer: dict[str, Any]) -> Iterator[str]:
     )
     for name, value in answer["value"].items():
         if name != "header" or answer["plain"]:
-            yield from field_lines(name, value, "  ")
+            yield from field_lines(name, value, "  ", whole)
 
 
-def field_lines(name: str, value: Any, indent: str) -> Iterator[str]:
-    """A line a value; below a struct, and below each struct of a list, its own fields."""
+def field_lines(name: str, value: Any, indent: str, whole: bool = False) -> Iterator[str]:
+    """Yields a line for each value, indented by structs; long arrays are shortened unless `whole` is set."""
     if isinstance(value, dict):
         yield f"{indent}{name}:"
         for key, below in value.items():
-            yield from field_lines(key, below, f"{indent}  ")
+            yield from field_lines(key, below, f"{indent}  ", whole)
     elif isinstance(value, list) and value and isinstance(value[0], dict):
-        for number, item in enumerate(value):
-            yield from field_lines(f"{name}[{number}]", item, indent)
+        shown = value if whole else value[:_ITEMS_SHOWN]
+        for number, item in enumerate(shown):
+            yield from field_lines(f"{name}[{number}]", item, indent, whole)
+        if len(shown) < len(value):
+            yield f"{indent}{name}: ... {len(value) - len(shown)} more; --all shows them"
     else:
-        yield f"{indent}{name}: {_number(value)}"
+        yield f"{indent}{name}: {_words(value, whole)}"
 
 
-def _number(value: Any) -> str:
-    if isinstance(value, list):
-        return f"[{', '.join(map(_number, value))}]"
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _words(value: Any, whole: bool) -> str:
+    if not isinstance(value, list):
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+    if whole or _size(value) <= _ITEMS_SHOWN:
+        return f"[{', '.join(_words(each, True) for each in value)}]"
+    if isinstance(value[0], list):
+        return f"[{_words(value[0], False)}, ...] ({_shape(value)} items; --all shows them)"
+    first = ", ".join(_words(each, True) for each in value[:_ROW_SHOWN])
+    return f"[{first}, ..., {_words(value[-1], True)}] ({len(value)} items)"
+
+
+def _size(value: Any) -> int:
+    return sum(map(_size, value)) if isinstance(value, list) else 1
+
+
+def _shape(value: Any) -> str:
+    sizes = []
+    while isinstance(value, list):
+        sizes.append(str(len(value)))
+        value = value[0] if value else None
+    return " x ".join(sizes)

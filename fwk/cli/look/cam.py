@@ -11,7 +11,7 @@ from fwk.cli.look import picture_output
 from fwk.cli.look.picture_output import Pixels, fail
 from fwk.cli.look.recorded_pictures import Recorded
 from fwk.cli.recordings.find_log import failing, find_log
-from fwk.cli.run_options import BAD_INPUT, BusPort, Json, ask, asking
+from fwk.cli.run_options import BAD_INPUT, Json, RunChoice, ask, asking
 from fwk.component.images import Ring
 from fwk.control import client
 from fwk.model.errors import hint
@@ -35,7 +35,7 @@ def cam(
     tick: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="with --log: the newest as of tick N, not the last")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Lists cameras, or saves or shows a frame of one.
@@ -59,9 +59,9 @@ def cam(
                 return
             pixels, where = recorded.newest(name)
     elif name:
-        pixels, where = _newest(name, bus_port)
+        pixels, where = _newest(name, chosen)
     else:
-        _list(_cameras(bus_port), as_json)
+        _list(_cameras(chosen), as_json)
         return
     if save:
         picture_output.save(pixels, save, raw)
@@ -72,8 +72,8 @@ def cam(
         typer.echo(where)
 
 
-def _cameras(bus_port: int | None) -> list[dict[str, Any]]:
-    with asking(), client.gateway(bus_port) as run:
+def _cameras(chosen: str | None) -> list[dict[str, Any]]:
+    with asking(), client.gateway(chosen) as run:
         rows = [row for row in run.ask("channels")["channels"] if row["type"] == FRAME_TYPE]
     if not rows:
         fail("the run has no cameras")
@@ -90,13 +90,13 @@ def _list(rows: list[dict[str, Any]], as_json: bool) -> None:
         typer.echo(f"{row['writer'] or 'nobody':20} {row['channel']:20} {age}")
 
 
-def _newest(name: str, bus_port: int | None) -> tuple[Pixels, str]:
-    rows = _cameras(bus_port)
+def _newest(name: str, chosen: str | None) -> tuple[Pixels, str]:
+    rows = _cameras(chosen)
     row = next((row for row in rows if name in (row["writer"], row["channel"])), None)
     if row is None:
         _unknown(name, rows)
     with asking():
-        ring = Ring.of_process(ask(bus_port, "run")["pid"], row["channel"])
+        ring = Ring.of_process(ask(chosen, "run")["pid"], row["channel"])
     newest = ring.newest() if ring else None
     if newest is None:
         fail(f"{row['channel']}: no frame yet")

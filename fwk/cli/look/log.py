@@ -11,7 +11,7 @@ import typer
 
 from fwk.cli.conditions import moment_us, pattern, ticks, times_us
 from fwk.cli.run.run_directory import RUNS, in_use, named
-from fwk.cli.run_options import BusPort, Json, ask, asking
+from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.control.address import running
 from fwk.control.client import ControlError
 from fwk.display.lines import log_line
@@ -52,7 +52,7 @@ def log(
     until: Annotated[
         str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="older than so many seconds, or until then")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Shows the lines that components and framework have written; all conditions have to hold.
@@ -71,21 +71,21 @@ def log(
         until_us=moment_us(until, "--until") if until else None,
     )
     with asking():
-        path, runs = _find(run_dir, bus_port)
+        path, runs = _find(run_dir, chosen)
         for each in read_lines(path, runs if follow else lambda: False):
             if wanted.wants(each):
                 typer.echo(json.dumps(each) if as_json else log_line(from_plain(each)))
 
 
-def _find(run_dir: Path | None, bus_port: int | None) -> tuple[Path, Callable[[], bool]]:
+def _find(run_dir: Path | None, chosen: str | None) -> tuple[Path, Callable[[], bool]]:
     """The log that is meant, and what says whether it may still grow."""
     if run_dir is None:
         try:
-            run = ask(bus_port, "run")
+            run = ask(chosen, "run")
             run_dir = Path(run["run_dir"])
         except ControlError:
             folders = sorted((Path.home() / RUNS).glob("*"))
-            if bus_port is not None or running() or not folders:
+            if chosen is not None or running() or not folders:
                 raise
             run_dir = folders[-1]
     folder = named(run_dir)

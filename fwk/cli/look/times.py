@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import Any, Literal
 
-from rich.table import Table
-
+from fwk.display.table import Column, Table
 from fwk.model.histogram import Histogram
 
 Since = Literal["start", "now", "picture"]
@@ -23,7 +22,7 @@ class Stopwatch:
         self._before: dict[str, Histogram] = {}
 
     def measure(self, answer: Mapping[str, Any]) -> dict[str, Any]:
-        """Loop, cycle, and stages and components by name."""
+        """Returns the figures of loop, cycle, stages and components, by name."""
         found = {name: Histogram.from_json(answer[name]) for name in _LOOPS}
         for kind in ("stages", "components"):
             found |= {f"{kind} {name}": Histogram.from_json(each) for name, each in answer[kind].items()}
@@ -38,7 +37,7 @@ class Stopwatch:
 
 
 def figures(times: Histogram) -> dict[str, Any]:
-    """A histogram in figures, milliseconds; `histogram` has the longest time that each bucket counts, and how many."""
+    """Returns figures of a histogram, in ms; `histogram` pairs the longest time of a bucket with its count."""
     return {
         "count": times.count,
         "mean_ms": times.mean_us / 1000,
@@ -49,15 +48,13 @@ def figures(times: Histogram) -> dict[str, Any]:
 
 
 def words(times: Mapping[str, Any]) -> list[str]:
-    """The columns of `TITLES`."""
+    """Returns the columns of `TITLES`."""
     return [f"{times[key]:.2f}" for key in ("p50_ms", "p95_ms", "p99_ms", "max_ms")]
 
 
 def stage_table(measured: Mapping[str, Any]) -> Table:
-    """A row a stage, and one for whole ticks."""
-    table = Table("stage", box=None, pad_edge=False)
-    for title in ("runs", *TITLES):
-        table.add_column(title, justify="right")
+    """Returns a table with a row for each stage, and for whole ticks."""
+    table = Table("stage", *(Column(title, right=True) for title in ("runs", *TITLES)))
     for name, times in (*measured["stages"].items(), ("loop", measured["loop"]), ("cycle", measured["cycle"])):
-        table.add_row(name, str(times["count"]), *words(times))
+        table.add(name, str(times["count"]), *words(times))
     return table

@@ -1,4 +1,4 @@
-"""`fwk top`: who takes how much, live."""
+"""`fwk top`: CPU, memory and times of each process, live."""
 
 import json
 import sys
@@ -6,42 +6,41 @@ from typing import Annotated, Any
 
 import psutil
 import typer
-from rich.console import Console, Group
+from rich.console import Console
 from rich.live import Live
-from rich.table import Table
 from rich.text import Text
 
-from fwk.cli.look.status import WIDTH_IN_A_PIPE, headline
+from fwk.cli.look.show_status import headline
 from fwk.cli.look.times import TITLES, Since, Stopwatch, stage_table, words
-from fwk.cli.run_options import BusPort, Json, asking
+from fwk.cli.output import say
+from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import sleep_s
 from fwk.control import client
 from fwk.control.client import Client
+from fwk.display.table import Column, Table, terminal_width
 
 _MEGABYTE = 1 << 20
 
 
 def top(
-    once: Annotated[bool, typer.Option("--once", help="one picture, then end")] = False,
+    once: Annotated[bool, typer.Option("--once", help="print one picture and end")] = False,
     interval_s: Annotated[
         float, typer.Option("--interval", min=0.1, max=86_400, metavar="SECONDS", help="time from picture to picture")
     ] = 1.0,
     since: Annotated[
         Since,
-        typer.Option(
-            metavar="start|now|picture", help="since when times count: the run's start, now, the last picture"
-        ),
+        typer.Option(metavar="start|now|picture", help="start of the times: the run's start, now, or the last picture"),
     ] = "start",
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Shows CPU, memory and times of each process of a run, those that take most first; Ctrl-C ends it.
+    """Shows CPU, memory and times of each process of a run, the busiest first; Ctrl-C ends it.
 
     CPU is in percent of one core. Times are wall time, exact to 6 %: of iterations, of stages, and from a tick's
-    beginning to its end (loop) and to the next one's beginning (cycle). With `--json` there is a line for each picture,
-    with the histograms in it: pairs of the longest time that a bucket counts and how many it has.
+    beginning to its end (loop) and to the next one's beginning (cycle). `--json` prints a line
+    for each picture, with the histograms: pairs of the longest time that a bucket counts and its count.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         meter = _Meter(since)
         meter.measure(run)
         sleep_s(interval_s)
@@ -52,14 +51,14 @@ def top(
 
 
 class _Meter:
-    """Measures processes; CPU is that since the last time."""
+    """Measures processes; CPU is that since the last measurement."""
 
     def __init__(self, since: Since) -> None:
         self._known: dict[int, psutil.Process] = {}
         self._stopwatch = Stopwatch(since)
 
     def measure(self, run: Client) -> dict[str, Any]:
-        """The status with `processes`: the run's own first, then each of its hosts, those that take most first.
+        """Returns the status with `processes`: the supervisor first, then the hosts, the busiest first.
 
         `times` are those of the loop, of stages and components.
         """
@@ -95,13 +94,12 @@ class _Meter:
 
 
 def _plain(run: Client, meter: _Meter, once: bool, interval_s: float, as_json: bool) -> None:
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
     while True:
         measured = meter.measure(run)
         if as_json:
             typer.echo(json.dumps(measured))
         else:
-            console.print(_picture(measured, len(measured["processes"])))
+            say(*_picture(measured, len(measured["processes"]), terminal_width()))
         if once:
             return
         sleep_s(interval_s)
@@ -112,30 +110,29 @@ def _live(run: Client, meter: _Meter, interval_s: float) -> None:
     with Live(console=console, auto_refresh=False, screen=True) as live:
         while True:
             measured = meter.measure(run)
-            live.update(_picture(measured, console.height - 9 - len(measured["times"]["stages"])), refresh=True)
+            rows = console.height - 10 - len(measured["times"]["stages"])
+            lines = _picture(measured, rows, console.width)
+            live.update(Text("\n".join(lines), no_wrap=True, overflow="crop"), refresh=True)
             sleep_s(interval_s)
 
 
-def _picture(measured: dict[str, Any], rows: int) -> Group:
-    table = Table("process", "state", box=None, pad_edge=False)
-    for title in ("pid", "CPU %", "MB", *TITLES, "lost"):
-        table.add_column(title, justify="right")
+def _picture(measured: dict[str, Any], rows: int, width: int | None) -> list[str]:
+    ranks = {"pid": 5, "CPU %": 0, "MB": 1, TITLES[0]: 2, TITLES[1]: 4, TITLES[2]: 3, TITLES[3]: 2, "lost": 1}
+    table = Table("process", Column("state", rank=2), *(Column(title, True, rank) for title, rank in ranks.items()))
     times = measured["times"]["components"]
     for row in measured["processes"][: max(1, rows)]:
         numbers = [f"{row['cpu_percent']:.0f}", f"{row['memory_bytes'] / _MEGABYTE:.0f}"]
         alone = row["components"] == [row["name"]] and row["name"] in times
         shown = words(times[row["name"]]) if alone else ["" for _ in TITLES]
-        table.add_row(row["name"], row["state"], str(row["pid"]), *numbers, *shown, str(row["lost"] or ""))
+        table.add(row["name"], row["state"], str(row["pid"]), *numbers, *shown, str(row["lost"] or ""))
         for name in [] if alone else row["components"]:
             shown = words(times[name]) if name in times else ["" for _ in TITLES]
-            table.add_row(f"  {name}", "", "", "", "", *shown, "")
-    lines = [Text(line, no_wrap=True, overflow="ellipsis") for line in headline(measured)]
-    return Group(*lines, table, _sum(measured), Text(), stage_table(measured["times"]))
+            table.add(f"  {name}", "", "", "", "", *shown, "")
+    stages = stage_table(measured["times"])
+    return [*headline(measured), *table.lines(width), _sum(measured), "", *stages.lines(width)]
 
 
-def _sum(measured: dict[str, Any]) -> Text:
+def _sum(measured: dict[str, Any]) -> str:
     cpu = sum(row["cpu_percent"] for row in measured["processes"])
     memory = sum(row["memory_bytes"] for row in measured["processes"]) / _MEGABYTE
-    return Text(
-        f"{len(measured['processes'])} processes   CPU {cpu:.0f} %   {memory:.0f} MB (shared memory counted in each)"
-    )
+    return f"{len(measured['processes'])} processes   CPU {cpu:.0f} %   {memory:.0f} MB (shared memory counted in each)"

@@ -1,5 +1,6 @@
-"""`fwk compare A B`: do two logs hold the same messages?"""
+"""`fwk compare A B`: compares the messages of two logs."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -7,6 +8,7 @@ import typer
 
 from fwk.cli.arguments import folder
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.run_options import Json
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.compare import Comparison
 
@@ -22,14 +24,20 @@ def compare(
     types: Annotated[
         Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ names the fields")
     ] = Path(),
+    as_json: Json = False,
 ) -> None:
     """Compares two logs on every channel outside fwk/ and names the first difference.
 
-    Exit code 0: the same messages; 1: different; 2: a file is unusable.
+    Exit codes: 0 the same messages; 1 different; 2 a file cannot be used.
     """
     with failing(UNUSABLE):
         use_types_of(types)
         result = Comparison(find_log(a), find_log(b), common)
+    if as_json:
+        difference = str(result.difference) if result.difference else None
+        counts = {"messages": result.messages, "channels": result.channels, "damaged_bytes": list(result.skipped_bytes)}
+        typer.echo(json.dumps({"equal": difference is None, "difference": difference, **counts}))
+        raise typer.Exit(DIFFERENT if difference else EQUAL)
     for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
         if skipped:
             typer.echo(f"{path}: {skipped} damaged bytes passed over", err=True)

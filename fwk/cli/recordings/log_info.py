@@ -1,22 +1,19 @@
-"""`fwk log-info FILE`: what is in a log."""
+"""`fwk log-info FILE`: the contents of a log."""
 
 import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
 from fwk.cli.arguments import folder
+from fwk.cli.output import say, say_table
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.display.table import Column, Table
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.log_info import ChannelInfo, LogInfo
 from fwk.recording.log_info import log_info as read_info
-
-WIDTH_IN_A_PIPE = 200
 
 
 def log_info(
@@ -33,10 +30,8 @@ def log_info(
     if as_json:
         typer.echo(json.dumps(_plain(info), indent=2))
         return
-    console = Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE)
-    for line in _summary(info):
-        console.print(line, highlight=False, markup=False, soft_wrap=True)
-    console.print(_table(info))
+    say(*_summary(info))
+    say_table(_table(info))
 
 
 def _plain(info: LogInfo) -> dict[str, Any]:
@@ -60,18 +55,18 @@ def _summary(info: LogInfo) -> list[str]:
 
 
 def _table(info: LogInfo) -> Table:
-    table = Table("channel", "type", box=None, pad_edge=False)
-    for title in ("messages", "Hz", "bytes", "ticks", "lost", "repeated", "undecodable"):
-        table.add_column(title, justify="right")
+    ranks = {"messages": 0, "Hz": 3, "bytes": 4, "ticks": 5, "lost": 1, "repeated": 6, "undecodable": 2}
+    numbers = [Column(title, right=True, rank=rank) for title, rank in ranks.items()]
+    table = Table("channel", Column("type", rank=2), *numbers)
     for name, made in info.channels.items():
         ticks = f"{made.first_tick}-{made.last_tick}" if made.first_tick is not None else ""
         counts = [str(made.messages), f"{made.rate_hz:.1f}", str(made.bytes), ticks, _lost(made)]
-        table.add_row(name, ", ".join(made.types), *counts, str(made.repeated or ""), str(made.undecodable or ""))
+        table.add(name, ", ".join(made.types), *counts, str(made.repeated or ""), str(made.undecodable or ""))
     return table
 
 
 def _lost(made: ChannelInfo) -> str:
-    """How many are missing, and where: `7 (12, 20-25)`."""
+    """Returns how many messages are missing, and where: `7 (12, 20-25)`."""
     places = [str(first) if first == last else f"{first}-{last}" for first, last in made.gaps]
     more = ", ..." if len(made.gaps) == ChannelInfo.GAPS_SHOWN else ""
     return f"{made.lost} ({', '.join(places)}{more})" if made.lost else ""

@@ -1,6 +1,6 @@
-"""`fwk replay`: recorded inputs to real components, and whether they do the same again."""
+"""`fwk replay`: feeds recorded inputs to real components and compares their outputs."""
 
-import sys
+import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -8,10 +8,11 @@ from typing import Annotated
 import typer
 
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.user_folders import use_folders
+from fwk.cli.run_options import Json
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
 from fwk.host.failures import Failure
-from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import hint
 from fwk.recording.difference import Difference
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -31,10 +32,11 @@ def replay(
     debug: Annotated[
         str | None, typer.Option(metavar="NAME", help="under pdb, from this component's next iteration on")
     ] = None,
+    as_json: Json = False,
 ) -> None:
     """Feeds recorded inputs to real components at the recorded iterations.
 
-    Drivers of devices are left alone, and so is who looks at a device's frames, unless the frames are recorded, too.
+    Drivers of devices are left out, and so are components that see a device's frames, unless these are recorded too.
 
     Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one; 2 the recording cannot be
     replayed.
@@ -47,14 +49,17 @@ def replay(
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(UNUSABLE) from error
     found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
+    if as_json:
+        typer.echo(json.dumps(_plain(done, found, verify), indent=2))
+        raise typer.Exit(DIFFERENT if verify and found else 0)
     typer.echo(f"{done.iterations} iterations replayed")
     for name, reason in done.left_out.items():
         typer.echo(f"not replayed: {name}: {reason}")
     if done.recording.skipped_bytes:
-        typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are no whole message", err=True)
+        typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are not a whole message", err=True)
     if lost := {channel: numbers for channel, numbers in done.lost.items() if numbers}:
         which = ", ".join(f"{len(lost[channel])} of {channel} (the first is {min(lost[channel])})" for channel in lost)
-        typer.echo(f"{log}: messages were lost in the run: {which}; who read them may differ", err=True)
+        typer.echo(f"{log}: messages were lost in the run: {which}; their readers may differ", err=True)
     if not verify:
         return
     if not found:
@@ -67,12 +72,21 @@ def replay(
     raise typer.Exit(DIFFERENT)
 
 
+def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, object]:
+    lost = {channel: sorted(numbers) for channel, numbers in done.lost.items() if numbers}
+    about = {"iterations": done.iterations, "left_out": done.left_out, "lost": lost, "verified": verify}
+    if not verify:
+        return about
+    first = min(found, key=lambda difference: difference.key) if found else None
+    named = replace(first, names=("the recording", "the replay")) if first else None
+    where = {"component": _component(done, first), "channel": first.channel, "tick": first.tick} if first else {}
+    counts = {"equal": not found, "compared": done.compared, "differences": len(found)}
+    return {**about, **counts, "first": {**where, "text": str(named)} if first else None}
+
+
 def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None) -> Replay:
     recording = Recording(log)
-    for folder in recording.plan.folders:
-        use_types_of(Path(folder))
-        if folder not in sys.path:
-            sys.path.append(folder)
+    use_folders(recording.plan.folders)
     made = Replay(recording, only)
     if debugged:
         _debug(made, debugged, from_tick, to_tick)
@@ -82,7 +96,7 @@ def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, deb
 
 
 def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None:
-    """As `made.run`, under pdb; ends the command when the debugger is left."""
+    """Runs the replay under pdb; ends the command when the debugger is left."""
     components = {component.name: component for component in made.recording.plan.components}
     if name not in components:
         raise RecordingError(f"--debug: no component '{name}' in this run; {hint(name, components)}")
@@ -105,7 +119,7 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
 
 
 def _component(done: Replay, difference: Difference) -> str:
-    """Whose message differs; the header says it of a channel that was opened at run time."""
+    """Returns the writer of the message; for a dynamic channel, its header names the writer."""
     plan = done.recording.plan
     declared = [plan.components[item.writer].name for item in plan.channels if item.name == difference.channel]
     return declared[0] if declared else difference.writer.partition("#")[0]

@@ -1,15 +1,19 @@
-"""`fwk runs`: the run directories, which of them stay, and removing old ones."""
+"""`fwk runs`: lists the run directories, keeps some, and removes old ones."""
 
 import json
+from dataclasses import asdict
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
+from fwk.cli.output import say_table
 from fwk.cli.run.run_directory import KEEP, RUNS, RunDir, prune, run_dirs
+from fwk.cli.run.run_record import RunRecord, age_s, read_record
 from fwk.cli.run_options import BAD_INPUT, Json
+from fwk.clock import US_PER_S
+from fwk.display.table import Column, Table
 from fwk.model.errors import hint
 from fwk.model.plan import RunsPlan
 
@@ -26,7 +30,7 @@ def _gigabytes(text: object) -> float:
     except ValueError:
         number = -1.0
     if not 0 <= number <= 1e6:
-        raise typer.BadParameter(f"'{text}' is no size; say gigabytes, such as 20 or 0.5")
+        raise typer.BadParameter(f"'{text}' is not a size; give gigabytes, such as 20 or 0.5")
     return number
 
 
@@ -34,32 +38,50 @@ def _gigabytes(text: object) -> float:
 def run_directories() -> None:
     """Lists the run directories in ~/.cache/fwk/runs, and removes old ones.
 
-    `fwk-launch` removes the oldest by itself when there are more than `runs` of the launch file says.
+    `fwk-launch` removes the oldest by itself when there are more than `runs` in the launch file allows.
     """
 
 
 @runs.command("list")
 def list_runs(as_json: Json = False) -> None:
-    """Lists all run directories, the oldest first."""
+    """Lists all run directories, the oldest first: start, duration, seed, result, size, and whether the run goes on."""
     found = run_dirs(Path.home() / RUNS)
     if as_json:
         typer.echo(json.dumps([_plain(each) for each in found], indent=2))
         return
-    table = Table("run", "MB", "", box=None, pad_edge=False)
+    table = Table(
+        "run",
+        Column("started", rank=6),
+        Column("duration", right=True, rank=3),
+        Column("ticks", right=True, rank=5),
+        Column("seed", right=True, rank=4),
+        Column("MB", right=True, rank=2),
+        Column("", rank=1),
+        Column("result", prose=True, rank=1),
+    )
     for each in found:
-        table.add_row(each.path.name, f"{each.size_bytes / _MB:.1f}", _word(each))
-    table.add_row("together", f"{sum(each.size_bytes for each in found) / _MB:.1f}", str(Path.home() / RUNS))
-    Console(width=200).print(table)
+        record = read_record(each.path)
+        seed, ticks = ("" if number is None else number for number in (record.seed, record.ticks))
+        size = f"{each.size_bytes / _MB:.1f}"
+        table.add(
+            *(each.path.name, _started(record), _duration(each, record), ticks, seed, size, _word(each)),
+            _result(each, record),
+            style="green" if each.in_use else "red" if record.exit_code else "",
+        )
+    say_table(table)
+    typer.echo(f"{len(found)} runs, {sum(each.size_bytes for each in found) / _MB:.1f} MB, in {Path.home() / RUNS}")
 
 
 @runs.command("prune")
 def prune_runs(
-    keep: Annotated[int, typer.Option(min=0, metavar="N", help="how many stay; 0: any number")] = RunsPlan.keep,
+    keep: Annotated[
+        int, typer.Option(min=0, metavar="N", help="number of runs that stay; 0: any number")
+    ] = RunsPlan.keep,
     size_gb: Annotated[
-        float, typer.Option(parser=_gigabytes, metavar="GB", help="how large they may be together; 0: any size")
+        float, typer.Option(parser=_gigabytes, metavar="GB", help="their size together; 0: any size")
     ] = RunsPlan.size_gb,
 ) -> None:
-    """Removes the oldest runs that are more than that; never the newest, one in use, or one that is kept."""
+    """Removes the oldest runs beyond these limits; never the newest, one that goes on, or one that is kept."""
     folder = Path.home() / RUNS
     for each in prune(folder, keep, round(size_gb * GB)) if folder.is_dir() else []:
         typer.echo(f"removed {each.path.name}, {each.size_bytes / _MB:.1f} MB")
@@ -67,13 +89,13 @@ def prune_runs(
 
 @runs.command("keep")
 def keep_run(run: RunName) -> None:
-    """Keeps a run directory from being removed by itself."""
+    """Keeps a run directory from being removed automatically."""
     (_named(run) / KEEP).touch()
 
 
 @runs.command("release")
 def release_run(run: RunName) -> None:
-    """Lets a run directory be removed again."""
+    """Allows a run directory to be removed again."""
     (_named(run) / KEEP).unlink(missing_ok=True)
 
 
@@ -86,8 +108,26 @@ def _named(name: str) -> Path:
 
 
 def _word(run: RunDir) -> str:
-    return "in use" if run.in_use else "kept" if run.kept else ""
+    return "running" if run.in_use else "kept" if run.kept else ""
+
+
+def _started(record: RunRecord) -> str:
+    if record.started_us is None:
+        return ""
+    return datetime.fromtimestamp(record.started_us / US_PER_S, UTC).astimezone().strftime("%Y-%m-%d %H:%M:%S")
+
+
+def _duration(run: RunDir, record: RunRecord) -> str:
+    seconds = age_s(record) if run.in_use and record.duration_s is None else record.duration_s
+    return "" if seconds is None else f"{seconds:.1f} s"
+
+
+def _result(run: RunDir, record: RunRecord) -> str:
+    if run.in_use or record.started_us is None:
+        return record.result
+    return record.result or "ended without a result"
 
 
 def _plain(run: RunDir) -> dict[str, object]:
-    return {"path": str(run.path), "size_bytes": run.size_bytes, "in_use": run.in_use, "kept": run.kept}
+    about = {"path": str(run.path), "size_bytes": run.size_bytes, "in_use": run.in_use, "kept": run.kept}
+    return {**about, **asdict(read_record(run.path))}

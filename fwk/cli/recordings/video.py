@@ -1,16 +1,17 @@
-"""`fwk video LOG -o FILE.mp4`: a recording to look at."""
+"""`fwk video LOG -o FILE.mp4`: draws a recording into a video."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from fwk.cli.arguments import folder, video_file
+from fwk.cli.output import BAD_INPUT, INTERRUPTED
 from fwk.cli.recordings.find_log import failing, find_log
-from fwk.lcm.type_registry import use_types_of
+from fwk.cli.recordings.rendering import render
+from fwk.cli.recordings.user_folders import use_folders
 from fwk.recording.replay.recording import Recording, RecordingError
-from fwk.recording.video import VideoError, drawing, render_video
+from fwk.recording.video import VideoError, drawing
 
 
 def video(
@@ -23,28 +24,31 @@ def video(
         Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
     ] = Path(),
 ) -> None:
-    """Draws a recording into an mp4 video."""
-    with failing(2):
-        use_types_of(types)
+    """Draws a recording into an mp4 video, as H.264 or VP9 where available, else as MPEG-4 part 2.
+
+    Exit codes: 0 drawn; 1 it cannot be drawn; 2 bad input. Ctrl-C leaves a video of the pictures until then.
+    """
+    with failing(BAD_INPUT):
+        use_folders([str(types)])
         file = find_log(log)
-        sys.path.append(str(types.resolve()))
         try:
-            pictures = render_video(file, out, drawing(draw or _drawing_of_run(file)))
+            lines = render(file, out, drawing(draw or _drawing_of_run(file)))
         except VideoError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(1) from error
-    typer.echo(f"{out}: {pictures} pictures")
+        except KeyboardInterrupt as interrupt:
+            raise typer.Exit(INTERRUPTED) from interrupt
+    for line in lines:
+        typer.echo(line)
 
 
 def _drawing_of_run(log: Path) -> str:
-    """What the launch file of the recorded run names; its folders become importable."""
+    """Returns the drawing that the recorded plan names; makes the folders of its run importable."""
     try:
         plan = Recording(log).plan
     except RecordingError as error:
         raise VideoError(f"{log}: no readable plan of its run in it; name the drawing with --draw") from error
     if not plan.video:
         raise VideoError(f"{plan.file}: names no drawing ('video: module:function'); name one with --draw")
-    for folder_of_run in plan.folders:
-        use_types_of(Path(folder_of_run))
-    sys.path.extend(plan.folders)
+    use_folders(plan.folders)
     return plan.video

@@ -8,7 +8,7 @@ import typer
 
 from fwk.cli.arguments import seconds
 from fwk.cli.look.bb import field_lines
-from fwk.cli.run_options import FAILED, BusPort, Json, ask, asking
+from fwk.cli.run_options import FAILED, Json, RunChoice, ask, asking
 from fwk.cli.steer.send import made
 from fwk.component.commands import ANSWERS
 from fwk.control import client
@@ -41,7 +41,7 @@ def call(
         ),
     ] = None,
     accepted: Annotated[bool, typer.Option("--accepted", help="do not wait until it is done")] = False,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Sends a command or a request to the component of a run that carries it out, and shows what becomes of it.
@@ -50,7 +50,7 @@ def call(
     """
     wanted = ("done", "accepted") if accepted else ("done",)
     with asking():
-        last = _called(name, fields or [], timeout_s, expires_s or timeout_s, accepted, bus_port)
+        last = _called(name, fields or [], timeout_s, expires_s or timeout_s, accepted, chosen)
     well = last["state"] in wanted
     if as_json:
         typer.echo(json.dumps(last))
@@ -63,35 +63,35 @@ def call(
 
 
 def _called(
-    name: str, fields: list[str], timeout_s: float, expires_s: float, accepted: bool, bus_port: int | None
+    name: str, fields: list[str], timeout_s: float, expires_s: float, accepted: bool, chosen: str | None
 ) -> dict[str, Any]:
     """The last answer, or, after the time-out, `timed_out` and what was the last until then."""
-    with client.gateway(bus_port) as gateway:
-        data = _encoded(gateway, name, fields, bus_port)
+    with client.gateway(chosen) as gateway:
+        data = _encoded(gateway, name, fields, chosen)
         last: dict[str, Any] = {}
         for answer in gateway.follow("call", timeout_s, name=name, data=data.hex(), expires_s=expires_s):
             last = {"reply": {}, "reason": "", **answer, "timed_out": False}
             if last["state"] not in ("sent", "accepted") or (accepted and last["state"] == "accepted"):
                 return last
-    return {**last, "timed_out": True, "owner": _owner(name, bus_port)}
+    return {**last, "timed_out": True, "owner": _owner(name, chosen)}
 
 
-def _owner(name: str, bus_port: int | None) -> str:
+def _owner(name: str, chosen: str | None) -> str:
     """Who carries the commands out, and how that is."""
-    with client.gateway(bus_port) as gateway:
+    with client.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
-    (component,) = ask(bus_port, "status", names=[owner])["components"]
+    (component,) = ask(chosen, "status", names=[owner])["components"]
     return f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
 
 
-def _encoded(gateway: client.Client, name: str, fields: list[str], bus_port: int | None) -> bytes:
+def _encoded(gateway: client.Client, name: str, fields: list[str], chosen: str | None) -> bytes:
     types = {row["channel"]: row["type"] for row in gateway.ask("channels")["channels"]}
     known = {channel.partition("@")[0]: kind for channel, kind in types.items() if channel.endswith(f"@{OUTSIDE}")}
     if name not in known:
         otherwise = "" if known else "no component of this run has a port for commands"
         raise RefusedError(f"nobody carries out '{name}'; {hint(name, known, otherwise)}")
-    for folder in ask(bus_port, "run")["folders"]:
+    for folder in ask(chosen, "run")["folders"]:
         use_types_of(Path(folder))
     try:
         return messages.encode(made(known[name], fields), name)

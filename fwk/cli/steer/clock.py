@@ -6,32 +6,32 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.arguments import speed as parse_speed
-from fwk.cli.run_options import BusPort, Json, Timeout, ask, asking
+from fwk.cli.run_options import Json, RunChoice, Timeout, ask, asking
 from fwk.clock import US_PER_S, speed_word
 
 
-def pause(bus_port: BusPort = None, timeout_s: Timeout = 30.0, as_json: Json = False) -> None:
+def pause(chosen: RunChoice = None, timeout_s: Timeout = 30.0, as_json: Json = False) -> None:
     """Stops simulated time after the current tick; the results of the run do not change.
 
     While a run is paused, components can be stopped, started, restarted and configured; settings apply from the next
     tick on. A run with `clock: wall` refuses.
     """
-    _ask_clock("pause", bus_port, timeout_s, as_json)
+    _ask_clock("pause", chosen, timeout_s, as_json)
 
 
-def resume(bus_port: BusPort = None, timeout_s: Timeout = 30.0, as_json: Json = False) -> None:
+def resume(chosen: RunChoice = None, timeout_s: Timeout = 30.0, as_json: Json = False) -> None:
     """Continues a paused run at its previous speed."""
-    _ask_clock("resume", bus_port, timeout_s, as_json)
+    _ask_clock("resume", chosen, timeout_s, as_json)
 
 
 def step(
     ticks: Annotated[int, typer.Argument(min=1, metavar="TICKS", help="number of ticks; 1 by default")] = 1,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     timeout_s: Timeout = 600.0,
     as_json: Json = False,
 ) -> None:
     """Runs the given number of ticks at the run's speed, then pauses, even if the run was not paused before."""
-    _ask_clock("step", bus_port, timeout_s, as_json, ticks=ticks)
+    _ask_clock("step", chosen, timeout_s, as_json, ticks=ticks)
 
 
 def speed(
@@ -41,18 +41,18 @@ def speed(
             parser=parse_speed, metavar="F|max", help="logical seconds per wall second; max: as fast as possible"
         ),
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     timeout_s: Timeout = 30.0,
     as_json: Json = False,
 ) -> None:
     """Sets the speed of simulated time from the next tick on; without a number, prints tick, time and speed."""
-    _ask_clock("speed", bus_port, timeout_s, as_json, **({} if pace is None else {"speed": pace}))
+    _ask_clock("speed", chosen, timeout_s, as_json, **({} if pace is None else {"speed": pace}))
 
 
-def _ask_clock(verb: str, bus_port: int | None, timeout_s: float, as_json: bool, **fields: Any) -> None:
+def _ask_clock(verb: str, chosen: str | None, timeout_s: float, as_json: bool, **fields: Any) -> None:
     """Sends the request, waits for its effect and prints the clock."""
     with asking():
-        answer = ask(bus_port, verb, timeout_s, **fields)
+        answer = ask(chosen, verb, timeout_s, **fields)
     if as_json:
         typer.echo(json.dumps(answer))
         return

@@ -1,30 +1,27 @@
-"""`fwk config`: the settings of a run, where they come from, and live changes."""
+"""`fwk config`: settings of a run with their origins, and live changes."""
 
 import json
-import sys
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
 
 from fwk.cli.conditions import pattern
-from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, Json, asking
+from fwk.cli.output import say_table
+from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
 from fwk.control import client
 from fwk.control.client import ControlError
 from fwk.control.host_file import KeepError, Kept, forget, keep
 from fwk.control.requests import RequestError
 from fwk.control.settings import RunSettings
 from fwk.control.settings_diff import differences
+from fwk.display.table import Column, Table
 from fwk.model.errors import PlanError
 from fwk.plan.classes import UnusableError
 from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
 from fwk.plan.files.launch_file import host_file, shown
 from fwk.plan.load import load_plan
 
-WIDTH_IN_A_PIPE = 200
 config = typer.Typer(add_completion=False, no_args_is_help=True)
 SomeSettings = Annotated[
     list[str] | None,
@@ -32,7 +29,7 @@ SomeSettings = Annotated[
 ]
 
 LaunchFile = Annotated[
-    str | None, typer.Option("--file", metavar="FILE", help="as a launch file says it, instead of a run")
+    str | None, typer.Option("--file", metavar="FILE", help="settings of this launch file, not of a run")
 ]
 
 
@@ -43,26 +40,26 @@ def settings() -> None:
 
 @config.command("list")
 def list_settings(
-    names: SomeSettings = None, file: LaunchFile = None, bus_port: BusPort = None, as_json: Json = False
+    names: SomeSettings = None, file: LaunchFile = None, chosen: RunChoice = None, as_json: Json = False
 ) -> None:
     """Lists every effective setting with its origin and meaning."""
-    _show(_rows(names or [], file, bus_port), as_json)
+    _show(_rows(names or [], file, chosen), as_json)
 
 
 @config.command()
 def search(
     text: Annotated[
-        str, typer.Argument(metavar="REGEXP", help="found in name, value, origin or meaning, in capitals or not")
+        str, typer.Argument(metavar="REGEXP", help="matched against name, value, origin and meaning, ignoring case")
     ],
     file: LaunchFile = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Lists the settings in which a text is found; exit code 1 if there is none."""
+    """Lists the settings that match a text; exit code 1 if none does."""
     wanted = pattern(text, "REGEXP")
-    rows = [row for row in _rows([], file, bus_port) if any(map(wanted.search, _texts(row)))]
+    rows = [row for row in _rows([], file, chosen) if any(map(wanted.search, _texts(row)))]
     if not rows and not as_json:
-        typer.echo(f"error: '{text}' is found in no setting", err=True)
+        typer.echo(f"error: no setting matches '{text}'", err=True)
         raise typer.Exit(FAILED)
     _show(rows, as_json)
 
@@ -74,9 +71,10 @@ def schema(
     ] = "",
     host: Annotated[bool, typer.Option("--host", help="of host-specific files, NAME.host.yaml")] = False,
 ) -> None:
-    """Prints the JSON Schema of launch files, with all settings and ports of the components that are found from here.
+    """Prints the JSON Schema of launch files, with all settings and ports of the components found from here.
 
-    With FILE it knows the names of its components, too. Editors complete and check with it; see docs/launch-file.md.
+    With FILE, the schema also knows the names of its components. Editors use it to complete and check launch files; see
+    docs/launch-file.md.
     """
     try:
         if of.endswith((".yaml", ".yml")):
@@ -95,11 +93,11 @@ def schema(
 def get(
     path: Annotated[str, typer.Argument(metavar="NAME.SETTING", help="such as cyan1/omni_ball.gain")],
     file: LaunchFile = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Prints the value of a setting; of several, if the name is a pattern, one a line with its own name."""
-    rows = _rows([path], file, bus_port)
+    """Prints the value of a setting; for a pattern, a line with name and value for each match."""
+    rows = _rows([path], file, chosen)
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
     elif len(rows) == 1:
@@ -114,17 +112,18 @@ def set_settings(
     changes: Annotated[
         list[str], typer.Argument(metavar="NAME.SETTING=VALUE...", help="such as cyan1/omni_ball.gain=0.5")
     ],
-    save: Annotated[bool, typer.Option("--save", help="keep them in the host-specific file for later runs")] = False,
-    bus_port: BusPort = None,
+    save: Annotated[
+        bool, typer.Option("--save", help="also keep them in the host-specific file for later runs")
+    ] = False,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Changes settings between two ticks, all of them or none; says since which tick the components have them.
+    """Changes settings between two ticks, all of them or none, and prints the tick from which on they apply.
 
-    `--save` keeps them in NAME.host.yaml beside the launch file NAME.yaml, before they are set. If that fails, nothing
-    is changed.
+    `--save` first keeps them in NAME.host.yaml beside the launch file NAME.yaml. If that fails, nothing is changed.
     """
     origin = "fwk config set"
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         if save:
             run.ask("set", changes=changes, check=True)
             file = host_file(Path(run.ask("run")["file"]))
@@ -143,14 +142,14 @@ def set_settings(
 @config.command()
 def unset(
     paths: Annotated[list[str], typer.Argument(metavar="NAME.SETTING...", help="such as cyan1/omni_ball.gain")],
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Takes settings out of the host-specific file, all or none; the run takes over what the files say then.
+    """Removes settings from the host-specific file, all or none; the run gets the values of the other files.
 
-    NAME is what was typed with `fwk config set --save`, a pattern for example.
+    NAME is the name or pattern that was typed with `fwk config set --save`.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         run.ask("settings", names=paths)
         try:
             forget(host_file(Path(run.ask("run")["file"])), paths)
@@ -161,13 +160,13 @@ def unset(
 
 
 @config.command()
-def reload(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
-    """Reads the launch files again and takes over what they say otherwise of settings.
+def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = False) -> None:
+    """Reads the launch files again and applies changed settings.
 
-    What was typed with --set when the run began stays; live changes that were not kept are undone. Settings that
-    cannot be changed while the run goes on are named.
+    Settings given with --set at the start stay; live changes that were not kept are undone. Settings that cannot be
+    changed during a run are named.
     """
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         _take_over(run, names or [], "fwk config reload", as_json)
 
 
@@ -185,15 +184,15 @@ def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool)
     for each in later:
         typer.echo(f"{each}: from the next run on")
     if not changes:
-        typer.echo("the files say nothing else")
+        typer.echo("no setting in the files has changed")
     else:
         _say(answer, "")
 
 
 @config.command()
-def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = False) -> None:
+def watch(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Shows each change of a setting as it happens, until the run ends."""
-    with asking(), client.supervisor(bus_port) as run:
+    with asking(), client.supervisor(chosen) as run:
         known: dict[str, Any] = {}
         for answer in run.follow("watch_settings", names=names or []):
             now = {_path(row): row for row in answer["settings"]}
@@ -206,10 +205,10 @@ def watch(names: SomeSettings = None, bus_port: BusPort = None, as_json: Json = 
                     typer.echo(f"tick {answer['tick']}: {path} = {_value(row['value'])} ({row['origin']})")
 
 
-def _rows(names: list[str], file: str | None, bus_port: int | None) -> list[dict[str, Any]]:
+def _rows(names: list[str], file: str | None, chosen: str | None) -> list[dict[str, Any]]:
     with asking():
         if file is None:
-            with client.supervisor(bus_port) as run:
+            with client.supervisor(chosen) as run:
                 found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
             return found
         try:
@@ -223,11 +222,18 @@ def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
     if as_json:
         typer.echo(json.dumps(rows, indent=2))
         return
-    table = Table("setting", "value", "type", "live", "origin", "meaning", box=None, pad_edge=False)
+    table = Table(
+        "setting",
+        "value",
+        Column("type", rank=3),
+        Column("live", rank=4),
+        Column("origin", rank=2),
+        Column("meaning", rank=1, prose=True),
+    )
     for row in rows:
-        path, value, kind, *others = map(escape, _texts(row))
-        table.add_row(path, value, kind, "yes" if row["editable"] else "no", *others)
-    Console(width=None if sys.stdout.isatty() else WIDTH_IN_A_PIPE).print(table)
+        path, value, kind, *others = _texts(row)
+        table.add(path, value, kind, "yes" if row["editable"] else "no", *others)
+    say_table(table)
 
 
 def _texts(row: dict[str, Any]) -> tuple[str, ...]:
@@ -235,7 +241,7 @@ def _texts(row: dict[str, Any]) -> tuple[str, ...]:
 
 
 def _value(value: object) -> str:
-    """A value as people type it, also in other scripts than Latin."""
+    """Returns a value as people type it, in any script."""
     return json.dumps(value, ensure_ascii=False)
 
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, ask, asking
+from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, ask, asking
 from fwk.control import client
 from fwk.control.client import ControlError, RefusedError
 from fwk.host.attach import NoPlace, Place
@@ -31,7 +31,7 @@ def debug(
     no_debugger: Annotated[
         bool, typer.Option("--no-debugger", help="only start it by hand, here; Ctrl-C gives it back")
     ] = False,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
 ) -> None:
     """Runs one component of a running system in this terminal under pdb; leaving the debugger gives it back.
 
@@ -42,7 +42,7 @@ def debug(
     if debugpy and no_debugger:
         raise typer.BadParameter("--debugpy and --no-debugger exclude each other; keep one")
     with asking():
-        port = client.find_run(bus_port)
+        port = client.find_run(chosen)
         run = ask(port, "run")
         place = _place(run, port, name, no_debugger, debugpy or 0)
     code = run_guarded(place.take, run["pid"])

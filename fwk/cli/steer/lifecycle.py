@@ -1,11 +1,16 @@
 """`fwk start`, `stop`, `restart`, `reload`, `load`, `unload` and `kill`: the life of components in a run."""
 
 import json
+import os
+import select
+import signal
 from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import FAILED, BusPort, Json, Names, Timeout, ask, asking
+from fwk.cli.run_options import FAILED, Json, Names, RunChoice, SomeNames, Timeout, ask, asking
+from fwk.control import client
+from fwk.control.client import NoAnswerError, RefusedError
 from fwk.control.requests import Action
 
 WAIT_S = 30.0
@@ -15,8 +20,8 @@ _EXIT_CODES = "Exit code 0: done; 1: a component failed, or the time-out passed;
 def _command(action: Action, explanation: str) -> Any:
     """Returns the typer function of one action; `explanation` is its help."""
 
-    def command(names: Names, bus_port: BusPort = None, timeout_s: Timeout = WAIT_S, as_json: Json = False) -> None:
-        _steer(action, names, bus_port, timeout_s, as_json)
+    def command(names: Names, chosen: RunChoice = None, timeout_s: Timeout = WAIT_S, as_json: Json = False) -> None:
+        _steer(action, names, chosen, timeout_s, as_json)
 
     command.__doc__ = f"{explanation}\n    {_EXIT_CODES}"
     return command
@@ -27,12 +32,6 @@ start = _command(
     """Starts components that were stopped or have failed.
 
     Their channels continue with the next sequence number. A component is refused while its needs do not run.""",
-)
-stop = _command(
-    "stop",
-    """Stops components between two ticks: they finalize and leave the loop.
-
-    Their last messages stay visible to readers. Stopped components do not start again by themselves.""",
 )
 restart = _command(
     "restart",
@@ -61,10 +60,31 @@ kill = _command(
 )
 
 
+def stop(
+    names: SomeNames = None,
+    whole: Annotated[bool, typer.Option("--all", help="end the whole run, as Ctrl-C in its terminal does")] = False,
+    chosen: RunChoice = None,
+    timeout_s: Timeout = WAIT_S,
+    as_json: Json = False,
+) -> None:
+    """Stops components between two ticks: they finalize and leave the loop. With --all, ends the run.
+
+    The last messages of stopped components stay visible to readers. Stopped components do not start again by
+    themselves.
+    Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
+    """
+    if bool(names) == whole:
+        raise typer.BadParameter("name components, or end the whole run with --all")
+    if whole:
+        _end_run(chosen, timeout_s, as_json)
+    else:
+        _steer("stop", names or [], chosen, timeout_s, as_json)
+
+
 def unload(
     names: Names,
     force: Annotated[bool, typer.Option("--force", help="also unload the components that need them")] = False,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
     timeout_s: Timeout = WAIT_S,
     as_json: Json = False,
 ) -> None:
@@ -75,15 +95,34 @@ def unload(
     and the answer names it.
     Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
     """
-    _steer("unload", names, bus_port, timeout_s, as_json, force)
+    _steer("unload", names, chosen, timeout_s, as_json, force)
+
+
+def _end_run(chosen: str | None, timeout_s: float, as_json: bool) -> None:
+    """Interrupts the process of the run, which the kernel names, and waits until it has ended."""
+    with asking():
+        with client.supervisor(chosen) as run:
+            about = run.ask("run")
+            if run.pid != about["pid"]:
+                raise RefusedError(f"process {about['pid']} of the run is not visible from here; end it there")
+            process = os.pidfd_open(run.pid)
+            signal.pidfd_send_signal(process, signal.SIGINT)
+        ended = bool(select.select([process], [], [], timeout_s)[0])
+        os.close(process)
+        if not ended:
+            raise NoAnswerError(f"{about['name']}: not ended within {timeout_s:g} s; pid {about['pid']}")
+    if as_json:
+        typer.echo(json.dumps({key: about[key] for key in ("name", "pid", "run_dir")}))
+    else:
+        typer.echo(f"{about['name']}: ended; run directory: {about['run_dir']}")
 
 
 def _steer(
-    action: Action, names: list[str], bus_port: int | None, timeout_s: float, as_json: bool, force: bool = False
+    action: Action, names: list[str], chosen: str | None, timeout_s: float, as_json: bool, force: bool = False
 ) -> None:
     """Sends the request, waits for its effect and prints it; exit code 1 if a component failed."""
     with asking():
-        answer = ask(bus_port, "steer", timeout_s, action=action, names=names, force=force)
+        answer = ask(chosen, "steer", timeout_s, action=action, names=names, force=force)
     if as_json:
         typer.echo(json.dumps(answer))
     else:

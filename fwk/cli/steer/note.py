@@ -4,14 +4,14 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.run_options import BusPort, ask, asking
+from fwk.cli.run_options import RunChoice, ask, asking
 
 
 def note(
     text: Annotated[list[str], typer.Argument(metavar="TEXT", help="what there is to say about this moment")],
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
 ) -> None:
     """Writes a line into the log and the recording of a run, so that the moment is found again; says at which tick."""
     with asking():
-        answer = ask(bus_port, "note", text=" ".join(text))
+        answer = ask(chosen, "note", text=" ".join(text))
     typer.echo(f"noted, tick {answer['tick']}")

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.bus.public import PublicBus
-from fwk.cli.run_options import BAD_INPUT, FAILED, BusPort, asking
+from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, asking
 from fwk.control import client
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
@@ -20,16 +20,16 @@ def send(
     fields: Annotated[
         list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
     ] = None,
-    bus_port: BusPort = None,
+    chosen: RunChoice = None,
 ) -> None:
     """Publishes one message on the public bus of a run, on a channel that programs outside may write.
 
     The run stamps it when it takes it, between two ticks.
     """
     with asking():
-        with client.gateway(bus_port) as board:
+        with client.gateway(chosen) as board:
             rows = {row["channel"]: row for row in board.ask("channels")["channels"]}
-        with client.supervisor(bus_port) as run:
+        with client.supervisor(chosen) as run:
             about = run.ask("run")
     try:
         row = rows.get(channel)

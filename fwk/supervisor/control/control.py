@@ -145,6 +145,7 @@ class Control:
     def _run(self) -> dict[str, Any]:
         record, plan = self._options.record, self._plan
         return {
+            "name": self._options.name or plan.name,
             "plan": plan.name,
             "file": plan.file,
             "folders": list(plan.folders),

@@ -13,10 +13,10 @@ from typer import Typer
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from fwk.cli import launch as launching
 from fwk.cli.commands import app as fwk
-from fwk.cli.launch import app as fwk_launch
 from fwk.cli.look.bb import _message
+from fwk.cli.run import launch_command as launching
+from fwk.cli.run.launch_command import app as fwk_launch
 from fwk.cli.steer.send import made
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages

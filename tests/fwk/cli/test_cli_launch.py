@@ -13,7 +13,7 @@ import yaml
 from typer.testing import CliRunner
 
 from fwk.bus.port_lock import PortLock
-from fwk.cli.launch import app
+from fwk.cli.run.launch_command import app
 from fwk.lcm.event_log import LogReader
 from fwk.model.ports import Ports
 from tests.fwk.cli.cli_processes import PROCS, TIMEOUT_S, environment, launch, write_files

@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 from typer.main import get_command
 
-from fwk.cli import commands, launch
+from fwk.cli import commands
+from fwk.cli.run import launch_command
 
 ROOT = Path(__file__).parents[3]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -37,7 +38,7 @@ def test_what_the_readme_launches_is_there() -> None:
 
 def command_of(words: list[str]) -> Any:
     """The command that the words begin with, or one of its groups."""
-    found: Any = get_command(launch.app if words[0] == "fwk-launch" else commands.app)
+    found: Any = get_command(launch_command.app if words[0] == "fwk-launch" else commands.app)
     for word in words[1:]:
         below = getattr(found, "commands", {})
         if word not in below:

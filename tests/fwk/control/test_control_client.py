@@ -1,39 +1,114 @@
-"""Which run is meant: the named one, or the only one."""
+"""Which run a command means: the named one, the one in FWK_RUN, or the only one."""
 
+import os
 import re
+import socket
+from collections.abc import Iterator
 
 import pytest
 
 from fwk.control import address, client
-from fwk.control.client import ControlError
+from fwk.control.client import Client, ControlError, RefusedError
+
+RUNS = {1: {"name": "match", "plan": "soccer", "pid": 11}, 2: {"name": "solo", "plan": "soccer", "pid": 22}}
+
+
+@pytest.fixture
+def runs(monkeypatch: pytest.MonkeyPatch) -> dict[int, dict[str, object]]:
+    """The runs that exist; a test may add and remove some."""
+    found: dict[int, dict[str, object]] = {port: dict(run) for port, run in RUNS.items()}
+    monkeypatch.delenv(client.RUN_VARIABLE, raising=False)
+    monkeypatch.setattr(address, "running", lambda: sorted(found))
+    monkeypatch.setattr(client, "look", lambda: found)
+    return found
 
 
 @pytest.mark.parametrize(
     ("ports", "typed", "answer"),
     [
         ([], None, "nothing runs on this machine; start something with: fwk-launch FILE"),
-        ([], 17700, "no run on this machine has --bus-port 17700"),
-        ([1, 2], None, "several runs are on this machine; say which: --bus-port 1 or 2"),
-        ([1], 2, "no run on this machine has --bus-port 2; there is one with --bus-port 1"),
+        ([], "17700", "no run '17700' on this machine"),
+        ([1, 2], None, "several runs on this machine; choose one: --run match (soccer, pid 11) or --run solo"),
+        ([1], "2", "no run '2' on this machine; there is --run match (soccer, pid 11)"),
+        ([1], "mach", "no run 'mach' on this machine; there is --run match"),
     ],
 )
-def test_what_is_not_clear_is_asked(
-    monkeypatch: pytest.MonkeyPatch, ports: list[int], typed: int | None, answer: str
+def test_an_unclear_choice_is_refused(
+    runs: dict[int, dict[str, object]], ports: list[int], typed: str | None, answer: str
 ) -> None:
-    monkeypatch.setattr(address, "running", lambda: ports)
+    for port in set(runs) - set(ports):
+        del runs[port]
     with pytest.raises(ControlError, match=re.escape(answer)):
         client.find_run(typed)
 
 
-@pytest.mark.parametrize(("ports", "typed", "found"), [([5], None, 5), ([5, 6], 6, 6)])
-def test_the_only_one_or_the_named_one_is_found(
-    monkeypatch: pytest.MonkeyPatch, ports: list[int], typed: int | None, found: int
-) -> None:
-    monkeypatch.setattr(address, "running", lambda: ports)
+def test_runs_of_one_name_are_told_apart_by_port(runs: dict[int, dict[str, object]]) -> None:
+    runs[2]["name"] = "match"
+    with pytest.raises(RefusedError, match=r"several runs are called 'match'; .*--run 1 .* or --run 2 "):
+        client.find_run("match")
+
+
+@pytest.mark.parametrize(("typed", "found"), [("solo", 2), ("match", 1), ("2", 2), (2, 2)])
+def test_a_run_is_found_by_name_or_port(runs: dict[int, dict[str, object]], typed: str | int, found: int) -> None:
     assert client.find_run(typed) == found
+
+
+def test_the_environment_names_the_default_run(
+    runs: dict[int, dict[str, object]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("FWK_RUN", "solo")
+    assert client.find_run(None) == 2
+    assert client.find_run("match") == 1
+
+
+def test_the_only_run_needs_no_name(runs: dict[int, dict[str, object]]) -> None:
+    del runs[1]
+    assert client.find_run(None) == 2
 
 
 def test_a_run_that_has_just_ended_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(address, "running", lambda: [1])
     with pytest.raises(ControlError, match="does not answer"):
-        client.supervisor(1)
+        client.supervisor("1")
+
+
+@pytest.fixture
+def bound() -> Iterator[list[socket.socket]]:
+    made: list[socket.socket] = []
+    yield made
+    for each in made:
+        each.close()
+
+
+def test_socket_names_of_any_bytes_hide_no_run(bound: list[socket.socket]) -> None:
+    port = 60000 + os.getpid() % 5000
+    own = b"-%d" % os.getpid()
+    others = (b"\xff\xfe", b"fwk-control-\xff\xfe", b"fwk-control-", b"fwk-control-x1")
+    for name in (*(other + own for other in others), b"fwk-control-%d" % port):
+        bound.append(socket.socket(socket.AF_UNIX, socket.SOCK_STREAM))
+        bound[-1].bind(b"\0" + name)
+    assert port in address.running()
+
+
+def test_the_socket_of_another_user_is_not_asked(bound: list[socket.socket], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(address, "peer_of", lambda _: (1, os.geteuid() + 1))
+    monkeypatch.setattr(address, "trusts", lambda uid: uid == os.geteuid())
+    squatter = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    bound.append(squatter)
+    name = f"\0fwk-control-test-{os.getpid()}"
+    squatter.bind(name)
+    squatter.listen()
+    with pytest.raises(ControlError, match=f"belongs to user {os.geteuid() + 1}, not to you"):
+        Client(name)
+    accepted, _ = squatter.accept()
+    assert accepted.recv(100) == b""
+    accepted.close()
+
+
+def test_root_may_use_the_runs_of_all_users(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(os, "geteuid", lambda: 1000)
+    assert address.trusts(1000)
+    assert address.trusts(0)
+    assert not address.trusts(1001)
+    monkeypatch.setattr(os, "geteuid", lambda: 0)
+    assert address.trusts(1001)

@@ -78,8 +78,8 @@ def test_a_request_in_pieces_is_answered_once(listening: Server, connect: Connec
 @pytest.mark.parametrize(
     ("line", "error"),
     [
-        (b"hello", "no request: Invalid JSON"),
-        (b"[]", "no request"),
+        (b"hello", "not a request: Invalid JSON"),
+        (b"[]", "not a request"),
         (b"{}", "verb"),
         (b'{"verb": "explode"}', "does not match any of the expected tags"),
         (b'{"verb": "steer", "action": "explode", "names": []}', "steer.action: Input should be 'start', 'stop'"),
@@ -87,8 +87,8 @@ def test_a_request_in_pieces_is_answered_once(listening: Server, connect: Connec
         (b'{"verb": "status", "name": "x"}', "Extra inputs are not permitted"),
         (b'{"verb": "status", "names": "x"}', "Input should be a valid array"),
         (b'{"verb": "status", "names": ["' + b"x" * 300 + b'"]}', "at most 200 characters"),
-        (b"\xff\xfe", "no request"),
-        (b"[" * 60_000, "no request"),
+        (b"\xff\xfe", "not a request"),
+        (b"[" * 60_000, "not a request"),
     ],
 )
 def test_what_is_no_request_is_refused_and_the_next_one_answered(
@@ -172,12 +172,40 @@ def test_a_stream_leaves_out_what_is_not_read_and_counts_it(listening: Server, c
     assert len(first) + before == 30
 
 
-def test_only_so_many_may_be_connected(listening: Server, connect: Connect) -> None:
-    many = [connect() for _ in range(server.CONNECTIONS_MAX + 1)]
-    for _ in range(2 * len(many)):
+def test_connections_in_use_are_limited(listening: Server, connect: Connect) -> None:
+    listening._answer = lambda *_: None  # answered later, as a pause is
+    for _ in range(server.CONNECTIONS_MAX):
+        connect().sendall(b"x\n")
+    for _ in range(2 * server.CONNECTIONS_MAX):
         listening.handle()
-    (answer,) = answers(listening, many[-1])
-    assert "connections already" in answer["error"]
+    (answer,) = answers(listening, connect())
+    assert "connections are open and in use already" in answer["error"]
+
+
+def test_idle_connections_give_way(listening: Server, connect: Connect) -> None:
+    idle = [connect() for _ in range(server.CONNECTIONS_MAX)]
+    for _ in range(2 * len(idle)):
+        listening.handle()
+    idle[0].sendall(b'{"verb":"run"}\n')
+    assert answers(listening, idle[0])[0]["ok"]
+    newest = connect()
+    newest.sendall(b'{"verb":"run"}\n')
+    assert answers(listening, newest) == [{"ok": True, "verb": "run"}]
+    assert "disconnected: idle" in answers(listening, idle[1])[0]["error"]  # the oldest that never asked
+    idle[0].sendall(b'{"verb":"run"}\n')
+    assert answers(listening, idle[0]) == [{"ok": True, "verb": "run"}]
+
+
+def test_a_name_that_is_taken_is_refused_with_advice(listening: Server) -> None:
+    with pytest.raises(server.ControlNameError, match="another process has the control socket @fwk-test-control"):
+        Server(ADDRESS, echo)
+
+
+@pytest.mark.parametrize("brackets", ["[", "{", "[{", "[[]"])
+def test_a_deeply_nested_value_is_refused_at_once(brackets: str) -> None:
+    request = {"verb": "set", "changes": [f"a/b.levels={brackets * 1500}"]}
+    with pytest.raises(RequestError, match="may be nested 32 deep"):
+        parsed(to_supervisor, json.dumps(request).encode())
 
 
 def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The display process on a real terminal and on a pipe."""
 
+import fcntl
 import io
 import os
 import pty
@@ -7,12 +8,16 @@ import signal
 import socket
 import subprocess
 import sys
+import termios
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import pytest
 
 from fwk.display import display as display_module
+from fwk.display.floods import PRINTED_MAX, FloodGate, LineGroups
+from fwk.display.keys import Keyboard, restore
+from fwk.display.steering import Steering
 from fwk.display.view import View
 from lcmtypes.core import log_t, status_t
 from lcmtypes.soccer import game_state_t
@@ -30,11 +35,18 @@ run_display(plan("tests.fwk.cli.cli_runs:headline"), socket.socket(fileno=int(sy
 class Display:
     """A display process; `send` what the supervisor would, `read` what it shows."""
 
-    def __init__(self, style: str, terminal: bool) -> None:
+    def __init__(self, style: str, terminal: bool, keys: bool = False) -> None:
         self._supervisor, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._out, out = pty.openpty() if terminal else os.pipe()
         command = [sys.executable, "-c", PROGRAM, str(end.fileno()), style]
-        self.process = subprocess.Popen(command, stdout=out, pass_fds=[end.fileno()])
+        self.process = subprocess.Popen(
+            command,
+            stdin=out if keys else subprocess.DEVNULL,
+            stdout=out,
+            pass_fds=[end.fileno()],
+            start_new_session=keys,
+            preexec_fn=(lambda: fcntl.ioctl(1, termios.TIOCSCTTY, 0)) if keys else None,
+        )
         end.close()
         os.close(out)
         self.shown = ""
@@ -44,6 +56,9 @@ class Display:
 
     def send_raw(self, data: bytes) -> None:
         self._supervisor.send(data)
+
+    def type(self, keys: bytes) -> None:
+        os.write(self._out, keys)
 
     def read_until(self, text: str) -> None:
         while text not in self.shown:
@@ -70,8 +85,8 @@ class Display:
 def start() -> Iterator[Callable[..., Display]]:
     with _ended([]) as started:
 
-        def start(style: str = "live", terminal: bool = True) -> Display:
-            started.append(Display(style, terminal))
+        def start(style: str = "live", terminal: bool = True, keys: bool = False) -> Display:
+            started.append(Display(style, terminal, keys))
             return started[-1]
 
         yield start
@@ -118,7 +133,7 @@ def test_while_a_run_stands_still_nothing_is_written_into_a_debuggers_terminal(m
         for tick, repeated in ((77, 1), (77, 50), (77, 100), (78, 100)):
             supervisor.send(packet("fwk/status", status(TRACKER, tick, repeated=repeated)))
         supervisor.close()
-        display_module.show_lines(view, end, out)
+        display_module.show_lines(view, end, out, Steering(1))
     assert [line.split()[1] for line in out.getvalue().splitlines()] == ["77", "78"]
 
 
@@ -156,3 +171,131 @@ def test_a_packet_that_does_not_decode_is_passed_over(start: Callable[..., Displ
     display.send("fwk/status", status(TRACKER, 5))
     assert display.close() == 0
     assert display.shown.startswith("tick 5 ")
+
+
+class Answers(Steering):
+    """Answers as a run would, and notes what was asked."""
+
+    def __init__(self) -> None:
+        super().__init__(1)
+        self.asked: list[object] = []
+
+    def waits_for(self) -> list[str]:
+        return ["cyan1/tracker", "cyan1/camera"]
+
+    def speed(self) -> float:
+        return 1.0
+
+    def quit(self) -> None:
+        self.asked.append("quit")
+
+    def _clock(self, verb: str, **fields: object) -> None:
+        self.asked.append((verb, *fields.values()))
+
+
+def test_a_run_that_stands_still_names_whom_it_waits_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_us = [1_000_000]
+    for module in ("fwk.display.view", "fwk.display.display"):
+        monkeypatch.setattr(f"{module}.monotonic_us", lambda: now_us[0])
+    view, out = View(plan()), io.StringIO()
+    packets = [packet("fwk/status", status(TRACKER, 77))] + [b""] * 30
+
+    def arriving(*_: object) -> Iterator[bytes]:
+        for each in packets:
+            yield each
+            now_us[0] += 500_000
+
+    monkeypatch.setattr(display_module, "_packets", arriving)
+    display_module.show_lines(view, socket.socket(), out, Answers())
+    said = [line for line in out.getvalue().splitlines() if "waits for" in line]
+    assert said == [f"tick 77   waits for cyan1/tracker, cyan1/camera, {seconds} s" for seconds in (1, 11)]
+
+
+def test_a_flood_of_lines_is_counted(start: Callable[..., Display]) -> None:
+    display = start(terminal=False)
+    for number in range(50):
+        display.send("fwk/log", log(f"loop time missed: cyan1/part{number} took {number}.5 ms"))
+    display.send("fwk/log", log("found the ball"))
+    assert display.close() == 0
+    lines = display.shown.splitlines()
+    assert len(lines) == PRINTED_MAX + 2
+    assert f"... {50 - PRINTED_MAX} more info lines like: cyan1/tracker: loop time missed" in display.shown
+    assert "found the ball" in display.shown
+
+
+def test_lines_that_differ_are_no_flood() -> None:
+    gate, groups = FloodGate(), LineGroups(10)
+    texts = ["found the ball", "lost the ball", "found the goal", "lost the goal", "kicked", "stopped", "turned"]
+    assert all(gate.passes(log(text)) for text in texts)
+    for text in texts:
+        groups.add(log(text))
+    assert [group.text for group in groups] == texts
+    groups.add(log("kicked"))
+    assert [group.text for group in groups][-1] == "kicked (and 1 like it)"
+
+
+KEYS = {
+    "p": ("pause",),
+    " ": ("pause",),
+    "s": ("step", 1),
+    "+": ("speed", 2.0),
+    "-": ("speed", 0.5),
+    "m": ("speed", 0.0),
+    "q": "quit",
+}
+
+
+@pytest.mark.parametrize("typed", KEYS)
+def test_keys_steer_the_run(typed: str) -> None:
+    view, steering = View(plan()), Answers()
+    view.take(packet("fwk/status", status(TRACKER, 5)))
+    display_module.press("space" if typed == " " else typed, view, steering)
+    assert steering.asked == [KEYS[typed]]
+
+
+def test_the_key_of_a_paused_run_resumes_it() -> None:
+    view, steering = View(plan()), Answers()
+    view.take(packet("fwk/status", status(TRACKER, 5, paused=True)))
+    display_module.press("space", view, steering)
+    assert steering.asked == [("resume",)]
+
+
+def test_keys_choose_a_component_and_a_level() -> None:
+    view, steering = View(plan()), Answers()
+    view.take(packet("fwk/status", status(TRACKER, 5)))
+    view.take(packet("fwk/log", log("found the ball", log_t.WARNING)))
+    chosen = []
+    for _ in range(4):
+        display_module.press("tab", view, steering)
+        chosen.append((view.selected, len(view.shown_lines())))
+    assert chosen == [("cyan1", 1), ("cyan1/camera", 0), ("cyan1/tracker", 1), ("", 1)]
+    for _ in range(3):
+        display_module.press("l", view, steering)
+    assert view.shown_lines() == []
+    display_module.press("escape", view, steering)
+    assert len(view.shown_lines()) == 1
+
+
+def test_a_terminal_is_given_back_as_it_was() -> None:
+    screen, terminal = pty.openpty()
+    before = termios.tcgetattr(terminal)
+    with Keyboard(terminal) as keyboard:
+        assert termios.tcgetattr(terminal) != before
+        os.write(screen, b"q \x1b[Bx\x1b")
+        assert keyboard.read() == ["q", "space", "down", "x", "escape"]
+    assert termios.tcgetattr(terminal) == before
+    restore(None, None)
+    os.close(screen)
+    os.close(terminal)
+
+
+def test_keys_reach_the_display_on_a_terminal(start: Callable[..., Display]) -> None:
+    display = start(keys=True)
+    display.send("fwk/status", status(TRACKER, 77))
+    display.read_until("q quit")
+    display.type(b"\t")
+    display.read_until("lines of cyan1")
+    display.type(b"l")
+    display.read_until("level info")
+    assert display.close() == 0
+    assert SHOW_CURSOR in display.shown

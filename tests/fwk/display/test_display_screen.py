@@ -10,6 +10,7 @@ from fwk.display.view import View
 from lcmtypes.core import log_t, status_t
 from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, log, packet, plan, status
 
+DRAWING = "tests.fwk.cli.cli_drawing:headline"
 SCOREBOARD = "tests.fwk.cli.cli_runs:headline"
 
 
@@ -22,7 +23,7 @@ def drawn(*statuses: status_t, rows: int = 40, columns: int = 120, lines: int = 
         view.take(packet("fwk/log", log(f"line {number} " + "long " * 50, log_t.WARNING)))
     console = Console(width=columns, height=rows, file=StringIO(), color_system=None)
     with console.capture() as captured:
-        console.print(screen(view, rows))
+        console.print(screen(view, rows, columns))
     return captured.get().splitlines()
 
 
@@ -86,3 +87,64 @@ def test_losses_are_counted_in_the_sum_and_in_the_row() -> None:
 
 def test_before_the_first_status_it_says_that_it_starts() -> None:
     assert "starting ..." in drawn()
+
+
+@pytest.mark.parametrize(("rows", "columns"), [(24, 80), (40, 120), (50, 200)])
+def test_the_drawing_stands_beside_the_table(rows: int, columns: int) -> None:
+    picture = drawn(status(MATCH, 100), rows=rows, columns=columns, lines=60, scoreboard=DRAWING)
+    assert len(picture) < rows
+    assert all(len(line) <= columns for line in picture)
+    assert sum("#" in line for line in picture) >= 9
+    assert "running" in row(picture, "magenta5")
+
+
+def test_a_narrow_terminal_has_no_drawing() -> None:
+    assert not any("#" in line for line in drawn(status(MATCH, 100), rows=24, columns=50, scoreboard=DRAWING))
+
+
+def test_a_broken_drawing_is_named() -> None:
+    picture = drawn(status(TRACKER, 1), scoreboard="tests.fwk.cli.cli_broken:headline")
+    assert any("drawing: ZeroDivisionError" in line for line in picture)
+
+
+def test_long_log_lines_wrap_and_lose_nothing() -> None:
+    view = View(plan())
+    text = " ".join(f"word{number}" for number in range(60))
+    view.take(packet("fwk/log", log(text)))
+    console = Console(width=80, height=40, file=StringIO(), color_system=None)
+    with console.capture() as captured:
+        console.print(screen(view, 40, 80))
+    assert all(f"word{number}" in captured.get().split() for number in range(60))
+
+
+def test_a_run_that_stands_still_names_the_component(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_us = [0]
+    monkeypatch.setattr("fwk.display.view.monotonic_us", lambda: now_us[0])
+    view = View(plan())
+    view.take(packet("fwk/status", status(TRACKER, 5)))
+    view.waits_for = ["cyan1/tracker"]
+    assert view.waiting == ""
+    now_us[0] = 4_000_000
+    assert view.waiting == "waits for cyan1/tracker, 4 s"
+    view.take(packet("fwk/status", status(TRACKER, 6)))
+    assert view.waiting == ""
+
+
+def test_a_run_slower_than_asked_names_the_flag() -> None:
+    assert not any("slower" in line for line in drawn(*[status(TRACKER, 1, speed=0.3)] * 3))
+    assert "--hosting robot" in row(drawn(*[status(TRACKER, 1, speed=0.3)] * 9, columns=160), "tick")
+
+
+def test_cpu_of_a_process_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_us, used = [5_000_000], {4711: 1.0}
+    monkeypatch.setattr("fwk.display.cpu.monotonic_us", lambda: now_us[0])
+    monkeypatch.setattr("fwk.display.cpu.cpu_s", used.get)
+    view, busy = View(plan()), status(TRACKER, 5)
+    busy.hosts[1].pid = 4711
+    view.take(packet("fwk/status", busy))
+    now_us[0], used[4711] = 7_000_000, 2.5
+    view.take(packet("fwk/status", busy))
+    console = Console(width=100, height=40, file=StringIO(), color_system=None)
+    with console.capture() as captured:
+        console.print(screen(view, 40, 100))
+    assert row(captured.get().splitlines(), "cyan1/tracker").split()[:3] == ["cyan1/tracker", "running", "75"]

@@ -115,7 +115,7 @@ def test_the_clock_on_the_wall_stands_for_nobody(start: Start, tmp_path: Path) -
         assert "this run follows it; for a simulation say 'clock: simulated'" in run.fwk(*words, code=2)
     assert not json.loads(run.fwk("speed", "--json"))["paused"]
     for fields in ({"ticks": 0}, {"ticks": 1.5}, {"speed": -1}):
-        with pytest.raises(RefusedError, match="no request"):
+        with pytest.raises(RefusedError, match="not a request"):
             run.ask("step", **fields)
     run.ticks_pass()
     run.end()

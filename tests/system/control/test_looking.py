@@ -176,8 +176,8 @@ def test_garbage_on_the_sockets_leaves_the_run_alone(run: Steered, ports: PortBl
 
 def test_without_a_run_the_commands_say_so(tmp_path: Path) -> None:
     done = subprocess.run([BIN / "fwk", "status", "--bus-port", "1"], capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert done.stderr.startswith("error: no run on this machine has --bus-port 1")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: no run '1' on this machine")
 
 
 def test_the_log_of_a_run_that_is_named_is_followed_until_it_ends(run: Steered) -> None:

@@ -1,0 +1,230 @@
+"""`fwk-launch FILE`: checks a launch file, runs it and reports the result."""
+
+import re
+import shutil
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from fwk.bus.port_lock import PortLock
+from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
+from fwk.cli.arguments import speed as parse_speed
+from fwk.cli.output import BAD_INPUT
+from fwk.cli.recordings.runs import GB
+from fwk.cli.run.detach import detach as detach_run
+from fwk.cli.run.free_ports import on_free_ports
+from fwk.cli.run.profile import write_profiles
+from fwk.cli.run.run_directory import RunDirError, make_run_dir, prune
+from fwk.cli.run.run_files import write_run_files
+from fwk.cli.run.run_record import write_result, write_start
+from fwk.control.client import look
+from fwk.control.server import ControlNameError
+from fwk.display.keys import restore, terminal_settings
+from fwk.display.summary import introduction, summary
+from fwk.launcher.machine import MachineError, advice, check_machine
+from fwk.launcher.run import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
+from fwk.lcm.event_log import LogError
+from fwk.model.errors import PlanError, hint
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+from fwk.plan.load import LaunchOptions, load_plan
+
+RUN_BROKEN = 1
+RECORDING = "log.lcm"
+NOT_BEGUN = (ControlNameError, DebuggerMissing, MachineError, PortsInUse, ProfilerMissing)
+_RUN_NAME = re.compile(r"[A-Za-z][\w.-]{0,63}", re.ASCII)
+
+app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
+
+
+def _run_name(text: str) -> str:
+    if not _RUN_NAME.fullmatch(text):
+        raise typer.BadParameter(f"'{text}' is not a run name; use letters, digits, '.', '_', '-', a letter first")
+    return text
+
+
+@app.command(cls=SeveralNames)
+def launch(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="launch file, looked for as given, then in launch/")],
+    ticks: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after N ticks")] = None,
+    time: Annotated[
+        float | None, typer.Option(parser=seconds, metavar="SECONDS", help="stop after this much logical time")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        typer.Option(parser=parse_speed, metavar="F|max", help="pace of simulated time; max: as fast as it goes"),
+    ] = None,
+    seed: Annotated[int | None, typer.Option(min=0, metavar="N", help="seed of the run")] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(parser=new_file, metavar="FILE", help="where the LCM log goes; default: in the run directory"),
+    ] = None,
+    no_record: Annotated[bool, typer.Option("--no-record", help="keep no LCM log")] = False,
+    sets: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
+    ] = None,
+    hosting: Annotated[
+        Hosting, typer.Option(help="one process a component, one a namespace, or one for all")
+    ] = Hosting.PROCESS,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="NAME...", help="only these components; several names or repeated")
+    ] = None,
+    without: Annotated[
+        list[str] | None, typer.Option(metavar="NAME...", help="all but these components; several names or repeated")
+    ] = None,
+    run_name: Annotated[
+        str | None,
+        typer.Option(
+            "--run",
+            parser=_run_name,
+            metavar="NAME",
+            help="name of the run, beside others on ports of its own; default: the plan's name",
+        ),
+    ] = None,
+    detach: Annotated[bool, typer.Option("--detach", help="run in the background; return at the first tick")] = False,
+    debug: Annotated[
+        str | None, typer.Option(metavar="NAME", help="run this component under pdb in this terminal")
+    ] = None,
+    debugpy: Annotated[
+        int | None,
+        typer.Option(min=1, max=65535, metavar="PORT", help="with --debug: wait for debugpy at this port, not for pdb"),
+    ] = None,
+    profile: Annotated[
+        str | None, typer.Option(metavar="NAME", help="measure where this component's iterations spend their time")
+    ] = None,
+    bus_port: Annotated[
+        int | None, typer.Option(min=1024, max=65535, metavar="N", help="first port of the inner buses")
+    ] = None,
+    video: Annotated[
+        Path | None,
+        typer.Option(parser=video_file, metavar="FILE.mp4", help="draw the run into a video when it has ended"),
+    ] = None,
+    watch: Annotated[bool, typer.Option("--watch", help="reload components when their source files change")] = False,
+    plain: Annotated[bool, typer.Option("--plain", help="lines of text instead of the live display")] = False,
+) -> None:
+    """Runs a launch file, in the foreground unless --detach is given; Ctrl-C stops everything.
+
+    Exit codes: 0 success, also after Ctrl-C; 1 a component failed or the run broke; 2 bad input.
+    """
+    if record and no_record:
+        raise typer.BadParameter("--record and --no-record exclude each other; keep one")
+    if video and no_record:
+        raise typer.BadParameter("--video is made from the recording; leave out --no-record")
+    if debugpy and not debug:
+        raise typer.BadParameter("--debugpy belongs to --debug NAME; name a component")
+    if detach and debug and not debugpy:
+        raise typer.BadParameter("--detach leaves pdb without a terminal; add --debugpy PORT, or leave out --detach")
+    launch_options = LaunchOptions(
+        sets=tuple(sets or ()),
+        hosting=hosting.value,
+        only=tuple(only or ()),
+        without=tuple(without or ()),
+        seed=seed,
+        speed=speed,
+        bus_port=bus_port,
+    )
+    with _ending():
+        plan = load_plan(file, launch_options)
+        _check_names(plan, {"--debug": debug, "--profile": profile})
+        _check_video(plan, video)
+        name = _checked_name(run_name, plan)
+        if run_name and bus_port is None:
+            plan = on_free_ports(plan)
+        PortLock(Ports.of(plan), plan.file or plan.name, plan.public_url).release()
+        check_machine(plan)
+        run_dir = make_run_dir(name)
+        if detach:
+            detach_run(run_dir, plan.bus_port, name)
+        write_run_files(run_dir, plan)
+        write_start(run_dir, plan, name)
+        options = RunOptions(
+            run_dir,
+            name=name,
+            ticks=ticks,
+            time_s=time,
+            speed=plan.speed,
+            record=None if no_record else record or run_dir / RECORDING,
+            video=video,
+            debug=debug,
+            debugpy_port=debugpy or 0,
+            profile=profile,
+            watch=watch,
+            plain=plain or debug is not None,
+        )
+        for line in (*introduction(plan), *advice(plan)):
+            typer.echo(line)
+        removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
+        if removed:
+            typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' keeps one")
+        terminal = terminal_settings()
+        try:
+            outcome = run(plan, options)
+        except NOT_BEGUN:
+            shutil.rmtree(run_dir, ignore_errors=True)  # of no run; 'fwk log' would take it for the newest
+            raise
+        finally:
+            restore(0, terminal)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)  # repeated signals mean the run, which has ended
+    write_result(run_dir, outcome.exit_code, outcome.reason, outcome.ticks, outcome.wall_s)
+    for line in summary(plan, options, outcome):
+        typer.echo(line)
+    if profile or video:
+        signal.signal(signal.SIGINT, signal.default_int_handler)  # profile and video may take long
+    if profile:
+        for line in write_profiles(run_dir):
+            typer.echo(line)
+    if options.record and options.video:
+        _draw(plan, options.record, options.video)
+    raise typer.Exit(outcome.exit_code)
+
+
+@contextmanager
+def _ending() -> Iterator[None]:
+    """Turns errors before the start of a run into a sentence and an exit code."""
+    try:
+        yield
+    except (*NOT_BEGUN, PlanError, RunDirError) as error:
+        typer.echo(error, err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    except KeyboardInterrupt as interrupt:
+        typer.echo("interrupted before the start", err=True)
+        raise typer.Exit(0) from interrupt
+
+
+def _checked_name(wanted: str | None, plan: Plan) -> str:
+    if wanted and any(run.get("name") == wanted for run in look().values()):
+        raise typer.BadParameter(f"--run: a run is called '{wanted}' already; choose another name, or end that run")
+    return wanted or plan.name
+
+
+def _check_names(plan: Plan, named: dict[str, str | None]) -> None:
+    names = [component.name for component in plan.components]
+    for option, name in named.items():
+        if name and name not in names:
+            raise typer.BadParameter(f"{option}: no component '{name}' in {plan.file}; {hint(name, names)}")
+
+
+def _check_video(plan: Plan, video: Path | None) -> None:
+    if video and not plan.video:
+        raise typer.BadParameter(f"--video: {plan.file} names no drawing; add a line 'video: module:function'")
+
+
+def _draw(plan: Plan, record: Path, video: Path) -> None:
+    from fwk.cli.recordings.rendering import render  # imports OpenCV, only with --video
+    from fwk.recording.video import VideoError, drawing
+
+    try:
+        video.parent.mkdir(parents=True, exist_ok=True)
+        first, *others = render(record, video, drawing(plan.video))
+    except (VideoError, LogError, OSError) as error:
+        typer.echo(f"no video: {error}", err=True)
+        raise typer.Exit(RUN_BROKEN) from error
+    except KeyboardInterrupt:
+        return
+    for line in (f"video: {first}", *others):
+        typer.echo(line)

@@ -1,0 +1,85 @@
+"""Groups log lines that say the same, so that a flood of them does not hide all others."""
+
+import re
+from collections import deque
+from collections.abc import Iterator
+
+from fwk.clock import US_PER_S
+from lcmtypes.core import log_t
+
+WINDOW_US = 2 * US_PER_S
+"""Wall time in which lines that say the same are one group."""
+PRINTED_MAX = 4
+"""So many lines of a group are printed; the others are counted."""
+_VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")
+
+
+def meaning(line: log_t) -> tuple[int, str]:
+    """Returns what a line says apart from names of components and numbers."""
+    return line.level, _VARYING.sub("*", line.text)
+
+
+class LineGroup:
+    """A log line and how many lines that say the same came with it."""
+
+    def __init__(self, line: log_t) -> None:
+        self.line = line
+        """The newest of them."""
+        self.count = 1
+        self.since_us: int = line.wall_us
+        self.printed = 1
+
+    @property
+    def text(self) -> str:
+        """Returns the text with the number of lines, if there are several."""
+        return f"{self.line.text} (and {self.count - 1} like it)" if self.count > 1 else str(self.line.text)
+
+
+class LineGroups:
+    """The last lines of a log, in groups, the newest last."""
+
+    def __init__(self, kept: int) -> None:
+        self._groups: deque[LineGroup] = deque(maxlen=kept)
+
+    def __iter__(self) -> Iterator[LineGroup]:
+        return iter(self._groups)
+
+    def add(self, line: log_t) -> LineGroup:
+        """Adds a line to the group of its meaning, or begins one; returns the group."""
+        for group in reversed(self._groups):
+            if line.wall_us - group.line.wall_us > WINDOW_US:
+                break
+            if meaning(group.line) == meaning(line):
+                group.line, group.count = line, group.count + 1
+                self._groups.remove(group)
+                self._groups.append(group)
+                return group
+        group = LineGroup(line)
+        self._groups.append(group)
+        return group
+
+
+class FloodGate:
+    """Lets the first lines of each meaning pass, counts the others, and tells their number later."""
+
+    def __init__(self) -> None:
+        self._groups: dict[tuple[int, str], LineGroup] = {}
+
+    def passes(self, line: log_t) -> bool:
+        """Whether a line is to be printed."""
+        key = meaning(line)
+        group = self._groups.get(key)
+        if group is None:
+            self._groups[key] = LineGroup(line)
+            return True
+        group.line, group.count = line, group.count + 1
+        if group.printed < PRINTED_MAX:
+            group.printed += 1
+            return True
+        return False
+
+    def held_back(self, now_us: int) -> list[tuple[log_t, int]]:
+        """Returns, once for each group that has ended, its last line and how many lines were not printed."""
+        ended = [key for key, group in self._groups.items() if abs(now_us - group.since_us) > WINDOW_US]
+        groups = [self._groups.pop(key) for key in ended]
+        return [(group.line, group.count - group.printed) for group in groups if group.count > group.printed]

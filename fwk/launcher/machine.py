@@ -1,0 +1,142 @@
+"""Checks what a run needs of the machine before any process starts: network, ports, names, files, cores, memory."""
+
+import errno
+import os
+import resource
+import socket
+from pathlib import Path
+
+from fwk.bus.public import PublicBus
+from fwk.bus.sockets import GROUP, LOOPBACK
+from fwk.control.address import gateway_address, supervisor_address
+from fwk.model.plan import Plan
+from fwk.model.ports import Ports
+
+_PORTS_NAMED = 3
+_FILES_BESIDE = 64
+_FILES_A_HOST = 4
+_HOSTS_A_CORE = 8
+_HOST_BYTES = 12 << 20
+_LIBRARIES_BYTES = 150 << 20
+
+
+class MachineError(Exception):
+    """The machine lacks something that the run needs; the text says what, and what would be right."""
+
+
+def check_machine(plan: Plan) -> None:
+    """Checks that a run can start.
+
+    Raises:
+        MachineError: it cannot.
+    """
+    _check_files(plan)
+    _check_loopback()
+    check_ports(plan)
+    _check_names(plan)
+    if plan.public_url:
+        try:
+            PublicBus(plan.public_url).close()
+        except OSError as error:
+            raise MachineError(
+                f"the public bus {plan.public_url} cannot be opened: {error.strerror}; 'fwk doctor' says what to type, "
+                "or write 'public_url: \"\"' into the launch file"
+            ) from error
+
+
+def check_ports(plan: Plan) -> None:
+    """Checks that no other program has a port of the run.
+
+    Raises:
+        MachineError: a program has some.
+    """
+    ports = Ports.of(plan)
+    used = [port for port in range(ports.base, ports.end) if not _is_free(port, port in ports.members)]
+    if used:
+        more = ", ..." if len(used) > _PORTS_NAMED else ""
+        raise MachineError(
+            f"{plan.name}: another program uses UDP port {', '.join(map(str, used[:_PORTS_NAMED]))}{more}; end it, "
+            f"or start this run with another --bus-port"
+        )
+
+
+def advice(plan: Plan, cores: int | None = None, free_bytes: int | None = None) -> list[str]:
+    """Returns a line for each resource of which the machine has too little for real time; the run still starts."""
+    cores = cores or len(os.sched_getaffinity(0))
+    free_bytes = free_bytes or _free_bytes()
+    hosts = len(plan.hosts)
+    together = len({component.name.rpartition("/")[0] for component in plan.components})
+    remedy = "--hosting robot" if together < hosts else "--hosting single" if hosts > 1 else "--only NAME..."
+    lines = []
+    if hosts > _HOSTS_A_CORE * cores:
+        core_word = "core" if cores == 1 else "cores"
+        lines.append(
+            f"{hosts} processes share {cores} {core_word}: if the run is slower than real time, start it with {remedy}"
+        )
+    needed = _LIBRARIES_BYTES + hosts * _HOST_BYTES
+    if free_bytes and needed > free_bytes:
+        lines.append(
+            f"{hosts} processes need some {needed >> 20} MB of memory, and {free_bytes >> 20} MB are free: "
+            f"start the run with {remedy}"
+        )
+    return lines
+
+
+def _check_files(plan: Plan) -> None:
+    _, limit = resource.getrlimit(resource.RLIMIT_NOFILE)
+    needed = _FILES_BESIDE + _FILES_A_HOST * len(plan.hosts) + len(plan.channels)
+    if limit != resource.RLIM_INFINITY and limit < needed:
+        raise MachineError(
+            f"{plan.name}: the run needs about {needed} open files in a process, {limit} are allowed; "
+            f"allow more with: ulimit -n {max(1024, needed)}"
+        )
+
+
+def _check_loopback() -> None:
+    advice = "type: sudo ip link set lo up multicast on"
+    try:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
+            probe.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
+            probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
+            probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
+            probe.bind((LOOPBACK, 0))
+            probe.sendto(b"", (GROUP, probe.getsockname()[1]))
+    except OSError as error:
+        raise MachineError(f"no IPv4 multicast on the interface lo: {error.strerror}; {advice}") from error
+
+
+def _check_names(plan: Plan) -> None:
+    for address in (supervisor_address(plan.bus_port), gateway_address(plan.bus_port)):
+        with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as probe:
+            try:
+                probe.bind(address)
+            except OSError as error:
+                name = address.lstrip("\0")
+                raise MachineError(
+                    f"{plan.name}: another process has the control socket @{name}; end it, or start this run with "
+                    "another --bus-port"
+                ) from error
+
+
+def _is_free(port: int, alone: bool) -> bool:
+    """Whether a port can be bound: of a process that sends (`alone`), or of a multicast channel, which may be shared
+    with other groups.
+    """
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        try:
+            if not alone:
+                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            probe.bind((LOOPBACK if alone else GROUP, port))
+        except OSError as error:
+            return error.errno != errno.EADDRINUSE
+    return True
+
+
+def _free_bytes() -> int:
+    """Returns the memory that programs can get, in bytes; 0: unknown."""
+    try:
+        rows = dict(line.split(":", 1) for line in Path("/proc/meminfo").read_text().splitlines())
+        return int(rows["MemAvailable"].split()[0]) << 10
+    except (OSError, KeyError, ValueError):
+        return 0

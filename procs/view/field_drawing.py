@@ -1,0 +1,63 @@
+"""The match as a small drawing of letters for the terminal: field, robots by number, ball."""
+
+from lcmtypes.soccer import ground_truth_t, true_robot_t
+from procs.model.field import Field
+from procs.model.robot import number_of, team_of
+
+Line = list[tuple[str, str]]
+
+_GROUND = "on rgb(24,74,36)"
+_PAINT = f"rgb(150,190,150) {_GROUND}"
+_STYLES = {"cyan": f"bold rgb(90,230,255) {_GROUND}", "magenta": f"bold rgb(255,130,255) {_GROUND}"}
+_BALL = f"bold rgb(255,190,60) {_GROUND}"
+_HEIGHT_OF_WIDTH = 2.0  # of a letter in a terminal
+
+
+def field_drawing(truth: ground_truth_t, columns: int, rows: int, field: Field | None = None) -> list[Line]:
+    """Returns the field as large as fits; cyan's goal is on the left. Each line is a list of texts and styles."""
+    measures = field or Field()
+    length_m, width_m = measures.length_m, measures.width_m
+    height = min(rows, round(columns * width_m / length_m / _HEIGHT_OF_WIDTH))
+    width = min(columns, round(height * length_m / width_m * _HEIGHT_OF_WIDTH))
+    if width < 12 or height < 5:
+        return []
+    letters = [[_ground(column, row, width, height) for column in range(width)] for row in range(height)]
+
+    def put(x_m: float, y_m: float, letter: str, style: str) -> None:
+        column = round((x_m / length_m + 0.5) * (width - 1))
+        row = round((0.5 - y_m / width_m) * (height - 1))
+        if 0 <= column < width and 0 <= row < height:
+            letters[row][column] = (letter, style)
+
+    for robot in truth.robots:
+        put(robot.x_m, robot.y_m, *_robot(robot))
+    put(truth.ball_x_m, truth.ball_y_m, "●", _BALL)
+    return [_joined(line) for line in letters]
+
+
+def _robot(robot: true_robot_t) -> tuple[str, str]:
+    return str(number_of(robot.name))[-1], _STYLES.get(team_of(robot.name), _PAINT)
+
+
+def _ground(column: int, row: int, width: int, height: int) -> tuple[str, str]:
+    top, bottom, left, right = row == 0, row == height - 1, column == 0, column == width - 1
+    if (left or right) and abs(row - (height - 1) / 2) <= max(0.5, height / 12):
+        return "█", _STYLES["cyan" if left else "magenta"]  # the goals
+    if (left or right) and (top or bottom):
+        return {(True, True): "┌", (True, False): "┐", (False, True): "└", (False, False): "┘"}[top, left], _PAINT
+    if top or bottom:
+        return "─", _PAINT
+    if left or right or column == width // 2:
+        return "│", _PAINT
+    return " ", _GROUND
+
+
+def _joined(letters: Line) -> Line:
+    """Joins neighbours of one style."""
+    line: Line = []
+    for letter, style in letters:
+        if line and line[-1][1] == style:
+            line[-1] = (line[-1][0] + letter, style)
+        else:
+            line.append((letter, style))
+    return line

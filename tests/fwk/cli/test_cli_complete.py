@@ -1,0 +1,114 @@
+"""Completion: commands, options and values, from a run that answers and from none."""
+
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from fwk.cli.commands import app
+from fwk.cli.complete.candidates import complete
+from fwk.control import client
+from fwk.control.client import ControlError
+
+ANSWERS: dict[str, Any] = {
+    "status": {"components": [{"name": "cyan1/agent"}, {"name": "cyan1/base"}, {"name": "world/referee"}]},
+    "settings": {"settings": [{"component": "cyan1/base", "setting": "gain"}]},
+    "channels": {"channels": [{"channel": "cyan1/pose"}, {"channel": "house/pour@commands"}]},
+}
+
+
+class Run:
+    def __enter__(self) -> "Run":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        pass
+
+    def ask(self, verb: str, *_: object) -> Any:
+        return ANSWERS[verb]
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
+    chosen: list[str | None] = []
+
+    def connect(name: str | None) -> Run:
+        chosen.append(name)
+        return Run()
+
+    monkeypatch.setattr(client, "supervisor", connect)
+    monkeypatch.setattr(client, "gateway", connect)
+    monkeypatch.setattr(client, "look", lambda: {17700: {"name": "match"}, 18000: {"name": ""}})
+    return chosen
+
+
+@pytest.mark.parametrize(
+    ("typed", "found"),
+    [
+        ("fwk sto", ["stop"]),
+        ("fwk config ", ["--help", "get", "list", "reload", "schema", "search", "set", "unset", "watch"]),
+        ("fwk stop cyan1/", ["cyan1/agent", "cyan1/base"]),
+        ("fwk stop cyan1/agent world", ["world/referee"]),
+        ("fwk stop --run match w", ["world/referee"]),
+        ("fwk stop --al", ["--all"]),
+        ("fwk bb show c", ["cyan1/pose"]),
+        ("fwk call h", ["house/pour"]),
+        ("fwk config set cyan1/b", ["cyan1/base.gain="]),
+        ("fwk config get cyan1/b", ["cyan1/base.gain"]),
+        ("fwk status --run ", ["18000", "match"]),
+        ("fwk-launch soccer.yaml --hosting ", ["process", "robot", "single"]),
+        ("fwk top --since p", ["picture"]),
+        ("fwk nonsense ", []),
+        ("fwk note he", []),
+    ],
+)
+def test_words_that_may_follow(asked: list[str | None], typed: str, found: list[str]) -> None:
+    assert [each for each in complete(typed.split(" ")) if each.startswith(typed.split(" ")[-1])] == found
+
+
+def test_the_named_run_is_asked(asked: list[str | None]) -> None:
+    complete(["fwk", "stop", "--run", "match", "c"])
+    assert asked == ["match"]
+
+
+def test_launch_files_and_recordings_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "launch").mkdir()
+    (tmp_path / "launch" / "garden.yaml").touch()
+    (tmp_path / ".cache" / "fwk" / "runs" / "2026-garden-7").mkdir(parents=True)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("HOME", str(tmp_path))
+    assert complete(["fwk-launch", "g"]) == ["garden.yaml"]
+    assert complete(["fwk", "replay", "20"]) == ["2026-garden-7"]
+    assert complete(["fwk", "compare", "2026-garden-7", "2"]) == ["2026-garden-7"]
+
+
+def test_without_a_run_there_are_no_names(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(_: object) -> Run:
+        raise ControlError("nothing runs on this machine")
+
+    monkeypatch.setattr(client, "supervisor", refuse)
+    assert complete(["fwk", "stop", "c"]) == []
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_every_shell_has_a_script(shell: str) -> None:
+    script = CliRunner().invoke(app, ["completion", shell])
+    assert script.exit_code == 0
+    assert "fwk __complete" in script.output
+
+
+def test_bash_completes_commands_and_assignments(tmp_path: Path) -> None:
+    script = CliRunner().invoke(app, ["completion", "bash"]).output
+    fake = tmp_path / "fwk"
+    fake.write_text('#!/bin/sh\ncase "$*" in *config*) echo cyan1/base.gain= ;; *) echo stop; echo start ;; esac\n')
+    fake.chmod(0o755)
+    probe = (
+        f"PATH={tmp_path}:$PATH\n{script}\ncompopt() {{ :; }}\n"
+        'COMP_LINE="fwk st" COMP_POINT=6 COMP_WORDS=(fwk st) COMP_CWORD=1; _fwk_complete; echo "${COMPREPLY[@]}"\n'
+        'COMP_LINE="fwk config set cy"; COMP_POINT=${#COMP_LINE} COMP_WORDS=(fwk config set cy) COMP_CWORD=3\n'
+        '_fwk_complete; echo "${COMPREPLY[@]}"\n'
+    )
+    done = subprocess.run(["bash", "-c", probe], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines() == ["stop start", "cyan1/base.gain="]

@@ -1,0 +1,95 @@
+"""Programs end with a sentence when the machine fails them: closed and full outputs, no folder, no descriptors."""
+
+import errno
+import os
+import resource
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FWK = [sys.executable, "-m", "fwk.cli.main"]
+
+
+def run(command: list[str], **options: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, **options)  # type: ignore[call-overload, no-any-return]
+
+
+@pytest.mark.parametrize("typed", [["--help"], ["ps", "--json"], ["check", "one-robot.yaml"]])
+def test_a_full_disk_is_a_sentence(typed: list[str]) -> None:
+    with open("/dev/full", "w") as full:
+        done = run([*FWK, *typed], stdout=full)
+    assert done.returncode == 2
+    assert done.stderr == "error: the output cannot be written: No space left on device\n"
+
+
+@pytest.mark.parametrize("typed", ["--help", "ps --json"])
+def test_a_closed_output_is_no_traceback(typed: str) -> None:
+    done = run(["sh", "-c", f'exec "$0" -m fwk.cli.main {typed} >&-', sys.executable])
+    assert "Traceback" not in done.stderr
+
+
+def test_a_reader_that_leaves_early_ends_it_quietly() -> None:
+    read, write = os.pipe()
+    os.close(read)
+    done = run([*FWK, "--help"], stdout=write)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (1, "")
+
+
+@pytest.mark.parametrize("module", ["fwk.cli.main", "fwk.cli.launch"])
+def test_a_deleted_folder_is_named(tmp_path: Path, module: str) -> None:
+    (tmp_path / "gone").mkdir()
+    script = f'rmdir ../gone; exec "$0" -P -m {module} --version'
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])}
+    done = run(["sh", "-c", script, sys.executable], cwd=tmp_path / "gone", env=environment)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: the current folder does not exist any more")
+
+
+def test_too_few_descriptors_are_a_sentence(tmp_path: Path) -> None:
+    from fwk.cli.output import run_program
+
+    def fail() -> int:
+        raise OSError(errno.EMFILE, "Too many open files")
+
+    before = signal.getsignal(signal.SIGINT)
+    try:
+        with pytest.raises(SystemExit) as ended:
+            run_program(fail)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert ended.value.code == 2
+
+
+def test_a_run_with_few_descriptors_is_refused(tmp_path: Path) -> None:
+    def limit() -> None:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))
+
+    command = [sys.executable, "-m", "fwk.cli.launch", "one-robot.yaml", "--ticks", "1"]
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    done = run(command, stdout=subprocess.PIPE, env=environment, preexec_fn=limit)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr
+    assert "ulimit -n" in done.stderr
+    assert not list(tmp_path.rglob("log.lcm"))
+
+
+@pytest.mark.parametrize(("module", "code"), [("fwk.cli.main", 130), ("fwk.cli.launch", 0)])
+def test_ctrl_c_during_imports_ends_it_tidily(module: str, code: int) -> None:
+    program = (
+        "import builtins, os, signal, sys\n"
+        "from fwk.cli import output\n"
+        f"from {module} import main\n"
+        "real = builtins.__import__\n"
+        "def slow(name, *rest):\n"
+        "    if name == 'typer': os.kill(os.getpid(), signal.SIGINT)\n"
+        "    return real(name, *rest)\n"
+        "builtins.__import__ = slow\n"
+        "sys.argv = ['x', 'check', 'one-robot.yaml']\n"
+        "main()\n"
+    )
+    done = run([sys.executable, "-c", program], stdout=subprocess.PIPE)
+    assert (done.returncode, done.stderr) == (code, "interrupted before the start\n")

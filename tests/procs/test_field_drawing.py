@@ -1,0 +1,40 @@
+"""The match in letters."""
+
+import pytest
+
+from lcmtypes.soccer import ground_truth_t, true_robot_t
+from procs.view.field_drawing import field_drawing
+from procs.view.scoreboard import TRUTH, drawing
+
+
+def truth() -> ground_truth_t:
+    made = ground_truth_t()
+    for name, x_m, y_m in (("cyan1", -8.0, 0.5), ("magenta3", 5.0, -4.0)):
+        robot = true_robot_t()
+        robot.name, robot.x_m, robot.y_m = name, x_m, y_m
+        made.robots.append(robot)
+    made.n, made.ball_x_m, made.ball_y_m = 2, 2.0, 4.0
+    return made
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(35, 13), (53, 30), (88, 34), (40, 5)])
+def test_it_fits_and_shows_everything(columns: int, rows: int) -> None:
+    lines = ["".join(text for text, _ in line) for line in field_drawing(truth(), columns, rows)]
+    assert 0 < len(lines) <= rows
+    assert {len(line) for line in lines} == {len(lines[0])}
+    assert len(lines[0]) <= columns
+    joined = "".join(lines)
+    assert all(joined.count(letter) == 1 for letter in "13●")
+    assert lines[0][0] == "┌"
+    magenta = next(number for number, line in enumerate(lines) if "3" in line)
+    ball = next(number for number, line in enumerate(lines) if "●" in line)
+    assert ball < magenta  # y points up
+
+
+def test_too_little_room_shows_nothing() -> None:
+    assert field_drawing(truth(), 8, 3) == []
+
+
+def test_before_the_first_message_there_is_no_drawing() -> None:
+    assert drawing(lambda _: None, 40, 12) == []
+    assert drawing({TRUTH: truth()}.get, 40, 12)
