@@ -12,76 +12,19 @@ from fwk.lcm import wire
 from fwk.model.ports import Ports
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-FAULTS = '''
-"""What else can go wrong in a component."""
-
-import os
-import subprocess
-import sys
-import threading
-import time
-from pathlib import Path
-
-
-class HostileError(Exception):
-    def __str__(self):
-        raise RuntimeError("no text")
-
-
-def long_text():
-    raise RuntimeError("x" * 200_000)
-
-
-def no_text():
-    raise RuntimeError("no text \\udcff\\0 at all")
-
-
-def no_words():
-    raise HostileError
-
-
-def deep():
-    deep()
-
-
-def leave_in_thread():
-    threading.Thread(target=lambda: os._exit(0)).start()
-    time.sleep(60)
-
-
-def close_all():
-    os.closerange(3, 100)
-
-
-def child_and_die():
-    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
-    Path("child").write_text(str(child.pid))
-    os.kill(os.getpid(), 9)
-
-
-MORE = {
-    "long text": long_text,
-    "no text": no_text,
-    "no words": no_words,
-    "deep": deep,
-    "leave in a thread": leave_in_thread,
-    "close all": close_all,
-    "child and die": child_and_die,
-}
-'''
-
 
 @pytest.fixture
 def faulty(traced: Path) -> Path:
     """The orchestra's folder; its players know more faults."""
-    trouble = traced / "procs/trouble.py"
-    write_files(traced, {"procs/faults.py": FAULTS})
-    trouble.write_text(trouble.read_text() + "\nfrom procs.faults import MORE  # noqa: E402\nMAKE |= MORE\n")
+    trouble = traced / "trouble.py"
+    write_files(traced, sources("more_faults.py"))
+    trouble.write_text(trouble.read_text() + "\nfrom more_faults import MORE  # noqa: E402\nMAKE |= MORE\n")
     return traced
 
 

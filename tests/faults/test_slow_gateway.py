@@ -6,36 +6,19 @@ import pytest
 
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import write_files
 
 pytestmark = pytest.mark.system
 
-SLOW = '''
-"""Half a second until the gateway has its sockets."""
-
-import time
-
-from fwk.gateway.gateway import Gateway
-
-make = Gateway.__init__
-
-
-def make_slowly(self, *arguments):
-    time.sleep(0.5)
-    make(self, *arguments)
-
-
-Gateway.__init__ = make_slowly
-'''
-
 
 @pytest.fixture
 def slow(traced: Path) -> Path:
     """The orchestra's folder with a slow gateway."""
-    write_files(traced, {"procs/slow.py": SLOW})
-    player = traced / "procs/player.py"
-    player.write_text(player.read_text().replace("import procs.weather\n", "import procs.slow\n"))
+    write_files(traced, sources("slow_gateway.py"))
+    player = traced / "player.py"
+    player.write_text(player.read_text().replace("import weather ", "import slow_gateway "))
     return traced
 
 

@@ -13,6 +13,7 @@ import pytest
 from fwk.model.tick_events import MessageLost
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import Launched, PortBlock, pause, write_files
@@ -104,45 +105,12 @@ def test_who_stands_still_is_woken_to_end_well(launch: Launch, traced: Path, aft
     assert "killed" not in run.text
 
 
-LOSING = '''
-"""A player whose messages get lost and who stands still before anybody can ask for them again."""
-
-import os
-import signal
-
-from fwk.host.outputs import Outputs
-
-
-def lose_and_stand_still():
-    publish = Outputs.publish
-
-    def publish_nothing(self, written):
-        sender, send = self._sender, self._sender.publish
-
-        def send_last(*done):
-            send(*done)
-            sender.publish = send
-            os.kill(os.getpid(), signal.SIGSTOP)
-
-        sender.publish = lambda *_: None
-        marks = publish(self, written)
-        sender.publish = send_last
-        Outputs.publish = publish
-        return marks
-
-    Outputs.publish = publish_nothing
-
-
-MORE = {"lose": lose_and_stand_still}
-'''
-
-
 @pytest.fixture
 def losing(traced: Path) -> list[str]:
     """Settings with which `d/player` loses its messages of tick 5 and stands still."""
-    trouble = traced / "procs/trouble.py"
-    write_files(traced, {"procs/losing.py": LOSING})
-    trouble.write_text(trouble.read_text() + "\nfrom procs.losing import MORE  # noqa: E402\nMAKE |= MORE\n")
+    trouble = traced / "trouble.py"
+    write_files(traced, sources("losing.py"))
+    trouble.write_text(trouble.read_text() + "\nfrom losing import MORE  # noqa: E402\nMAKE |= MORE\n")
     settings = {"trouble": "loop:lose", "trouble_tick": 5}
     return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
 

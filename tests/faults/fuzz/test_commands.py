@@ -21,23 +21,12 @@ from fwk.cli.steer.send import made
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
+from tests.harness.components import sources
 from tests.harness.fuzz import HOSTILE_TEXT, all_types
 from tests.harness.runs import PortBlock, write_files
 
 TINY = {
-    "tiny.py": """
-from fwk import Component, Config
-
-
-class TinyConfig(Config):
-    gain: float = 1.0
-    names: list[str] = []
-
-
-class Tiny(Component):
-    stage = "think"
-    config: TinyConfig
-""",
+    **sources("tiny.py"),
     "tiny.yaml": 'name: tiny\ncomponents: {a/tiny: {use: "tiny:Tiny"}}\n',
 }
 

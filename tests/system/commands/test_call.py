@@ -11,10 +11,11 @@ from fwk.control.address import gateway_address
 from fwk.control.client import Client, RefusedError
 from fwk.lcm.messages import type_named
 from fwk.lcm.type_registry import use_types_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
-from tests.programs.command_system import TYPES, command_system
+from tests.programs.command_system import command_system
 from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
@@ -23,7 +24,7 @@ pytestmark = pytest.mark.system
 @pytest.fixture(scope="module", autouse=True)
 def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("types")
-    write_files(folder, {"lcmtypes/lift.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/lift.lcm"))
     use_types_of(folder)
 
 

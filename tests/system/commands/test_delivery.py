@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from fwk.lcm.type_registry import use_types_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.in_memory import played_in_memory
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import Launched, PortBlock, played, replayed, write_files
-from tests.programs.command_system import TYPES, command_system
+from tests.programs.command_system import command_system
 
 pytestmark = pytest.mark.system
 
@@ -24,7 +25,7 @@ WORKERS = ("one", "two")
 @pytest.fixture(scope="module", autouse=True)
 def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("types")
-    write_files(folder, {"lcmtypes/lift.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/lift.lcm"))
     use_types_of(folder)
 
 

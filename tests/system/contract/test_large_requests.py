@@ -7,43 +7,14 @@ from pathlib import Path
 import pytest
 
 from fwk.recording.compare import compare
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import BIN, PortBlock, write_files
 from tests.programs.control_system import Steered
-from tests.programs.orchestra import WEATHER
 
 pytestmark = pytest.mark.system
 
-GREEDY = '''
-"""Asks for more channels than there are, all at once, and writes down what it got."""
-
-import weather
-
-from fwk import Blackboard, Component, Config, Writes
-from lcmtypes.robot import imu_t
-
-
-class GreedyConfig(Config):
-    text: str = "x" * 10_000
-    gain: float = 0.0
-
-
-class Greedy(Component):
-    stage = "think"
-    blackboard: Blackboard
-    config: GreedyConfig
-    imu: Writes[imu_t]
-
-    def init(self) -> None:
-        names = [f"a_channel_whose_name_is_rather_long_number_{number}" for number in range(64)]
-        self.asked = [self.blackboard.open_for_writing(imu_t, name) for name in names]
-
-    def loop(self) -> None:
-        answered = sum(each.is_open or each.refused != "" for each in self.asked)
-        self.imu.value.heading_rad = answered + self.config.gain
-        self.imu.write()
-'''
 COMPONENTS = 9
 LAUNCH = """
 name: greedy
@@ -58,7 +29,7 @@ components:
 def greedy(tmp_path: Path, ports: PortBlock) -> Path:
     lines = [f'  r{number}/greedy: {{use: "greedy:Greedy"}}\n' for number in range(COMPONENTS)]
     text = LAUNCH.format(url=ports.public_url) + "".join(lines)
-    write_files(tmp_path, {"greedy.py": GREEDY, "weather.py": WEATHER, "greedy.yaml": text})
+    write_files(tmp_path, {**sources("greedy.py", "weather.py"), "greedy.yaml": text})
     return tmp_path
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fwk.model.tick_events import StageBegun, events_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -13,67 +14,16 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""One takes the main loop, one wants it too, two play."""
-
-import os
-import signal
-from pathlib import Path
-
-from fwk import Clock, Component, Config, MainLoop, ReadsEach, Writes, channel
-from lcmtypes.robot import imu_t
-
-
-class DriverConfig(Config):
-    first: int = 5
-    last: int = 12
-    order: list[str] = ["act", "think", "act", "act", "sensor_acquire"]
-    dies: int = 0
-
-
-class Player(Component):
-    """Sums up what it hears."""
-
-    stage = "act"
-    all: ReadsEach[imu_t] = channel("*/imu")
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += 1 + sum(
-            message.header.sequence for reader in self.all.values() for message in reader.fresh
-        )
-        self.imu.write()
-
-
-class Driver(Player):
-    """Has the main loop from one tick to another."""
-
-    stage = "think"
-    clock: Clock
-    config: DriverConfig
-    main_loop: MainLoop
-
-    def loop(self) -> None:
-        super().loop()
-        self.imu.value.heading_rad += 1000 * self.main_loop.mine + 10 * bool(self.main_loop.holder)
-        if self.clock.tick == self.config.first:
-            self.main_loop.take_over(self.config.order)
-        if self.clock.tick == self.config.last:
-            self.main_loop.give_back()
-        if self.clock.tick == self.config.dies and not Path("died").exists():
-            Path("died").touch()
-            os.kill(os.getpid(), signal.SIGKILL)
-'''
 LAUNCH = """
 name: taken
 public_url: {url}
 speed: max
 components:
-  a/driver: {{use: "parts:Driver"}}
-  b/driver: {{use: "parts:Driver", stage: [act, post_loop], config: {{first: 8, last: 30}}}}
-  c/player: {{use: "parts:Player", stage: sensor_acquire}}
-  d/player: {{use: "parts:Player"}}
-  e/player: {{use: "parts:Player", stage: worldstate}}
+  a/driver: {{use: "taken:Driver"}}
+  b/driver: {{use: "taken:Driver", stage: [act, post_loop], config: {{first: 8, last: 30}}}}
+  c/player: {{use: "taken:Player", stage: sensor_acquire}}
+  d/player: {{use: "taken:Player"}}
+  e/player: {{use: "taken:Player", stage: worldstate}}
 """
 STAGES = ("pre_loop", "sensor_acquire", "sensor_prepare", "sensor_process", "worldstate", "think", "skill", "act")
 USUAL = ["sensor_acquire", "worldstate", "think", "act", "post_loop"]
@@ -82,7 +32,7 @@ TAKEN = ["act", "think", "act", "act", "sensor_acquire"]
 
 @pytest.fixture
 def taken(tmp_path: Path, ports: PortBlock) -> Path:
-    write_files(tmp_path, {"parts.py": PARTS, "taken.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("taken.py"), "taken.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 

@@ -91,7 +91,7 @@ def test_who_dies_between_its_stages_goes_on_with_what_it_last_said_itself(
 def test_whoever_is_killed_whenever_nothing_is_seen_twice_or_lost(launch: Launch, folder: Path) -> None:
     (folder / "traces").mkdir()
     file = folder / "launch/orchestra.yaml"
-    use = 'use: "procs.player:Player"'
+    use = 'use: "player:Player"'
     file.write_text(file.read_text().replace(use, f"{use}, restart: {{ backoff_s: 0.01, limit: 100 }}"))
     run = launch(*RUN)
     luck = random.Random(1)

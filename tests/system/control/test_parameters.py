@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import source
 from tests.harness.runs import Launched, PortBlock
-from tests.programs.control_system import PARTS, Steered, write_system
+from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
 
@@ -17,8 +18,8 @@ STAGES = {"r/counter": "think", "r/follower": "act", "r/camera": "sensor_acquire
 def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Steered:
     write_system(tmp_path, ports)
     step = 'step: float = 1.0\n    """Added in each iteration."""\n'
-    parts = PARTS.replace(step, f'{step}    size: int = Field(5, frozen=True)\n    """Fixed."""\n')
-    (tmp_path / "parts.py").write_text(parts.replace("import numpy", "from pydantic import Field\nimport numpy"))
+    parts = source("small.py").replace(step, f'{step}    size: int = Field(5, frozen=True)\n    """Fixed."""\n')
+    (tmp_path / "small.py").write_text(parts.replace("import numpy", "from pydantic import Field\nimport numpy"))
     return Steered(launch("small.yaml"), ports)
 
 

@@ -8,11 +8,14 @@ import pytest
 
 from fwk.control.client import ControlError
 from fwk.model.tick_events import HostLost, HostStarted, HostStopped
+from tests.harness.components import source
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock
-from tests.programs.control_system import PARTS, Steered, write_system
+from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
+
+PARTS = source("small.py")
 
 
 @pytest.fixture
@@ -67,10 +70,10 @@ def test_a_restart_misses_no_tick_in_lockstep(run: Steered) -> None:
 
 
 def test_reload_brings_the_changed_code_of_one_and_leaves_the_others(run: Steered) -> None:
-    file = run.launched.folder / "parts.py"
+    file = run.launched.folder / "small.py"
     pids = {each["name"]: each["pid"] for each in run.ask("status")["components"]}
     file.write_text(PARTS.replace("def loop(self) -> None:\n        while", "def loop(self) -> None\n        while"))
-    assert "parts.py:" in run.fwk("reload", "r/counter", code=2)
+    assert "small.py:" in run.fwk("reload", "r/counter", code=2)
     assert run.component("r/counter")["pid"] == pids["r/counter"]
     file.write_text(PARTS.replace("+= self.config.step", "-= 1000.0").replace("x_m = 1.0", "x_m = 2.0"))
     run.fwk("reload", "r/counter")
@@ -86,7 +89,7 @@ def test_reload_brings_the_changed_code_of_one_and_leaves_the_others(run: Steere
 
 
 def test_code_that_does_not_start_is_told_and_put_right(run: Steered) -> None:
-    file = run.launched.folder / "parts.py"
+    file = run.launched.folder / "small.py"
     file.write_text(PARTS.replace('"""Counts up."""', "1 / 0"))
     said = run.fwk("reload", "r/counter", code=1)
     assert "r/counter failed" in said
@@ -119,7 +122,7 @@ def test_code_that_does_not_start_is_told_and_put_right(run: Steered) -> None:
     ],
 )
 def test_code_that_would_need_another_plan_is_refused(run: Steered, old: str, new: str, text: str) -> None:
-    file = run.launched.folder / "parts.py"
+    file = run.launched.folder / "small.py"
     assert old in PARTS
     file.write_text(PARTS.replace(old, new))
     assert text in run.fwk("reload", "r/counter", code=1)

@@ -5,29 +5,29 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import source, sources
 from tests.harness.runs import Launched, PortBlock, write_files
-from tests.programs.control_system import PARTS, Steered
+from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-HELPER = "ADDED = 1.0\n"
-COUNTING = PARTS.replace("class CounterConfig", "import helper\n\n\nclass CounterConfig")
+PARTS = source("small.py")
+HELPER = source("helper.py")
 LAUNCH = """
 name: small
 public_url: {url}
 hosts: {{both: [r/camera, r/finder]}}
 components:
-  r/counter: {{use: "parts:Counter"}}
+  r/counter: {{use: "small:Counter"}}
   r/helped: {{use: "counting:Counter", channels: {{imu: r/helped_imu}}}}
   r/camera: {{use: "looking:Camera"}}
-  r/finder: {{use: "parts:Finder"}}
+  r/finder: {{use: "small:Finder"}}
 """
 
 
 @pytest.fixture
 def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Steered:
-    counting = COUNTING.replace("self.config.step\n        self.imu.write", "helper.ADDED\n        self.imu.write")
-    files = {"parts.py": PARTS, "counting.py": counting, "looking.py": PARTS, "helper.py": HELPER}
+    files = {**sources("small.py", "counting.py", "helper.py"), "looking.py": PARTS}
     write_files(tmp_path, {**files, "small.yaml": LAUNCH.format(url=ports.public_url)})
     return Steered(launch("small.yaml", "--watch"), ports)
 
@@ -63,7 +63,7 @@ def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_
     assert starts(run)["helped"] == 1
     assert "helper.py:1: invalid syntax" in run.fwk("reload", "r/helped", code=2)
     run.steer("stop", "r/counter")
-    (tmp_path / "parts.py").write_text(PARTS + "\n# changed\n")
+    (tmp_path / "small.py").write_text(PARTS + "\n# changed\n")
     (tmp_path / "helper.py").write_text("ADDED = -1000.0\n")
     run.launched.until("r/helped runs again")
     run.ticks_pass()

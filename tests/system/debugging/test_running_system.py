@@ -192,12 +192,12 @@ def test_what_cannot_be_debugged_is_refused_and_runs_on(
     unknown = debug("r/world_modell")
     unknown.child.expect("did you mean 'r/world_model'")
     assert unknown.end() == 2
-    file = tmp_path / "parts.py"
-    file.write_text(FILES["parts.py"].replace("class WorldModel", "class World Model"))
+    file = tmp_path / "sensors.py"
+    file.write_text(FILES["sensors.py"].replace("class WorldModel", "class World Model"))
     broken = debug(NAME)
     broken.child.expect("parts cannot be imported; the run goes on with what it has")
     assert broken.end() == 2
-    file.write_text(FILES["parts.py"])
+    file.write_text(FILES["sensors.py"])
     first = debug(NAME)
     first.prompt()
     second = debug(NAME)

@@ -18,11 +18,12 @@ from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.replay.recording import Recording
 from tests.clients.bus import Bus, process, program, wait_until
+from tests.harness.components import source, sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
 from tests.harness.runs import Launched, PortBlock, fwk, replayed, write_files
 from tests.programs.control_system import Steered
-from tests.programs.device_system import TYPES, device_system
+from tests.programs.device_system import device_system
 
 pytestmark = pytest.mark.system
 
@@ -35,7 +36,7 @@ COUNT = 20
 @pytest.fixture(scope="session", autouse=True)
 def _device_types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("device_types")
-    write_files(folder, {"lcmtypes/devices.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/devices.lcm"))
     use_types_of(folder)
 
 
@@ -46,7 +47,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
 
     def built() -> str:
         if not (folder / "device").exists():
-            (folder / "devices.lcm").write_text(TYPES.partition("struct stamped_t")[0])
+            (folder / "devices.lcm").write_text(source("lcmtypes/devices.lcm").partition("struct stamped_t")[0])
             command = [program("lcm-gen"), "-c", "--c-cpath", str(folder), "--c-hpath", str(folder)]
             subprocess.run([*command, str(folder / "devices.lcm")], check=True)
             paths = [f"-I{folder}", f"-I{WHEEL}/include", f"-L{WHEEL}/lib", f"-Wl,-rpath,{WHEEL}/lib"]

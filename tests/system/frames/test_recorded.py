@@ -12,6 +12,7 @@ import pytest
 
 from fwk.lcm.event_log import LogReader
 from fwk.recording.pictures import FRAME, pictures_in
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
 from tests.harness.runs import PortBlock, fill, fwk, replayed, write_files
@@ -19,75 +20,6 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""A camera that is a device, one that is not, and who looks at them."""
-
-import os
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Component, ImagesEach, Image, Reads, VisionMaster, Writes, channel
-from lcmtypes.soccer import pose_t
-
-
-class Device(Component):
-    """What it sees is never the same again; in a replay it must not be touched."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-
-    @classmethod
-    def unrepeatable(cls, config):
-        return "'the eye' is a device"
-
-    def init(self) -> None:
-        with Path("opened").open("a") as file:
-            file.write("opened\\n")
-
-    def loop(self) -> None:
-        for _ in range(2):
-            noise = np.frombuffer(os.urandom(20 * 30 * 3), np.uint8)
-            self.image.publish(noise.reshape(20, 30, 3))
-
-
-class Grey(Component):
-    """Grey pictures, which depend on the run's seed alone."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-    rng: np.random.Generator
-
-    def loop(self) -> None:
-        self.image.publish(self.rng.integers(0, 256, (20, 30), np.uint8))
-
-
-class Watcher(Component):
-    """Says what it saw."""
-
-    stage = "sensor_prepare"
-    image: Image = channel("{camera}/image")
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        pixels = self.image.pixels
-        self.pose.value.x_m = float(zlib.crc32(pixels))
-        self.pose.value.y_m = float(pixels.ndim)
-        self.pose.write()
-
-
-class Follower(Component):
-    """Needs no picture."""
-
-    stage = "think"
-    pose: Reads[pose_t] = channel("a/pose")
-    heading: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.heading.value.heading_rad = self.pose.value.x_m / 1e9
-        self.heading.write()
-'''
 LAUNCH = """
 name: eyes
 public_url: {url}
@@ -102,8 +34,7 @@ components:
 
 @pytest.fixture
 def eyes(tmp_path: Path, ports: PortBlock) -> Path:
-    parts = PARTS.replace(' = channel("{camera}/image")', "").replace("ImagesEach, ", "")
-    write_files(tmp_path, {"eyes.py": parts, "eyes.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("eyes.py"), "eyes.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 

@@ -8,82 +8,25 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import Launched, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""One that works, and one that takes too much or falls over."""
-
-import ctypes
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Component, Config, Reads, Writes
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-_taken = []
-
-
-def long_sum(number: int) -> float:
-    return float(sum(each * each for each in range(number)))
-
-
-class Worker(Component):
-    """Computes."""
-
-    stage = "sensor_acquire"
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += long_sum(3000)
-        self.imu.write()
-
-
-class GluttonConfig(Config):
-    array_mb: int = 0
-    """Taken and kept in each iteration, in one piece."""
-    objects: int = 0
-    """Taken and kept in each iteration."""
-    crash_tick: int = 0
-    """At which it falls over, in its first life."""
-
-
-class Glutton(Component):
-    """Takes."""
-
-    stage = "think"
-    config: GluttonConfig
-    imu: Reads[imu_t]
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        tick = self.imu.value.header.tick
-        if tick == self.config.crash_tick and not Path("crashed").exists():
-            Path("crashed").touch()
-            ctypes.string_at(0)
-        if self.config.array_mb:
-            _taken.append(np.ones(self.config.array_mb << 20, np.uint8))
-        _taken.extend([object()] for _ in range(self.config.objects))
-        self.pose.value.x_m = float(tick)
-        self.pose.write()
-'''
 LAUNCH = """
 name: parts
 public_url: {url}
 components:
-  r/worker: {{use: "parts:Worker"}}
-  r/glutton: {{use: "parts:Glutton", restart: {{backoff_s: 0.01}}, memory_limit_mb: 60}}
+  r/worker: {{use: "glutton:Worker"}}
+  r/glutton: {{use: "glutton:Glutton", restart: {{backoff_s: 0.01}}, memory_limit_mb: 60}}
 """
 
 
 @pytest.fixture
 def parts(tmp_path: Path, ports: PortBlock, launch: Launch) -> Launch:
-    write_files(tmp_path, {"parts.py": PARTS, "parts.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("glutton.py"), "parts.yaml": LAUNCH.format(url=ports.public_url)})
 
     def started(*arguments: str) -> Launched:
         return launch("parts.yaml", "--speed", "max", "--ticks", "200", *arguments)
@@ -128,7 +71,7 @@ def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch
     assert run.wait() == 0, run.text
     log = log_of(run)
     assert re.search(r"r/glutton stderr:\d+: Fatal Python error: Segmentation fault", log)
-    assert "parts.py" in log.partition("Fatal Python error")[2]
+    assert "glutton.py" in log.partition("Fatal Python error")[2]
     _, hard = resource.getrlimit(resource.RLIMIT_CORE)
     pattern = Path("/proc/sys/kernel/core_pattern").read_text().strip()
     dumped = ", core dumped" if hard and pattern else ""

@@ -11,29 +11,21 @@ import pytest
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
 from fwk.model.tick_events import HostStarted
+from tests.harness.components import sources
 from tests.harness.logs import Recording
 from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, write_files
-from tests.programs.control_system import PARTS, Steered
+from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-SLOW = '''
-
-class SlowCamera(Camera):
-    """Is ready when it is let."""
-
-    def init(self) -> None:
-        while not Path("go").exists():
-            sleep_s(0.01)
-'''
 LAUNCH = """
 name: small
 public_url: {url}
 components:
-  r/finder: {{use: "parts:Finder"}}
-  r/counter: {{use: "parts:Counter"}}
-  r/follower: {{use: "parts:Follower", start: false, needs: counter}}
-  r/camera: {{use: "parts:SlowCamera", ready_timeout_s: {timeout}, restart: {{when: {when}}}}}
+  r/finder: {{use: "small:Finder"}}
+  r/counter: {{use: "small:Counter"}}
+  r/follower: {{use: "small:Follower", start: false, needs: counter}}
+  r/camera: {{use: "slow_camera:SlowCamera", ready_timeout_s: {timeout}, restart: {{when: {when}}}}}
 """
 Start = Callable[..., Launched]
 
@@ -42,8 +34,7 @@ Start = Callable[..., Launched]
 def start(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Start:
     def started(*arguments: str, timeout: float = 60, when: str = "always") -> Launched:
         text = LAUNCH.format(url=ports.public_url, timeout=timeout, when=when)
-        parts = PARTS.replace("import numpy", "from pathlib import Path\n\nimport numpy") + SLOW
-        write_files(tmp_path, {"parts.py": parts, "small.yaml": text})
+        write_files(tmp_path, {**sources("small.py", "slow_camera.py"), "small.yaml": text})
         return launch("small.yaml", *arguments)
 
     return started

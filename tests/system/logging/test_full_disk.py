@@ -26,7 +26,7 @@ Launch = Callable[..., Launched]
 def test_log_and_recording_on_a_full_disk(tmp_path: Path, ports: PortBlock, launch: Launch, small_disk: Disk) -> None:
     disk = small_disk(24)
     write_system(tmp_path, ports)
-    chatty = tmp_path / "parts.py"
+    chatty = tmp_path / "small.py"
     loop = "        self.imu.value.heading_rad += self.config.step\n"
     chatty.write_text(chatty.read_text().replace(loop, loop + "        self.log.debug('counting')\n"))
     options = ("--set", "r/counter.log_level=debug", "--set", "speed=4")

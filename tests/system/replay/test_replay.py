@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from fwk.model.tick_events import HostLate, HostLost, HostStopped, MainLoopGiven
+from tests.harness.components import source
 from tests.harness.fate import Fate
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
 from tests.harness.terminals import Terminal
 from tests.programs.control_system import Steered
-from tests.programs.orchestra import PLAYER
 from tests.programs.together import FILE, together
 
 pytestmark = pytest.mark.system
@@ -80,7 +80,7 @@ def recorded(folder: Path, launch: Launch) -> Path:
 def test_a_changed_component_is_found_and_its_first_difference_named(
     recorded: Path, before: str, after: str, what: str
 ) -> None:
-    file = recorded / "procs/player.py"
+    file = recorded / "player.py"
     changed = "(self.name == 'd/player' and self.clock.tick >= 17)"
     assert before in file.read_text()
     file.write_text(file.read_text().replace(before, after.replace("CHANGED", changed)))
@@ -97,7 +97,7 @@ def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: 
     stopped = Terminal(recorded, *command, "--verify")
     assert "loop()" in stopped.prompt()
     assert "('e/player', 12)" in stopped.ask("p (self.name, self.clock.tick)")
-    stopped.ask(f"tbreak {recorded / 'procs/player.py'}:{line_of('self.note.write()')}")
+    stopped.ask(f"tbreak {recorded / 'player.py'}:{line_of('self.note.write()')}")
     stopped.ask("c")
     assert "12" in stopped.ask("p note.iterations")
     stopped.type("c")
@@ -111,7 +111,7 @@ def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: 
 
 
 def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> None:
-    file = recorded / "procs/player.py"
+    file = recorded / "player.py"
     file.write_text(file.read_text().replace("        self.note.write()", "        1 / (self.clock.tick - 20)"))
     command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
     failed = Terminal(recorded, *command)
@@ -124,7 +124,7 @@ def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> 
 
 def line_of(text: str) -> int:
     """Where it stands in the player's file."""
-    return 1 + next(number for number, line in enumerate(PLAYER.splitlines()) if text in line)
+    return 1 + next(number for number, line in enumerate(source("player.py").splitlines()) if text in line)
 
 
 @pytest.mark.parametrize("tick", [1, 9])

@@ -1,0 +1,18 @@
+from typing import ClassVar
+
+from lcmtypes.core.header_t import header_t
+
+class tally_t:
+    __slots__: ClassVar[list[str]]
+    __typenames__: ClassVar[list[str]]
+    __dimensions__: ClassVar[list[list[int | str] | None]]
+    header: header_t
+    done: int
+    failed: int
+    def __init__(self, *, header: header_t = ..., done: int = ..., failed: int = ...) -> None: ...
+    def encode(self) -> bytes: ...
+    @staticmethod
+    def decode(data: bytes) -> tally_t: ...
+    @staticmethod
+    def _get_packed_fingerprint() -> bytes: ...
+    def get_hash(self) -> int: ...

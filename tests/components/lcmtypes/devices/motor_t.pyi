@@ -1,0 +1,16 @@
+from typing import ClassVar
+
+
+class motor_t:
+    __slots__: ClassVar[list[str]]
+    __typenames__: ClassVar[list[str]]
+    __dimensions__: ClassVar[list[list[int | str] | None]]
+    utime: int
+    power: list[float]
+    def __init__(self, *, utime: int = ..., power: list[float] = ...) -> None: ...
+    def encode(self) -> bytes: ...
+    @staticmethod
+    def decode(data: bytes) -> motor_t: ...
+    @staticmethod
+    def _get_packed_fingerprint() -> bytes: ...
+    def get_hash(self) -> int: ...
