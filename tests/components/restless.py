@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 from fwk import Clock, Component, Config, MainLoop, Reads, Writes, channel
-from fwk.clock import sleep_s
+from fwk.clock import monotonic_us, sleep_s
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
 
@@ -26,6 +26,12 @@ class PlannerConfig(Config):
     takes_loop: int = 0
 
 
+def note_time() -> None:
+    """Appends the wall time in microseconds to the file `times`; no message depends on it."""
+    with Path("times").open("a") as file:
+        file.write(f"{monotonic_us()}\n")
+
+
 class Planner(Component):
     """Sums up all that it hears."""
 
@@ -38,8 +44,10 @@ class Planner(Component):
 
     def init(self) -> None:
         Path("planner.pid").write_text(str(os.getpid()))
+        note_time()
 
     def loop(self) -> None:
+        note_time()
         before = [message.header.sequence for message in self.imu.fresh]
         sleep_s(self.config.takes_s)
         assert before == [message.header.sequence for message in self.imu.fresh]

@@ -24,7 +24,7 @@ components:
 """
 
 
-def test_a_flood_of_everything_is_held_back_and_nobody_else_suffers(
+def test_a_flooding_component_delays_no_other(
     launch: Launch, tmp_path: Path, ports: PortBlock, after: Aftermath
 ) -> None:
     files = command_system(ports.public_url)

@@ -28,7 +28,7 @@ def lossy(share: str) -> tuple[tuple[str, ...], dict[str, str]]:
 
 
 @pytest.mark.parametrize("share", ["0.05", pytest.param("0.2", marks=pytest.mark.slow)])
-def test_lost_datagrams_and_buffers_of_8_kib_change_nothing(
+def test_lost_datagrams_and_tiny_buffers_change_nothing(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, share: str
 ) -> None:
     wrapper, env = lossy(share)
@@ -51,7 +51,7 @@ components:
 """
 
 
-def test_who_leaves_takes_nothing_along_that_was_lost(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+def test_a_leaving_writer_first_answers_all_fetches(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     files = {**sources("restarted.py", "weather.py"), "it.yaml": LAUNCH.format(url=ports.public_url)}
     write_files(tmp_path, files)
     for loss in ("0", "0.3"):

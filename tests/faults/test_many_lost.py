@@ -22,9 +22,7 @@ components:
 """
 
 
-def test_what_was_lost_is_kept_from_its_reader_again_however_much(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
+def test_many_lost_messages_are_lost_again_in_replay(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, {**sources("talk.py"), "talk.yaml": LAUNCH.format(url=ports.public_url)})
     run = launch("talk.yaml", "--ticks", "10", "--record", "log.lcm")
     assert run.wait() == 0, run.text

@@ -44,7 +44,9 @@ def wrong(what: str, tick: int = 5, again: bool = False) -> list[str]:
         ("loop:close all", "d/player ended: "),
     ],
 )
-def test_it_is_named_and_started_again(launch: Launch, faulty: Path, after: Aftermath, what: str, says: str) -> None:
+def test_a_failing_component_is_named_and_restarted(
+    launch: Launch, faulty: Path, after: Aftermath, what: str, says: str
+) -> None:
     run = launch(*RUN, "--ticks", "60", *wrong(what))
     run.until_ticks("a/player", 2)
     after.note(run)
@@ -55,9 +57,7 @@ def test_it_is_named_and_started_again(launch: Launch, faulty: Path, after: Afte
     assert recording.gaps() == {}
 
 
-def test_a_program_that_a_killed_component_had_started_ends_with_it(
-    launch: Launch, faulty: Path, after: Aftermath
-) -> None:
+def test_a_child_program_ends_with_its_killed_component(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:child and die"))
     run.until("d/player runs again, start number 2")
     after.note(run)
@@ -71,7 +71,7 @@ def alive(pid: int) -> bool:
     return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
-def test_who_spins_does_not_keep_a_run_in_lockstep_from_ending(launch: Launch, faulty: Path, after: Aftermath) -> None:
+def test_a_spinning_component_in_lockstep_lets_the_run_end(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:spin"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player spins")
     after.note(run)
@@ -80,7 +80,7 @@ def test_who_spins_does_not_keep_a_run_in_lockstep_from_ending(launch: Launch, f
     assert "d/player did not stop when asked; killed" in run.text
 
 
-def test_who_spins_is_left_behind_in_real_time(launch: Launch, wall: Path, after: Aftermath) -> None:
+def test_a_spinning_component_is_left_behind_in_real_time(launch: Launch, wall: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:spin"))
     run.until("d/player is late")
     after.note(run)
@@ -91,15 +91,13 @@ def test_who_spins_is_left_behind_in_real_time(launch: Launch, wall: Path, after
     assert len(recording.messages["f/note"]) >= len(recording.messages["d/note"]) + 10
 
 
-def test_who_spins_in_finalize_is_killed_and_named(launch: Launch, faulty: Path, after: Aftermath) -> None:
+def test_a_component_spinning_in_finalize_is_killed_and_named(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, "--ticks", str(TICKS), *wrong("finalize:spin"))
     after.check(run)
     assert "d/player did not stop when asked; killed" in run.text
 
 
-def test_the_state_of_a_run_is_published_while_it_waits_for_somebody(
-    launch: Launch, faulty: Path, ports: PortBlock
-) -> None:
+def test_status_is_published_while_the_run_waits(launch: Launch, faulty: Path, ports: PortBlock) -> None:
     run = launch(*RUN, *wrong("loop:wait"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player waits")
     ears = multicast_receiver(Ports(ports.bus, 0, 0).status)

@@ -29,7 +29,7 @@ def trouble(kind: str) -> list[str]:
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_it_has_also_what_somebody_wrote_who_died_in_the_first_tick(
+def test_a_slow_gateway_records_a_writer_that_died_in_tick_one(
     launch: Launch, slow: Path, after: Aftermath, hosting: str
 ) -> None:
     run = launch(*RUN, "--ticks", "10", "--hosting", hosting, *trouble("loop:raise"))
@@ -41,7 +41,7 @@ def test_it_has_also_what_somebody_wrote_who_died_in_the_first_tick(
     assert "lost 0" in run.text
 
 
-def test_it_tells_why_somebody_failed_in_init(launch: Launch, slow: Path) -> None:
+def test_a_slow_gateway_reports_a_failure_in_init(launch: Launch, slow: Path) -> None:
     run = launch(*RUN, *trouble("init:raise"))
     assert run.wait() == 1
     assert "a/player: failed in init" in run.text

@@ -26,9 +26,7 @@ components:
 }
 
 
-def test_every_robot_has_its_answers_in_any_layout_and_in_replay(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
+def test_every_robot_gets_its_answers_in_any_layout(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, FILES | {"it.yaml": FILES["it.yaml"].format(url=ports.public_url)})
     for name, hosting in (("it.lcm", "process"), ("single.lcm", "single")):
         run = launch("it.yaml", "--ticks", "40", "--speed", "max", "--record", name, "--hosting", hosting)

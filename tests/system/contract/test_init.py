@@ -21,7 +21,7 @@ components:
 """
 
 
-def test_they_go_out_with_the_first_iteration(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+def test_messages_of_init_are_sent_with_the_first_iteration(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, {**sources("early.py"), "it.yaml": LAUNCH.format(url=ports.public_url)})
     run = launch("it.yaml", "--ticks", "20", "--speed", "max", "--record", "it.lcm")
     run.wait()

@@ -40,7 +40,7 @@ def replayed(log: Path) -> str:
 
 
 @pytest.mark.parametrize("loss", ["0", "0.1"])
-def test_all_that_components_ask_for_at_once_is_answered_in_any_layout(greedy: Path, launch: Launch, loss: str) -> None:
+def test_many_requests_at_once_are_answered_in_any_layout(greedy: Path, launch: Launch, loss: str) -> None:
     for hosting in ("process", "single"):
         arguments = ("--ticks", "4", "--hosting", hosting, "--record", f"{hosting}.log")
         run = launch("greedy.yaml", *arguments, env={"FWK_TEST_LOSS": loss})
@@ -51,7 +51,7 @@ def test_all_that_components_ask_for_at_once_is_answered_in_any_layout(greedy: P
     assert [imu.heading_rad for imu in answered] == [64.0] * COMPONENTS
 
 
-def test_settings_of_any_size_reach_all_in_one_tick(greedy: Path, launch: Launch, ports: PortBlock) -> None:
+def test_large_settings_reach_all_hosts_in_one_tick(greedy: Path, launch: Launch, ports: PortBlock) -> None:
     run = Steered(launch("greedy.yaml", "--record", "log.lcm"), ports)
     run.ticks_pass(3)
     run.ask("pause")

@@ -45,7 +45,7 @@ def orders(recording: Recording) -> dict[int, list[str]]:
     }
 
 
-def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_same(launch: Launch, taken: Path) -> None:
+def test_take_over_gives_the_same_in_all_layouts(launch: Launch, taken: Path) -> None:
     run = launch("taken.yaml", "--ticks", "60", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     assert f"a/driver has the main loop from tick 6 on: {', '.join(TAKEN)}" in run.text
@@ -64,7 +64,7 @@ def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_sam
         replayed(taken, log="again.lcm")
 
 
-def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> None:
+def test_a_component_away_for_many_ticks_sees_the_newest(launch: Launch, taken: Path) -> None:
     sets = ("--set", "a/driver.last=400", "--set", "a/driver.order=[think, act]")
     run = launch("taken.yaml", "--ticks", "410", "--record", "log.lcm", *sets)
     assert run.wait() == 0, run.text
@@ -77,7 +77,7 @@ def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> N
     assert difference(taken / "log.lcm", taken / "again.lcm") == ""
 
 
-def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
+def test_a_killed_holder_gives_the_main_loop_back(launch: Launch, taken: Path) -> None:
     run = launch("taken.yaml", "--ticks", "40", "--record", "log.lcm", "--set", "a/driver.dies=9")
     assert run.wait() == 0, run.text
     assert "a/driver has given the main loop back; tick 10 runs the usual stages" in run.text
@@ -88,7 +88,7 @@ def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
     replayed(taken)
 
 
-def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
+def test_status_names_the_holder_and_stop_gives_the_loop_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
     file = taken / "taken.yaml"
     file.write_text(file.read_text().replace("speed: max", "speed: 5"))
     run = Steered(launch("taken.yaml", "--set", "a/driver.last=0"), ports)
@@ -105,7 +105,7 @@ def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, 
     replayed(taken, log=log)
 
 
-def test_in_real_time_it_is_taken_over_too(launch: Launch, taken: Path) -> None:
+def test_take_over_in_real_time(launch: Launch, taken: Path) -> None:
     file = taken / "taken.yaml"
     file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.5"))
     run = launch("taken.yaml", "--ticks", "30", "--record", "log.lcm")

@@ -41,7 +41,7 @@ def test_state_period_stages_time_awake_and_parameters(run: Steered) -> None:
     assert "(int, default, fixed)" in run.fwk("status", "r/counter")
 
 
-def test_a_parameter_is_set_if_it_can_be_and_configuration_is_read_again(run: Steered, tmp_path: Path) -> None:
+def test_set_refuses_fixed_parameters_and_reload_reads_files(run: Steered, tmp_path: Path) -> None:
     assert "r/counter.step = 3.0 since tick" in run.fwk("config", "set", "r/counter.step=3")
     assert "'size' stays as it is while the run goes on" in run.fwk("config", "set", "r/counter.size=6", code=2)
     file = tmp_path / "small.yaml"
@@ -53,7 +53,7 @@ def test_a_parameter_is_set_if_it_can_be_and_configuration_is_read_again(run: St
     assert run.json("config", "get", "r/counter.size")[0]["value"] == 5
 
 
-def test_each_is_killed_and_comes_back_when_asked(run: Steered) -> None:
+def test_each_component_can_be_killed_and_loaded_again(run: Steered) -> None:
     for name in STAGES:
         assert f"{name} stopped" in run.fwk("kill", name)
         assert run.component(name)["state"] == "stopped"

@@ -25,7 +25,7 @@ components:
 """
 
 
-def test_it_happens_at_the_same_ticks_in_every_run_and_replays(
+def test_plugin_requests_take_effect_at_the_same_ticks(
     tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]
 ) -> None:
     write_files(tmp_path, {**sources("small.py", "directors.py"), "it.yaml": LAUNCH.format(url=ports.public_url)})

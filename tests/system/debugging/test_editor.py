@@ -110,7 +110,7 @@ def terminals(tmp_path: Path) -> Iterator[Callable[[Terminal], Terminal]]:
         each.kill()
 
 
-def test_an_editor_stops_the_world_and_nothing_shows_in_the_recording(
+def test_an_editor_breakpoint_leaves_no_trace_in_the_recording(
     tmp_path: Path, ports: PortBlock, port: int, terminals: Callable[[Terminal], Terminal]
 ) -> None:
     free = terminals(Terminal.launch(tmp_path, ports, "--record", "free.log"))
@@ -128,7 +128,7 @@ def test_an_editor_stops_the_world_and_nothing_shows_in_the_recording(
     assert difference(tmp_path / "free.log", tmp_path / "stopped.log") == ""
 
 
-def test_an_editor_takes_a_component_of_a_running_system_and_gives_it_back(
+def test_an_editor_attaches_to_a_running_system_and_detaches(
     tmp_path: Path, ports: PortBlock, port: int, terminals: Callable[[Terminal], Terminal], launch: Launch
 ) -> None:
     launched = launch("parts.yaml", "--set", f"public_url={ports.public_url}")

@@ -64,7 +64,7 @@ def index_of(match: Steered, name: str) -> int:
     return names.index(name)
 
 
-def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered, ports: PortBlock) -> None:
+def test_a_stopped_base_stops_the_robot_and_comes_back(match: Steered, ports: PortBlock) -> None:
     base = index_of(match, "cyan1/base")
     drive(match, ports)
     match.steer("stop", "cyan1/base")
@@ -101,7 +101,7 @@ def test_a_killed_base_lets_the_motors_time_out(match: Steered, ports: PortBlock
 
 @pytest.mark.parametrize("clock", ["simulated", "wall"])
 @pytest.mark.core
-def test_what_finalize_writes_is_seen_recorded_and_replayed(
+def test_messages_of_finalize_are_seen_recorded_and_replayed(
     launch: Launch, ports: PortBlock, tmp_path: Path, clock: str
 ) -> None:
     write_system(tmp_path, ports)

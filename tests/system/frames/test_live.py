@@ -57,7 +57,7 @@ def holders(ring: str) -> list[int]:
     return found
 
 
-def test_in_lockstep_every_reader_sees_every_tick_whole(launch: Launch, frames: Path) -> None:
+def test_readers_in_lockstep_see_a_whole_frame_each_tick(launch: Launch, frames: Path) -> None:
     run = launch("frames.yaml", "--ticks", "60", "--speed", "max", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     newest = [sum(1 + tick % 3 for tick in range(1, last + 1)) for last in range(1, 61)]
@@ -65,7 +65,7 @@ def test_in_lockstep_every_reader_sees_every_tick_whole(launch: Launch, frames: 
         assert seen(frames / "log.lcm", finder) == [(number, 1) for number in newest]
 
 
-def test_in_real_time_an_overwritten_frame_is_noticed_counted_and_said(
+def test_an_overwritten_frame_in_real_time_is_counted_and_logged(
     launch: Launch, frames: Path, ports: PortBlock
 ) -> None:
     wall(frames, 0.05)
@@ -83,9 +83,7 @@ def test_in_real_time_an_overwritten_frame_is_noticed_counted_and_said(
     assert seen(log, "b")[-1][1] == 1  # it goes on with the next
 
 
-def test_killed_readers_and_cameras_come_back_and_see_whole_frames(
-    launch: Launch, frames: Path, ports: PortBlock
-) -> None:
+def test_killed_readers_and_cameras_return_to_whole_frames(launch: Launch, frames: Path, ports: PortBlock) -> None:
     run = Steered(launch("frames.yaml", "--record", "log.lcm"), ports)
     for name in ("a-finder", "camera", "b-finder", "camera"):
         os.kill(int((frames / f"{name}.pid").read_text()), signal.SIGKILL)
@@ -99,7 +97,7 @@ def test_killed_readers_and_cameras_come_back_and_see_whole_frames(
         assert {state for _, state in seen(frames / "log.lcm", finder)} == {1}
 
 
-def test_no_shared_memory_is_left_when_everything_is_killed(launch: Launch, frames: Path, ports: PortBlock) -> None:
+def test_no_shared_memory_is_left_when_all_is_killed(launch: Launch, frames: Path, ports: PortBlock) -> None:
     own = (frames / "frames.yaml").read_text().replace("r/camera:", f"ring{ports.bus}/camera:")
     (frames / "frames.yaml").write_text(own)
     (frames / "checked_frames.py").write_text(source("checked_frames.py").replace("r/image", f"ring{ports.bus}/image"))

@@ -42,9 +42,7 @@ def lost(folder: Path, watcher: str) -> int:
     return [pose.y_m for pose in Recording(folder / "log.lcm").decoded(f"{watcher}/pose")].count(-1.0)
 
 
-def test_frames_that_a_slow_reader_lost_are_lost_again_in_a_replay(
-    launch: Launch, watch: Path, ports: PortBlock
-) -> None:
+def test_frames_lost_by_a_slow_reader_are_lost_in_replay(launch: Launch, watch: Path, ports: PortBlock) -> None:
     run = Steered(launch("watch.yaml", "--record", "log.lcm"), ports)
     for start in (2, 3):
         run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost")

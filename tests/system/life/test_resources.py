@@ -43,7 +43,7 @@ def log_of(run: Launched) -> str:
 
 
 @pytest.mark.parametrize("hosting", ["process", "robot"])
-def test_a_profile_says_where_the_time_goes_and_changes_no_message(parts: Launch, tmp_path: Path, hosting: str) -> None:
+def test_a_profile_names_functions_and_changes_no_message(parts: Launch, tmp_path: Path, hosting: str) -> None:
     assert parts("--record", "free.log").wait() == 0
     run = parts("--record", "profiled.log", "--profile", "r/worker", "--hosting", hosting)
     assert run.wait() == 0, run.text
@@ -60,13 +60,13 @@ def test_a_profile_says_where_the_time_goes_and_changes_no_message(parts: Launch
     assert {"long_sum", "loop"} <= {frame["name"] for frame in frames}
 
 
-def test_a_profile_of_nobody_is_refused(parts: Launch) -> None:
+def test_a_profile_of_an_unknown_component_is_refused(parts: Launch) -> None:
     run = parts("--profile", "r/wroker")
     assert run.wait() == 2
     assert "did you mean 'r/worker'?" in " ".join(run.text.replace("│", " ").split())
 
 
-def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch, tmp_path: Path) -> None:
+def test_a_segmentation_fault_leaves_traceback_and_core_dump(parts: Launch, tmp_path: Path) -> None:
     run = parts("--record", "log.lcm", *settings(crash_tick=20))
     assert run.wait() == 0, run.text
     log = log_of(run)
@@ -83,9 +83,7 @@ def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch
 
 
 @pytest.mark.parametrize("takes", [{"array_mb": 5}, {"objects": 30_000}])
-def test_who_takes_more_memory_than_allowed_is_ended_named_and_started_again(
-    parts: Launch, tmp_path: Path, takes: dict[str, int]
-) -> None:
+def test_a_component_beyond_its_memory_limit_is_restarted(parts: Launch, tmp_path: Path, takes: dict[str, int]) -> None:
     run = parts("--record", "log.lcm", "--ticks", "60", *settings(**takes))
     assert run.wait() == 0, run.text
     log = log_of(run)

@@ -30,7 +30,7 @@ def written(folder: Path, ports: PortBlock, listener: str = "Listener", lines: i
 @pytest.mark.parametrize(
     ("listener", "hosting"), [("Listener", "process"), ("Listener", "single"), ("Free", "process")]
 )
-def test_a_component_hears_the_lines_of_others_and_is_replayed_with_them(
+def test_a_reader_of_log_lines_hears_others_and_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, listener: str, hosting: str
 ) -> None:
     alone = hosting == "process"
@@ -53,7 +53,7 @@ def test_a_component_hears_the_lines_of_others_and_is_replayed_with_them(
     replayed(tmp_path, "--only", "a/listener")
 
 
-def test_more_lines_than_a_tick_takes_are_counted_and_said(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
+def test_log_lines_beyond_the_limit_of_a_tick_are_counted(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     written(tmp_path, ports, lines=150)
     run = launch("alarm.yaml", "--record", "log.lcm")
     run.until("lines did not reach the components that ask for lines: too many in one tick")

@@ -42,7 +42,7 @@ def lines_of(run: Launched, component: str = "a/talker") -> list[dict[str, Any]]
     return [line for line in read_lines(run.run_dir / "fwk.log.jsonl") if line["component"] == component]
 
 
-def test_a_flood_is_cut_off_at_its_source_and_no_error_is_lost(talk: Callable[..., Launched]) -> None:
+def test_a_flood_of_lines_is_cut_off_and_no_error_is_lost(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "200", lines=20_000, log={"lines_per_s": 50})
     assert run.wait() == 0, run.text
     lines = lines_of(run)
@@ -56,7 +56,7 @@ def test_a_flood_is_cut_off_at_its_source_and_no_error_is_lost(talk: Callable[..
     assert {line["file"] for line in told} == {"talker.py"}
 
 
-def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[..., Launched]) -> None:
+def test_printing_too_much_is_counted_and_delays_no_component(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "50", printed=100_000, log={"lines_per_s": 50})
     assert run.wait() == 0, run.text
     printed = [line for line in lines_of(run) if line["file"] == "stdout"]
@@ -68,12 +68,12 @@ def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[...,
     assert errors == ["to the other stream", "\\xfe no text"]
 
 
-def test_what_has_no_end_of_line_is_logged_while_the_process_goes_on(talk: Callable[..., Launched]) -> None:
+def test_a_line_without_an_end_is_logged_during_the_run(talk: Callable[..., Launched]) -> None:
     run = talk("--speed", "1", asks=True)
     run.until("a/talker: how much?  (stdout:1)")
 
 
-def test_long_lines_come_with_their_ends(talk: Callable[..., Launched]) -> None:
+def test_long_lines_keep_their_ends(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "5", long=300_000)
     assert run.wait() == 0, run.text
     (line,) = [line for line in lines_of(run) if line["level"] == "warning"]
@@ -91,7 +91,7 @@ def test_exceptions_have_traceback_component_and_tick(talk: Callable[..., Launch
     assert re.match("failed in loop, tick 7\nTraceback (.|\n)*RuntimeError: not this tick$", failure["text"])
 
 
-def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_that_in_which_its_process_began(
+def test_lines_carry_the_tick_in_which_they_were_written(
     talk: Callable[..., Launched],
 ) -> None:
     run = talk("--ticks", "50", "--set", "b/talker.leaves_at=7")
@@ -103,9 +103,7 @@ def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_th
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_what_plain_modules_log_are_lines_of_the_component_that_calls_them(
-    talk: Callable[..., Launched], hosting: str
-) -> None:
+def test_lines_of_plain_modules_belong_to_the_calling_component(talk: Callable[..., Launched], hosting: str) -> None:
     run = talk(
         "--ticks", "5", "--hosting", hosting, "--set", "b/*.thinks=true", "--set", "b/*.log_level=debug", thinks=True
     )
@@ -121,9 +119,7 @@ def test_what_plain_modules_log_are_lines_of_the_component_that_calls_them(
     assert any(line["text"].endswith("ZeroDivisionError: division by zero") for line in lines_of(run))
 
 
-def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
-    talk: Callable[..., Launched], tmp_path: Path
-) -> None:
+def test_log_levels_and_targets_change_no_message(talk: Callable[..., Launched], tmp_path: Path) -> None:
     targets = {"console": "error", "file": "off", "recording": "warning", "file_mb": 0.05, "files": 2, "lines_per_s": 0}
     run = talk("--ticks", "500", "--set", "b/*.log_level=debug", "--record", "loud.log", log=targets)
     assert run.wait() == 0, run.text
@@ -142,9 +138,7 @@ def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
     assert len(loud_heading) == 500
 
 
-def test_the_systems_log_gets_lines_of_components_and_of_what_they_print(
-    tmp_path: Path, talk: Callable[..., Launched]
-) -> None:
+def test_syslog_gets_logged_and_printed_lines(tmp_path: Path, talk: Callable[..., Launched]) -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as daemon:
         daemon.bind(str(tmp_path / "log"))
         daemon.setblocking(False)
@@ -158,7 +152,7 @@ def test_the_systems_log_gets_lines_of_components_and_of_what_they_print(
         assert any(text in each for each in heard), text
 
 
-def test_a_level_is_changed_while_it_runs(talk: Callable[..., Launched], ports: PortBlock) -> None:
+def test_a_log_level_changes_during_the_run(talk: Callable[..., Launched], ports: PortBlock) -> None:
     steered = Steered(talk("--speed", "1"), ports)
     said = steered.json("config", "set", "b/talker.log_level=debug")
     steered.ticks_pass()

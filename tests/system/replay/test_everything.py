@@ -56,7 +56,9 @@ def each_alone(folder: Path) -> dict[str, tuple[int, list[str]]]:
 
 
 @pytest.mark.parametrize("clock", ["lockstep", "real time"])
-def test_whatever_happens_is_replayed_exactly(launch: Launch, tmp_path: Path, ports: PortBlock, clock: str) -> None:
+def test_a_run_with_every_kind_of_event_is_replayed_exactly(
+    launch: Launch, tmp_path: Path, ports: PortBlock, clock: str
+) -> None:
     write_files(tmp_path, everything(ports.public_url, real_time=clock == "real time"))
     use_types_of(tmp_path)
     run = Steered(launch(FILE, "--record", "log.lcm"), ports)
