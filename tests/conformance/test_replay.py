@@ -1,4 +1,4 @@
-"""Every component of `procs` takes part in a short recorded run and writes the same messages in a replay of it alone."""
+"""Every component of `procs` writes the same messages in a replay as in the short recorded run that contains it."""
 
 from collections.abc import Callable
 from functools import cache
