@@ -7,6 +7,7 @@ from inspect import isabstract
 from pathlib import Path
 
 from fwk import Component
+from fwk.component.declaration import declaration
 from fwk.model.plan import ComponentPlan
 from fwk.plan.classes import components_in
 from fwk.plan.load import LaunchOptions, load_plan
@@ -33,14 +34,20 @@ def label(component: type[Component]) -> str:
 
 
 def usage(component: type[Component]) -> tuple[str, ComponentPlan] | None:
-    """Returns the first launch file that contains the component, and its place in that plan; None without one."""
-    return _usages().get((component.__module__, component.__name__))
+    """Returns the first launch file in which the component has all it needs, and its place in that plan.
+
+    A port for many instances needs two of them where one of the launch files has two. None without a launch file.
+    """
+    found = [each for each in _usages() if (each[1].module, each[1].class_name) == _key(component)]
+    each_ports = [port.attribute for port in declaration(component).ports if port.each]
+    full = [use for use in found if all(len(use[1].channels[attribute]) > 1 for attribute in each_ports)]
+    return next(iter([*full, *found]), None)
+
+
+def _key(component: type[Component]) -> tuple[str, str]:
+    return component.__module__, component.__name__
 
 
 @cache
-def _usages() -> dict[tuple[str, str], tuple[str, ComponentPlan]]:
-    found: dict[tuple[str, str], tuple[str, ComponentPlan]] = {}
-    for file in FILES:
-        for each in load_plan(str(LAUNCH / file), LaunchOptions()).components:
-            found.setdefault((each.module, each.class_name), (file, each))
-    return found
+def _usages() -> list[tuple[str, ComponentPlan]]:
+    return [(file, each) for file in FILES for each in load_plan(str(LAUNCH / file), LaunchOptions()).components]
