@@ -24,7 +24,7 @@ $(READY): pyproject.toml fwk/packaging/build_backend.py
 	@touch $@
 
 types: $(READY)  ## Generates Python classes from lcmtypes/*.lcm
-	@$(BIN)/python -P fwk/lcm/typegen.py lcmtypes
+	@$(BIN)/python -P fwk/lcm/typegen.py lcmtypes tests/components/lcmtypes
 
 soccer: types  ## Plays five against five; Ctrl-C ends the match
 	@$(BIN)/fwk-launch soccer.yaml
@@ -51,6 +51,6 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
 
 clean:  ## Removes what was made, the environment too
-	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 -include tools/bench/bench.mk

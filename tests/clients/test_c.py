@@ -37,7 +37,9 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
     return build
 
 
-def test_the_ball_of_a_robot_is_printed(ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock) -> None:
+def test_the_c_program_prints_the_ball_of_a_robot(
+    ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock
+) -> None:
     needs("cc")
     bus = Bus(ports.public_url)
     channel, data, _ = entry("cyan1/world_model", world_model(7, 1), 7)
@@ -56,14 +58,14 @@ def test_the_ball_of_a_robot_is_printed(ball: Callable[[], str], needs: Callable
         assert started.returncode == 0
 
 
-def test_wrong_use_is_explained(ball: Callable[[], str], needs: Callable[..., None]) -> None:
+def test_wrong_arguments_are_explained(ball: Callable[[], str], needs: Callable[..., None]) -> None:
     needs("cc")
     result = subprocess.run([ball()], capture_output=True, text=True, check=False)
     assert result.returncode == 2
     assert "usage: " in result.stderr
 
 
-def test_beside_a_running_robot_the_ball_is_printed_and_lcm_logger_hears_what_we_record(
+def test_c_program_and_lcm_logger_hear_a_running_robot(
     ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock, tmp_path: Path
 ) -> None:
     needs("cc")

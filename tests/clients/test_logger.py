@@ -14,7 +14,7 @@ pytestmark = pytest.mark.system
 
 
 @pytest.mark.core
-def test_what_lcm_logger_heard_of_lcm_logplayer_is_what_we_wrote(tmp_path: Path, ports: PortBlock) -> None:
+def test_lcm_logger_hears_our_log_from_lcm_logplayer(tmp_path: Path, ports: PortBlock) -> None:
     bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=40))
     with bus.logger(tmp_path / "heard"):
         bus.play(played)
@@ -22,7 +22,7 @@ def test_what_lcm_logger_heard_of_lcm_logplayer_is_what_we_wrote(tmp_path: Path,
     assert log_info(tmp_path / "heard").channels["cyan1/odometry"].lost == 0
 
 
-def test_what_was_not_played_is_missed(tmp_path: Path, ports: PortBlock) -> None:
+def test_compare_names_channels_that_were_not_played(tmp_path: Path, ports: PortBlock) -> None:
     bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=10))
     with bus.logger(tmp_path / "heard"):
         bus.play(played, "--regexp=cyan1/.*")
@@ -30,7 +30,7 @@ def test_what_was_not_played_is_missed(tmp_path: Path, ports: PortBlock) -> None
     assert compare(played, tmp_path / "heard", common=True) is None
 
 
-def test_a_log_played_twice_is_the_same_with_everything_repeated(tmp_path: Path, ports: PortBlock) -> None:
+def test_a_log_that_was_played_twice_compares_equal(tmp_path: Path, ports: PortBlock) -> None:
     bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=10))
     with bus.logger(tmp_path / "heard"):
         bus.play(played)

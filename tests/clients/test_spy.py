@@ -60,7 +60,9 @@ def read_table(folder: Path) -> Table:
         return {row["Channel"]: row for row in csv.DictReader(file, delimiter="\t")}
 
 
-def test_every_channel_is_decoded(tmp_path: Path, needs: Callable[..., None], display: str, ports: PortBlock) -> None:
+def test_lcm_spy_decodes_every_channel(
+    tmp_path: Path, needs: Callable[..., None], display: str, ports: PortBlock
+) -> None:
     needs("java", "javac", "jar")
     bus, made = Bus(ports.public_url), one_of_each_type()
     channels = {channel for channel, _, _ in made}

@@ -68,7 +68,7 @@ def clock(wall: Path, needs: Callable[..., None]) -> dict[str, str]:
     return {"LD_PRELOAD": str(library)}
 
 
-def test_a_clock_that_is_set_back_changes_no_time_of_a_run(
+def test_setting_the_clock_back_changes_no_logical_time(
     launch: Launch, wall: Path, after: Aftermath, clock: dict[str, str]
 ) -> None:
     run = launch(*RUN, *TALK, env=clock)

@@ -22,9 +22,7 @@ WHO: dict[str, Callable[[Launched], int]] = {
 
 
 @pytest.mark.parametrize("who", WHO)
-def test_who_dies_while_everything_is_being_stopped_is_named(
-    launch: Launch, traced: Path, after: Aftermath, who: str
-) -> None:
+def test_a_process_that_dies_during_shutdown_is_named(launch: Launch, traced: Path, after: Aftermath, who: str) -> None:
     run = launch(*RUN, "--set", "d/player.trouble=finalize:wait")
     run.until_ticks("f/player", 5)
     after.note(run)
@@ -37,7 +35,7 @@ def test_who_dies_while_everything_is_being_stopped_is_named(
     assert f"the {who} ended: killed by signal 9 while everything was being stopped" in run.text
 
 
-def test_who_asks_all_processes_to_end_gets_a_clean_end(launch: Launch, traced: Path, after: Aftermath) -> None:
+def test_sigterm_to_all_processes_ends_the_run_cleanly(launch: Launch, traced: Path, after: Aftermath) -> None:
     """As systemd does when it stops a service."""
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
@@ -50,9 +48,7 @@ def test_who_asks_all_processes_to_end_gets_a_clean_end(launch: Launch, traced: 
     assert "broken" not in run.text
 
 
-def test_who_stands_still_is_no_orphan_when_the_supervisor_is_killed(
-    launch: Launch, traced: Path, after: Aftermath
-) -> None:
+def test_a_stopped_host_is_no_orphan_of_a_killed_supervisor(launch: Launch, traced: Path, after: Aftermath) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)
@@ -63,7 +59,7 @@ def test_who_stands_still_is_no_orphan_when_the_supervisor_is_killed(
     after.check(run, code=-signal.SIGKILL)
 
 
-def test_ctrl_c_that_is_kept_pressed_ends_it_as_well(launch: Launch, traced: Path, after: Aftermath) -> None:
+def test_repeated_ctrl_c_ends_the_run_cleanly(launch: Launch, traced: Path, after: Aftermath) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)

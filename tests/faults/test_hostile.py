@@ -110,7 +110,7 @@ def disturbers(ports: PortBlock) -> Iterator[list[Echo | Caller]]:
         each.close()
 
 
-def test_garbled_echoes_and_rubbish_callers_change_nothing(
+def test_garbled_echoes_and_garbage_requests_change_nothing(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, disturbers: list[Echo | Caller]
 ) -> None:
     run = launch(*RUN, "--ticks", str(TICKS), "--speed", "1")

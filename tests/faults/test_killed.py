@@ -33,7 +33,7 @@ def victims(run: Launched, ports: PortBlock, luck: random.Random) -> Iterator[in
 
 
 @pytest.mark.slow
-def test_a_match_goes_on_whoever_is_killed_each_second(
+def test_a_match_goes_on_when_components_are_killed(
     launch: Launch, tmp_path: Path, ports: PortBlock, after: Aftermath
 ) -> None:
     arguments = ("--time", str(MATCH_S), "--speed", "max", "--seed", "7", "--record", "log.lcm")
@@ -59,7 +59,7 @@ def test_a_match_goes_on_whoever_is_killed_each_second(
 
 
 @pytest.mark.parametrize("moment", ["after", "before", "while"])
-def test_a_setting_that_was_acknowledged_survives_the_death_of_its_component(
+def test_an_acknowledged_setting_survives_a_crash(
     launch: Launch, tmp_path: Path, ports: PortBlock, moment: str
 ) -> None:
     """The component dies after, before, or while it takes the setting over."""

@@ -8,10 +8,10 @@ import pytest
 
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import PortBlock, write_files
-from tests.programs.orchestra import WEATHER
 
 pytestmark = pytest.mark.system
 
@@ -28,7 +28,7 @@ def lossy(share: str) -> tuple[tuple[str, ...], dict[str, str]]:
 
 
 @pytest.mark.parametrize("share", ["0.05", pytest.param("0.2", marks=pytest.mark.slow)])
-def test_lost_datagrams_and_buffers_of_8_kib_change_nothing(
+def test_lost_datagrams_and_tiny_buffers_change_nothing(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, share: str
 ) -> None:
     wrapper, env = lossy(share)
@@ -41,43 +41,6 @@ def test_lost_datagrams_and_buffers_of_8_kib_change_nothing(
     assert "fetched" in run.text
 
 
-RESTARTED = '''
-"""One that is started anew again and again and speaks until its end, and one that hears it."""
-
-import zlib
-
-import weather
-from fwk import Clock, Component, PluginControl, Reads, Writes
-from lcmtypes.robot import imu_t
-
-
-class Talker(Component):
-    stage = "sensor_acquire"
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += 1.0
-        self.imu.write()
-
-    def finalize(self) -> None:
-        self.imu.value.heading_rad = -1.0
-        self.imu.write()
-
-
-class Listener(Component):
-    stage = "think"
-    clock: Clock
-    plugins: PluginControl
-    imu: Reads[imu_t]
-    heard: Writes[imu_t]
-
-    def loop(self) -> None:
-        for message in self.imu.fresh:
-            self.heard.value.heading_rad = float(zlib.crc32(message.encode() + b"%r" % self.heard.value.heading_rad))
-        self.heard.write()
-        if self.clock.tick % 2:
-            self.plugins.restart("r/talker")
-'''
 LAUNCH = """
 name: restarted
 speed: max
@@ -88,8 +51,8 @@ components:
 """
 
 
-def test_who_leaves_takes_nothing_along_that_was_lost(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
-    files = {"weather.py": WEATHER, "restarted.py": RESTARTED, "it.yaml": LAUNCH.format(url=ports.public_url)}
+def test_a_leaving_writer_first_answers_all_fetches(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    files = {**sources("restarted.py", "weather.py"), "it.yaml": LAUNCH.format(url=ports.public_url)}
     write_files(tmp_path, files)
     for loss in ("0", "0.3"):
         run = launch("it.yaml", "--ticks", "60", "--record", f"{loss}.lcm", env={"FWK_TEST_LOSS": loss})

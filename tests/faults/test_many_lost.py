@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -11,66 +12,6 @@ from tests.harness.runs import PortBlock, replayed, write_files
 pytestmark = pytest.mark.system
 
 MANY = 20_000
-PARTS = f'''
-"""A talker whose messages get lost before it dies, and who listens to it."""
-
-import os
-import signal
-from pathlib import Path
-
-from fwk import Clock, Component, Reads, Writes
-from fwk.host.outputs import Outputs
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-
-def lose_and_die() -> None:
-    publish = Outputs.publish
-
-    def publish_nothing(self, written):
-        send = self._sender.publish
-
-        def send_last(*done):
-            send(*done)
-            os.kill(os.getpid(), signal.SIGKILL)
-
-        self._sender.publish = lambda *_: None
-        marks = publish(self, written)
-        self._sender.publish = send_last
-        return marks
-
-    Outputs.publish = publish_nothing
-
-
-class Talker(Component):
-    """Says much, once."""
-
-    stage = "sensor_acquire"
-    clock: Clock
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        much = self.clock.tick == 5
-        for _ in range({MANY} if much else 1):
-            self.imu.value.heading_rad += 1.0
-            self.imu.write()
-        if much and not Path("died").exists():
-            Path("died").touch()
-            lose_and_die()
-
-
-class Listener(Component):
-    """Counts what it hears."""
-
-    stage = "think"
-    imu: Reads[imu_t]
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.pose.value.x_m = float(len(self.imu.fresh))
-        self.pose.value.y_m += sum(each.heading_rad for each in self.imu.fresh)
-        self.pose.write()
-'''
 LAUNCH = """
 name: talk
 public_url: {url}
@@ -81,10 +22,8 @@ components:
 """
 
 
-def test_what_was_lost_is_kept_from_its_reader_again_however_much(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
-    write_files(tmp_path, {"talk.py": PARTS, "talk.yaml": LAUNCH.format(url=ports.public_url)})
+def test_many_lost_messages_are_lost_again_in_replay(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, {**sources("talk.py"), "talk.yaml": LAUNCH.format(url=ports.public_url)})
     run = launch("talk.yaml", "--ticks", "10", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     assert [pose.x_m for pose in Recording(tmp_path / "log.lcm").decoded("r/pose")] == [1.0] * 4 + [0.0] + [1.0] * 5

@@ -12,76 +12,19 @@ from fwk.lcm import wire
 from fwk.model.ports import Ports
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-FAULTS = '''
-"""What else can go wrong in a component."""
-
-import os
-import subprocess
-import sys
-import threading
-import time
-from pathlib import Path
-
-
-class HostileError(Exception):
-    def __str__(self):
-        raise RuntimeError("no text")
-
-
-def long_text():
-    raise RuntimeError("x" * 200_000)
-
-
-def no_text():
-    raise RuntimeError("no text \\udcff\\0 at all")
-
-
-def no_words():
-    raise HostileError
-
-
-def deep():
-    deep()
-
-
-def leave_in_thread():
-    threading.Thread(target=lambda: os._exit(0)).start()
-    time.sleep(60)
-
-
-def close_all():
-    os.closerange(3, 100)
-
-
-def child_and_die():
-    child = subprocess.Popen([sys.executable, "-c", "import time; time.sleep(600)"])
-    Path("child").write_text(str(child.pid))
-    os.kill(os.getpid(), 9)
-
-
-MORE = {
-    "long text": long_text,
-    "no text": no_text,
-    "no words": no_words,
-    "deep": deep,
-    "leave in a thread": leave_in_thread,
-    "close all": close_all,
-    "child and die": child_and_die,
-}
-'''
-
 
 @pytest.fixture
 def faulty(traced: Path) -> Path:
     """The orchestra's folder; its players know more faults."""
-    trouble = traced / "procs/trouble.py"
-    write_files(traced, {"procs/faults.py": FAULTS})
-    trouble.write_text(trouble.read_text() + "\nfrom procs.faults import MORE  # noqa: E402\nMAKE |= MORE\n")
+    trouble = traced / "trouble.py"
+    write_files(traced, sources("more_faults.py"))
+    trouble.write_text(trouble.read_text() + "\nfrom more_faults import MORE  # noqa: E402\nMAKE |= MORE\n")
     return traced
 
 
@@ -101,7 +44,9 @@ def wrong(what: str, tick: int = 5, again: bool = False) -> list[str]:
         ("loop:close all", "d/player ended: "),
     ],
 )
-def test_it_is_named_and_started_again(launch: Launch, faulty: Path, after: Aftermath, what: str, says: str) -> None:
+def test_a_failing_component_is_named_and_restarted(
+    launch: Launch, faulty: Path, after: Aftermath, what: str, says: str
+) -> None:
     run = launch(*RUN, "--ticks", "60", *wrong(what))
     run.until_ticks("a/player", 2)
     after.note(run)
@@ -112,9 +57,7 @@ def test_it_is_named_and_started_again(launch: Launch, faulty: Path, after: Afte
     assert recording.gaps() == {}
 
 
-def test_a_program_that_a_killed_component_had_started_ends_with_it(
-    launch: Launch, faulty: Path, after: Aftermath
-) -> None:
+def test_a_child_program_ends_with_its_killed_component(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:child and die"))
     run.until("d/player runs again, start number 2")
     after.note(run)
@@ -128,7 +71,7 @@ def alive(pid: int) -> bool:
     return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
-def test_who_spins_does_not_keep_a_run_in_lockstep_from_ending(launch: Launch, faulty: Path, after: Aftermath) -> None:
+def test_a_spinning_component_in_lockstep_lets_the_run_end(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:spin"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player spins")
     after.note(run)
@@ -137,7 +80,7 @@ def test_who_spins_does_not_keep_a_run_in_lockstep_from_ending(launch: Launch, f
     assert "d/player did not stop when asked; killed" in run.text
 
 
-def test_who_spins_is_left_behind_in_real_time(launch: Launch, wall: Path, after: Aftermath) -> None:
+def test_a_spinning_component_is_left_behind_in_real_time(launch: Launch, wall: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:spin"))
     run.until("d/player is late")
     after.note(run)
@@ -148,15 +91,13 @@ def test_who_spins_is_left_behind_in_real_time(launch: Launch, wall: Path, after
     assert len(recording.messages["f/note"]) >= len(recording.messages["d/note"]) + 10
 
 
-def test_who_spins_in_finalize_is_killed_and_named(launch: Launch, faulty: Path, after: Aftermath) -> None:
+def test_a_component_spinning_in_finalize_is_killed_and_named(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, "--ticks", str(TICKS), *wrong("finalize:spin"))
     after.check(run)
     assert "d/player did not stop when asked; killed" in run.text
 
 
-def test_the_state_of_a_run_is_published_while_it_waits_for_somebody(
-    launch: Launch, faulty: Path, ports: PortBlock
-) -> None:
+def test_status_is_published_while_the_run_waits(launch: Launch, faulty: Path, ports: PortBlock) -> None:
     run = launch(*RUN, *wrong("loop:wait"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player waits")
     ears = multicast_receiver(Ports(ports.bus, 0, 0).status)

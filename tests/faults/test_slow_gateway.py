@@ -6,36 +6,19 @@ import pytest
 
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import write_files
 
 pytestmark = pytest.mark.system
 
-SLOW = '''
-"""Half a second until the gateway has its sockets."""
-
-import time
-
-from fwk.gateway.gateway import Gateway
-
-make = Gateway.__init__
-
-
-def make_slowly(self, *arguments):
-    time.sleep(0.5)
-    make(self, *arguments)
-
-
-Gateway.__init__ = make_slowly
-'''
-
 
 @pytest.fixture
 def slow(traced: Path) -> Path:
     """The orchestra's folder with a slow gateway."""
-    write_files(traced, {"procs/slow.py": SLOW})
-    player = traced / "procs/player.py"
-    player.write_text(player.read_text().replace("import procs.weather\n", "import procs.slow\n"))
+    write_files(traced, sources("slow_gateway.py"))
+    player = traced / "player.py"
+    player.write_text(player.read_text().replace("import weather ", "import slow_gateway "))
     return traced
 
 
@@ -46,7 +29,7 @@ def trouble(kind: str) -> list[str]:
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_it_has_also_what_somebody_wrote_who_died_in_the_first_tick(
+def test_a_slow_gateway_records_a_writer_that_died_in_tick_one(
     launch: Launch, slow: Path, after: Aftermath, hosting: str
 ) -> None:
     run = launch(*RUN, "--ticks", "10", "--hosting", hosting, *trouble("loop:raise"))
@@ -58,7 +41,7 @@ def test_it_has_also_what_somebody_wrote_who_died_in_the_first_tick(
     assert "lost 0" in run.text
 
 
-def test_it_tells_why_somebody_failed_in_init(launch: Launch, slow: Path) -> None:
+def test_a_slow_gateway_reports_a_failure_in_init(launch: Launch, slow: Path) -> None:
     run = launch(*RUN, *trouble("init:raise"))
     assert run.wait() == 1
     assert "a/player: failed in init" in run.text

@@ -13,6 +13,7 @@ import pytest
 from fwk.model.tick_events import MessageLost
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import Launched, PortBlock, pause, write_files
@@ -30,7 +31,7 @@ WHO: dict[str, Callable[[Launched], int]] = {
 
 
 @pytest.mark.parametrize("who", WHO)
-def test_in_lockstep_nothing_shows_that_somebody_stood_still(
+def test_a_stopped_process_in_lockstep_leaves_no_trace(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, who: str
 ) -> None:
     run = launch(*RUN, "--ticks", str(TICKS))
@@ -46,7 +47,7 @@ def test_in_lockstep_nothing_shows_that_somebody_stood_still(
     assert "lost 0" in run.text
 
 
-def test_in_lockstep_everybody_waits(launch: Launch, traced: Path, after: Aftermath) -> None:
+def test_lockstep_waits_for_a_stopped_component(launch: Launch, traced: Path, after: Aftermath) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)
@@ -61,7 +62,7 @@ def test_in_lockstep_everybody_waits(launch: Launch, traced: Path, after: Afterm
     after.check(run)
 
 
-def test_the_state_names_a_gateway_that_stands_still(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def test_status_names_a_stopped_gateway(launch: Launch, folder: Path, ports: PortBlock) -> None:
     run = Steered(launch(*RUN), ports)
     gateway = run.launched.gateway()
     os.kill(gateway, signal.SIGSTOP)
@@ -72,7 +73,7 @@ def test_the_state_names_a_gateway_that_stands_still(launch: Launch, folder: Pat
 
 
 @pytest.mark.parametrize("who", ["a component", "the supervisor"])
-def test_in_real_time_the_run_goes_on(launch: Launch, wall: Path, after: Aftermath, who: str) -> None:
+def test_real_time_goes_on_without_a_stopped_process(launch: Launch, wall: Path, after: Aftermath, who: str) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)
@@ -93,7 +94,7 @@ def test_in_real_time_the_run_goes_on(launch: Launch, wall: Path, after: Afterma
 
 
 @pytest.mark.parametrize("who", ["a component", "the gateway", "the zygote"])
-def test_who_stands_still_is_woken_to_end_well(launch: Launch, traced: Path, after: Aftermath, who: str) -> None:
+def test_a_stopped_process_is_woken_to_end_cleanly(launch: Launch, traced: Path, after: Aftermath, who: str) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)
@@ -104,45 +105,12 @@ def test_who_stands_still_is_woken_to_end_well(launch: Launch, traced: Path, aft
     assert "killed" not in run.text
 
 
-LOSING = '''
-"""A player whose messages get lost and who stands still before anybody can ask for them again."""
-
-import os
-import signal
-
-from fwk.host.outputs import Outputs
-
-
-def lose_and_stand_still():
-    publish = Outputs.publish
-
-    def publish_nothing(self, written):
-        sender, send = self._sender, self._sender.publish
-
-        def send_last(*done):
-            send(*done)
-            sender.publish = send
-            os.kill(os.getpid(), signal.SIGSTOP)
-
-        sender.publish = lambda *_: None
-        marks = publish(self, written)
-        sender.publish = send_last
-        Outputs.publish = publish
-        return marks
-
-    Outputs.publish = publish_nothing
-
-
-MORE = {"lose": lose_and_stand_still}
-'''
-
-
 @pytest.fixture
 def losing(traced: Path) -> list[str]:
     """Settings with which `d/player` loses its messages of tick 5 and stands still."""
-    trouble = traced / "procs/trouble.py"
-    write_files(traced, {"procs/losing.py": LOSING})
-    trouble.write_text(trouble.read_text() + "\nfrom procs.losing import MORE  # noqa: E402\nMAKE |= MORE\n")
+    trouble = traced / "trouble.py"
+    write_files(traced, sources("losing.py"))
+    trouble.write_text(trouble.read_text() + "\nfrom losing import MORE  # noqa: E402\nMAKE |= MORE\n")
     settings = {"trouble": "loop:lose", "trouble_tick": 5}
     return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
 
@@ -155,7 +123,7 @@ def until_still(run: Launched) -> int:
     return process.pid
 
 
-def test_in_lockstep_what_somebody_lost_who_stands_still_is_waited_for(
+def test_lockstep_waits_for_messages_lost_by_a_stopped_host(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, losing: list[str]
 ) -> None:
     run = launch(*RUN, "--ticks", str(TICKS), *losing)
@@ -169,7 +137,7 @@ def test_in_lockstep_what_somebody_lost_who_stands_still_is_waited_for(
     assert "lost 0" in run.text
 
 
-def test_in_real_time_it_is_lost_and_told_and_the_run_goes_on_and_replays(
+def test_messages_lost_in_real_time_are_reported_and_replayed(
     launch: Launch, wall: Path, after: Aftermath, losing: list[str]
 ) -> None:
     run = launch(*RUN, *losing)

@@ -6,8 +6,9 @@ from pathlib import Path
 import pytest
 
 from fwk.lcm.type_registry import use_types_of
+from tests.harness.components import sources
 from tests.harness.runs import Launched, PortBlock, write_files
-from tests.programs.orchestra import TYPES, orchestra
+from tests.programs.orchestra import orchestra
 
 Launch = Callable[..., Launched]
 GONE_S = 5.0
@@ -47,5 +48,5 @@ def folder(tmp_path: Path, ports: PortBlock) -> Path:
 def orchestra_types(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Makes the orchestra's types known to the test process, which reads recordings."""
     folder = tmp_path_factory.mktemp("types")
-    write_files(folder, {"lcmtypes/play.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/play.lcm"))
     use_types_of(folder)

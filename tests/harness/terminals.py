@@ -6,51 +6,19 @@ from pathlib import Path
 
 import pexpect
 
+from tests.harness.components import sources
 from tests.harness.runs import PortBlock
 
 FILES = {
-    "parts.py": '''
-"""A sensor, a world model and a thinker."""
-
-from pathlib import Path
-
-from fwk import Component, Reads, Writes
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-
-class Sensor(Component):
-    """Turns."""
-
-    stage = "sensor_acquire"
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += 0.1
-        self.imu.write()
-        Path("turns.new").write_text(str(self.imu.value.header.tick))
-        Path("turns.new").rename("turns.txt")  # who reads it sees no half of it
-
-
-class WorldModel(Component):
-    """Believes."""
-
-    stage = "worldstate"
-    imu: Reads[imu_t]
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.pose.value.heading_rad = self.imu.value.heading_rad
-        self.pose.write()
-''',
+    **sources("sensors.py"),
     "parts.yaml": """
 name: parts
 components:
-  r/sensor: {use: "parts:Sensor"}
-  r/world_model: {use: "parts:WorldModel"}
+  r/sensor: {use: "sensors:Sensor"}
+  r/world_model: {use: "sensors:WorldModel"}
 """,
 }
-LOOP_LINE = 1 + next(n for n, line in enumerate(FILES["parts.py"].splitlines()) if "self.pose.value.heading" in line)
+LOOP_LINE = 1 + next(n for n, line in enumerate(FILES["sensors.py"].splitlines()) if "self.pose.value.heading" in line)
 COMMAND = [sys.executable, "-m", "fwk.cli.launch", "parts.yaml", "--ticks", "40", "--speed", "max"]
 
 

@@ -44,7 +44,7 @@ def test_a_team_hears_only_itself() -> None:
         assert radio.channels["inboxes"] == tuple(f"{robot}/team_inbox" for robot in own)
 
 
-def test_only_cameras_and_nobody_who_plays_sees_the_truth() -> None:
+def test_only_cameras_read_the_ground_truth() -> None:
     plan = plan_of("soccer.yaml")
     truth = next(channel for channel in plan.channels if channel.name == "world/ground_truth")
     assert {plan.components[index].name.rpartition("/")[2] for index in truth.readers} == {"camera"}
@@ -57,7 +57,7 @@ def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:
     assert [each.name for each in detectors] == ["cyan1/omni_ball", "cyan1/omni_field"]
 
 
-def test_frames_has_a_tree_that_those_who_ask_for_transforms_need() -> None:
+def test_users_of_transforms_need_the_frame_tree() -> None:
     plan = plan_of("frames.yaml")
     (tree,) = [each for each in plan.components if each.module == "procs.localization.frame_tree"]
     (spot,) = [each for each in plan.components if each.module == "procs.world_model.ball_spot"]

@@ -67,7 +67,7 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
     return run
 
 
-def test_the_wheel_holds_framework_components_types_and_launch_files(wheel: Path) -> None:
+def test_the_wheel_holds_code_types_and_launch_files(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     wanted = {
         "fwk/py.typed",
@@ -99,7 +99,7 @@ def test_the_installed_launch_files_are_found(installed: Run) -> None:
     assert "components" in result.stdout
 
 
-def test_a_users_own_components_and_types_join_the_installed_ones(installed: Run, ports: PortBlock) -> None:
+def test_user_components_and_types_join_the_installed_ones(installed: Run, ports: PortBlock) -> None:
     arguments = ["--ticks", "20", "--speed", "max", "--bus-port", str(ports.bus)]
     result = installed("fwk-launch", "cards.yaml", "--record", "mine.log", *arguments)
     assert result.returncode == 0, result.stdout

@@ -7,94 +7,23 @@ from typing import Any
 
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
+from tests.harness.components import sources
 from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, fwk, write_files
 
-PARTS = '''
-"""Counts, follows, and looks."""
-
-import numpy as np
-
-from fwk import Component, Config, Image, Logger, Reads, VisionMaster, Writes, channel
-from fwk.clock import sleep_s
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-
-class CounterConfig(Config):
-    step: float = 1.0
-    """Added in each iteration."""
-    hang: bool = False
-    """Whether an iteration never ends."""
-
-
-class Counter(Component):
-    """Counts up."""
-
-    stage = "think"
-    config: CounterConfig
-    log: Logger
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        while self.config.hang:
-            sleep_s(0.01)
-        self.imu.value.heading_rad += self.config.step
-        self.imu.write()
-
-    def config_changed(self) -> None:
-        self.log.warning(f"step is {self.config.step}")
-
-    def finalize(self) -> None:
-        self.log.info("counted enough")
-
-
-class Follower(Component):
-    """Says where the counter is; does not like 99."""
-
-    stage = "act"
-    imu: Reads[imu_t] = channel("r/imu")
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.pose.value.heading_rad = self.imu.value.heading_rad
-        self.pose.value.x_m = 1.0
-        self.pose.write()
-
-
-class Camera(Component):
-    """Gives out frames."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-
-    def loop(self) -> None:
-        self.image.publish(np.zeros((4, 4), np.uint8))
-
-
-class Finder(Component):
-    """Looks at them."""
-
-    stage = "sensor_prepare"
-    image: Image
-    imu: Writes[imu_t] = channel("r/seen")
-
-    def loop(self) -> None:
-        self.imu.write()
-'''
 LAUNCH = """
 name: small
 public_url: {url}
 components:
-  r/counter: {{use: "parts:Counter", restart: {{limit: 1}}}}
-  r/follower: {{use: "parts:Follower"}}
-  r/camera: {{use: "parts:Camera"}}
-  r/finder: {{use: "parts:Finder"}}
+  r/counter: {{use: "small:Counter", restart: {{limit: 1}}}}
+  r/follower: {{use: "small:Follower"}}
+  r/camera: {{use: "small:Camera"}}
+  r/finder: {{use: "small:Finder"}}
 """
 
 
 def write_system(folder: Path, ports: PortBlock) -> None:
     """Writes the files of the system."""
-    write_files(folder, {"parts.py": PARTS, "small.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(folder, {**sources("small.py"), "small.yaml": LAUNCH.format(url=ports.public_url)})
 
 
 class Steered:

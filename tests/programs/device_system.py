@@ -1,86 +1,6 @@
 """A small system around a device with LCM types of its own: a driver, what it tells others, and who adds that up."""
 
-TYPES = """
-package devices;
-
-struct joy_t {
-  int64_t utime;
-  int32_t n_axes;
-  double  axes[n_axes];
-  boolean trigger;
-  string  name;
-}
-
-struct motor_t {
-  int64_t utime;
-  double  power[2];
-}
-
-struct stamped_t {
-  core.header_t header;
-  int64_t utime;
-}
-"""
-
-PARTS = '''
-"""Drives a device, and listens to it."""
-
-import os
-from pathlib import Path
-
-from fwk import Clock, Component, Config, Reads, ReadsEach, Writes, WritesEach, channel
-from lcmtypes.devices import joy_t, motor_t
-from lcmtypes.robot import imu_t
-
-
-class DriverConfig(Config):
-    gain: float = 1.0
-    """Power of the motors a unit of the stick."""
-
-
-class Driver(Component):
-    """The motors do what the stick says; with nobody at the stick they follow the clock."""
-
-    stage = "think"
-    config: DriverConfig
-    clock: Clock
-    joy: Reads[joy_t] = channel("/JOYSTICK", history=3)
-    motor: Writes[motor_t] = channel("/MOTORS")
-    parts: WritesEach[motor_t]
-    seen: Writes[imu_t]
-
-    def init(self):
-        Path("driver.pid").write_text(str(os.getpid()))
-
-    def loop(self):
-        joy, motor = self.joy.value, self.motor.value
-        stick = joy.axes[1] if joy.n_axes else 0.01 * self.clock.tick
-        motor.utime, motor.power = joy.utime, [self.config.gain * stick, -stick]
-        self.motor.write()
-        for part in self.parts.values():
-            part.value.power = motor.power
-            part.write()
-            part.write()
-        self.seen.value.heading_rad += sum(each.utime for each in self.joy.fresh)
-        self.seen.value.yaw_rate_rad_s = self.joy.header.sequence + 0.001 * self.joy.header.tick
-        self.seen.write()
-
-
-class Listener(Component):
-    """Adds up what the parts are told."""
-
-    stage = "act"
-    parts: ReadsEach[motor_t]
-    one: Reads[motor_t] = channel("left/parts")
-    other: Reads[motor_t] = channel("right/parts")
-    heard: Writes[imu_t]
-
-    def loop(self):
-        for part in self.parts.values():
-            self.heard.value.heading_rad += sum(each.power[1] for each in part.fresh)
-            self.heard.value.yaw_rate_rad_s += part.changed + 10 * part.refreshed
-        self.heard.write()
-'''
+from tests.harness.components import sources
 
 LAUNCH = """
 name: device
@@ -97,7 +17,6 @@ public_url: "{public_url}"
 def device_system(public_url: str, time: str = "period_s: 0.02") -> dict[str, str]:
     """The files of a user's folder."""
     return {
-        "lcmtypes/devices.lcm": TYPES,
-        "device_parts.py": PARTS,
+        **sources("lcmtypes/devices.lcm", "device_parts.py"),
         "device.yaml": LAUNCH.format(time=time, public_url=public_url),
     }

@@ -1,70 +1,8 @@
 """A system in which everything happens at once: beside orchestra, lift and driver a planner, and programs outside."""
 
+from tests.harness.components import sources
 from tests.programs.together import together
 
-PARTS = '''
-"""Who plans at its own pace, and who hears of it and of programs outside."""
-
-import zlib
-
-import numpy as np
-
-from fwk import Component, Config, Reads, ReadsEach, Writes, channel
-from fwk.clock import sleep_s
-from lcmtypes.play import note_t
-from lcmtypes.robot import imu_t, motor_command_t
-
-
-class PlannerConfig(Config):
-    takes_s: float = 0.01
-    """How long a plan takes."""
-    gain: float = 1.0
-    """Goes into each plan."""
-
-
-class Planner(Component):
-    """Plans by all that it hears, as often as it can."""
-
-    rate_hz = 0
-    config: PlannerConfig
-    rng: np.random.Generator
-    notes: ReadsEach[note_t] = channel("*/note")
-    plan: Writes[imu_t]
-
-    def init(self) -> None:
-        self.digest = 0
-
-    def loop(self) -> None:
-        for _, reader in self.notes.items():
-            for note in reader.fresh:
-                self.digest = zlib.crc32(note.encode(), self.digest)
-        sleep_s(self.config.takes_s)
-        self.plan.value.heading_rad = self.config.gain * self.digest + float(self.rng.random())
-        self.plan.write()
-
-    def finalize(self) -> None:
-        self.plan.value.heading_rad = -self.config.gain
-        self.plan.write()
-
-
-class Follower(Component):
-    """Adds up plans and wishes; says at the end how far it has come, and by which settings."""
-
-    stage = ("sensor_process", "act")
-    config: PlannerConfig
-    plan: Reads[imu_t] = channel("z/plan")
-    wish: Reads[motor_command_t] = channel("r/wish", history=3)
-    way: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.way.value.heading_rad += sum(each.heading_rad for each in self.plan.fresh)
-        self.way.value.heading_rad += self.config.gain * sum(each.vx_m_s for each in self.wish.history)
-        self.way.write()
-
-    def finalize(self) -> None:
-        self.way.value.heading_rad += self.config.gain
-        self.way.write()
-'''
 MORE = """
   z/planner: {use: "everything_parts:Planner", restart: {limit: 100, backoff_s: 0.01}}
   z/follower: {use: "everything_parts:Follower", restart: {limit: 100, backoff_s: 0.01}}
@@ -75,4 +13,4 @@ outside:
 
 def everything(public_url: str, *, real_time: bool, groups: bool = False) -> dict[str, str]:
     """The files of a user's folder."""
-    return together(public_url, MORE, real_time=real_time, groups=groups) | {"everything_parts.py": PARTS}
+    return together(public_url, MORE, real_time=real_time, groups=groups) | sources("everything_parts.py")

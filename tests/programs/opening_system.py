@@ -1,125 +1,6 @@
 """Components that open and close channels as they like, and write down all that they see of the blackboard."""
 
-TRADERS = '''
-"""Traders open, write, read and close goods at random; a diary holds a digest of everything that one sees."""
-
-import zlib
-
-import numpy as np
-
-from fwk import Blackboard, Clock, Component, Config, Logger, Reads, Writes
-from fwk.clock import sleep_s
-from lcmtypes.robot import imu_t, odometry_t
-from lcmtypes.soccer import obstacle_t
-
-
-class TraderConfig(Config):
-    gain: float = 1.0
-
-
-class Trader(Component):
-    stage = "think"
-    blackboard: Blackboard
-    clock: Clock
-    config: TraderConfig
-    log: Logger
-    rng: np.random.Generator
-    diary: Writes[imu_t]
-
-    def init(self) -> None:
-        self.goods = self.blackboard.open_multiple_for_reading(imu_t, "*/good?")
-        self.own = self.blackboard.open_for_writing(imu_t, "spot")
-        self.writing = {}
-        self.reading = {}
-        self.wrong = None
-        self.plain = None
-        self.oddments = self.blackboard.open_multiple_for_reading(obstacle_t, "*/odd?")
-        self.digest = 0
-
-    def loop(self) -> None:
-        board = self.blackboard
-        seen = [board.events, board.instances()]
-        readers = {**self.goods, **self.reading}
-        for name, each in readers.items():
-            seen += [name, [message.header.sequence for message in each.fresh], each.value.heading_rad]
-        for name, each in self.oddments.items():
-            seen += [name, each.header.sequence, each.header.writer, [odd.x_m for odd in each.fresh]]
-        seen += [(each.channel, each.is_open, each.refused) for each in self.writing.values()]
-        seen += [board.writer("a/diary"), board.readers("a/diary"), board.has_writer("shop/good1")]
-        if self.wrong and self.wrong.is_open:
-            self.wrong.write()
-        if self.plain and self.plain.is_open:
-            self.plain.value.x_m += 1.0
-            self.plain.write()
-        self.digest = zlib.crc32(repr(seen).encode(), self.digest)
-        self.diary.value.heading_rad = self.config.gain * self.digest
-        self.diary.write()
-        if self.own.is_open:
-            self.own.value.heading_rad = float(self.digest)
-            self.own.write()
-        for writer in self.writing.values():
-            if writer.is_open and self.rng.random() < 0.7:
-                writer.value.heading_rad = float(self.digest % 1000)
-                writer.write()
-        name = f"shop/good{self.rng.integers(4)}"
-        what = self.rng.integers(8)
-        if what == 0:
-            self.writing[name] = board.open_for_writing(imu_t, name)
-        elif what == 1 and name in self.writing:
-            self.close(self.writing.pop(name))
-        elif what == 2:
-            self.reading[name] = board.open_for_reading(imu_t, name)
-        elif what == 3 and name in self.reading:
-            self.close(self.reading.pop(name))
-        elif what == 4:
-            other = f"{'abc'[self.rng.integers(3)]}/{['spot', 'diary'][self.rng.integers(2)]}"
-            self.reading[other] = board.open_for_reading(imu_t, other)
-        elif what == 5:
-            self.close(self.wrong)
-            self.wrong = board.open_for_writing(odometry_t, name)
-        elif what == 6:
-            self.close(self.wrong)
-        elif what == 7:
-            self.close(self.plain)
-            self.plain = board.open_for_writing(obstacle_t, f"/shop/odd{self.rng.integers(2)}")
-
-    def close(self, handle) -> None:
-        try:
-            self.blackboard.close(handle)
-        except ValueError:
-            pass
-
-
-class Wanderer(Trader):
-    """A trader at its own pace: the main loop goes on while it thinks."""
-
-    stage = ()
-    rate_hz = 0
-
-    def loop(self) -> None:
-        before = self.everything()
-        sleep_s(0.05 * self.rng.random())
-        assert self.everything() == before
-        super().loop()
-
-    def everything(self):
-        board = self.blackboard
-        values = [(name, each.value.heading_rad, each.refreshed) for name, each in self.goods.items()]
-        return board.events, board.instances(), values, self.own.is_open
-
-
-class Bystander(Component):
-    """Knows of nothing and reads a diary."""
-
-    stage = "act"
-    diary: Reads[imu_t]
-    echo: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.echo.value.heading_rad = self.diary.value.heading_rad
-        self.echo.write()
-'''
-
+from tests.harness.components import sources
 
 WANDERER = '  d/trader: {use: "traders:Wanderer", restart: {limit: 100, backoff_s: 0.01}}\n'
 
@@ -139,34 +20,7 @@ components:
   a/bystander: {{use: "traders:Bystander"}}
 {WANDERER if wanderer else ""}{more}
 """
-    return {"traders.py": TRADERS, "launch/market.yaml": launch}
-
-
-WRITER = '''
-"""A writer that opens its channel when it is told to."""
-
-from fwk import Blackboard, Component, Config
-from lcmtypes.robot import imu_t
-
-
-class WriterConfig(Config):
-    wants: bool = False
-
-
-class Writer(Component):
-    stage = "think"
-    blackboard: Blackboard
-    config: WriterConfig
-
-    def init(self) -> None:
-        self.brief = None
-
-    def loop(self) -> None:
-        if self.config.wants and self.brief is None:
-            self.brief = self.blackboard.open_for_writing(imu_t, "brief")
-        if self.brief and self.brief.is_open:
-            self.brief.write()
-'''
+    return {**sources("traders.py"), "launch/market.yaml": launch}
 
 
 def brief(public_url: str) -> dict[str, str]:
@@ -179,4 +33,4 @@ public_url: {public_url}
 components:
   a/writer: {{use: "writer:Writer", restart: {{backoff_s: 0.01}}}}
 """
-    return {"writer.py": WRITER, "launch/brief.yaml": launch}
+    return {**sources("writer.py"), "launch/brief.yaml": launch}

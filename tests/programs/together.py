@@ -2,33 +2,10 @@
 
 import re
 
+from tests.harness.components import sources
 from tests.programs.command_system import command_system
 from tests.programs.orchestra import GROUPS, orchestra
 
-DRIVER = '''
-"""Takes the main loop over and gives it back, again and again, and starts another component anew."""
-
-from fwk import Clock, Component, MainLoop, PluginControl
-
-ORDER = ["pre_loop", "sensor_acquire", "think", "sensor_prepare", "worldstate", "think", "act", "act", "post_loop"]
-
-
-class Driver(Component):
-    """Has the main loop for eight ticks of twenty-four."""
-
-    stage = "think"
-    clock: Clock
-    main_loop: MainLoop
-    plugins: PluginControl
-
-    def loop(self) -> None:
-        if self.clock.tick % 24 == 4:
-            self.plugins.restart("d/player")
-        if self.clock.tick % 24 == 8:
-            self.main_loop.take_over(ORDER)
-        if self.clock.tick % 24 == 16:
-            self.main_loop.give_back()
-'''
 TOGETHER = """
 name: together
 include: [orchestra.yaml, lift.yaml]
@@ -47,7 +24,7 @@ def together(public_url: str, more: str = "", *, real_time: bool, groups: bool =
     """The files of a user's folder; `more` continues the launch file where its components are."""
     files = orchestra(public_url, GROUPS if groups else "") | command_system(public_url)
     text = (TOGETHER.rstrip() + "\n" + more.lstrip("\n")) + (WALL if real_time else "")
-    files |= {"driver.py": DRIVER, FILE: text}
+    files |= sources("driver.py") | {FILE: text}
     for name in ("launch/orchestra.yaml", "launch/lift.yaml"):
         files[name] = re.sub(r'use: ("[\w.:]+")', r"use: \1, restart: {limit: 100, backoff_s: 0.01}", files[name])
         if real_time:  # the wall's clock instead of the conductor's, and no frames, which are not recorded

@@ -22,7 +22,7 @@ def test_percentile_by_nearest_rank(share: float, expected: int) -> None:
     assert percentile(list(range(100, 0, -1)), share) == expected
 
 
-def test_percentile_refuses_what_has_no_answer() -> None:
+def test_percentile_refuses_no_values_and_bad_fractions() -> None:
     with pytest.raises(ValueError, match="0 values"):
         percentile([], 0.5)
     with pytest.raises(ValueError, match=r"1\.5"):
@@ -55,7 +55,7 @@ def test_ratio_between_two_arrangements() -> None:
     assert ratio.middle == 8
 
 
-def test_a_failed_run_counts_for_nothing_but_is_named() -> None:
+def test_a_failed_run_is_left_out_and_named() -> None:
     failed = [Run(number, "dora", "N=5", {"error": "no first tick"}) for number in range(2)]
     runs = Runs(failed)
     assert runs.of("dora", "N=5") == []

@@ -48,7 +48,7 @@ def verdicts(
     return judge(Runs(runs), PEERS, SIZES)
 
 
-def test_all_goals_met() -> None:
+def test_all_goals_are_met() -> None:
     assert [verdict.word for verdict in verdicts(GOOD, OWN)] == ["met"] * 8
 
 
@@ -80,16 +80,16 @@ def test_one_figure_of_our_own_misses_one_goal(goal: int, change: dict[str, dict
     assert verdicts(GOOD, {**OWN, **change})[goal].met is False
 
 
-def test_what_was_not_measured_is_neither_met_nor_missed() -> None:
+def test_a_goal_without_a_measurement_is_left_open() -> None:
     assert [verdict.word for verdict in verdicts({("lcm", "N=20"): 1000})] == ["not measured"] * 8
 
 
-def test_a_short_run_does_not_say_that_nothing_is_missed_in_a_long_one() -> None:
+def test_a_short_run_leaves_goals_of_long_runs_open() -> None:
     short = {SOAK: {"error_us": [100.0] * 1000, "missed": 0}}
     assert verdicts(GOOD, {**OWN, **short})[MISSED].word == "not measured"
 
 
-def test_who_is_ahead_of_us_is_named() -> None:
+def test_a_peer_that_is_faster_is_named() -> None:
     assert "ZeroMQ N=160" in verdicts({**GOOD, ("zmq", "N=160"): 8900})[AHEAD].figures
 
 

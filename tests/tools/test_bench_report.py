@@ -68,7 +68,7 @@ def test_under_loss_the_mean_is_quoted_and_failures_are_marked() -> None:
     assert "| Unix | - | failed | - | - |" in table
 
 
-def test_cost_table_shows_only_who_was_measured() -> None:
+def test_the_cost_table_shows_measured_peers_only() -> None:
     table = tables.cost_table(Runs(runs()), PEERS, growth((5,))[0])
     assert (
         "| bare LCM | 1.00 (1.00-1.00) | 1.00 (1.00-1.00) | 0.70 (0.70-0.70) | 36 | 0 | 3 | 0 | 17 | 59 | 0.20 |"
@@ -97,7 +97,7 @@ def record() -> Record:
     return Record({"command": "bench"}, {"Zenoh": "not installed"}, ["lcm", "unix"], [5], [5], True, runs())
 
 
-def test_page_names_what_is_missing_and_what_failed() -> None:
+def test_the_page_names_missing_and_failed_measurements() -> None:
     page = report.text(record())
     assert "- command: bench" in page
     assert "- Zenoh: not installed" in page
@@ -113,7 +113,7 @@ def test_insert_replaces_the_generated_part_only(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["", f"{report.BEGIN}\n", f"{report.END}\n{report.BEGIN}\n"])
-def test_insert_refuses_a_page_without_its_place(tmp_path: Path, text: str) -> None:
+def test_insert_refuses_a_page_without_its_markers(tmp_path: Path, text: str) -> None:
     page = tmp_path / "numbers.md"
     page.write_text(text)
     with pytest.raises(ValueError, match=r"numbers\.md: needs one line"):

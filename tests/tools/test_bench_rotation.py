@@ -36,7 +36,7 @@ def test_peers_change_places_from_round_to_round() -> None:
 
 
 @pytest.mark.usefixtures("pretend")
-def test_who_failed_twice_is_not_tried_again_in_that_arrangement() -> None:
+def test_a_peer_that_failed_twice_is_not_tried_again() -> None:
     runs = rotation.rotate(PEERS, growth((5, 20)), 5, 1.0, lambda _: None)
     assert len([run for run in runs if (run.peer, run.scenario) == ("b", "N=20")]) == 2
     assert len([run for run in runs if (run.peer, run.scenario) == ("b", "N=5")]) == 5

@@ -23,7 +23,7 @@ def test_a_component_reads_those_before_it_round_the_ring() -> None:
 
 @pytest.mark.parametrize("reads", [1, 3, 10])
 @pytest.mark.parametrize("components", [2, 5, 20])
-def test_nobody_reads_itself_and_readers_mirror_sources(components: int, reads: int) -> None:
+def test_no_component_reads_itself_and_readers_mirror_sources(components: int, reads: int) -> None:
     shape = Shape(components, reads=reads)
     for component in range(components):
         assert component not in shape.sources(component)
@@ -51,7 +51,7 @@ def test_only_the_growth_scenarios_are_plain() -> None:
     assert len(set(names)) == len(names)
 
 
-def test_more_components_get_fewer_ticks_but_never_too_few() -> None:
+def test_more_components_get_fewer_ticks_down_to_a_minimum() -> None:
     ticks = [scenario.ticks for scenario in growth((5, 40, 160, 1000))]
     assert ticks == sorted(ticks, reverse=True)
     assert ticks[0] == 500

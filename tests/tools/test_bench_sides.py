@@ -115,7 +115,7 @@ def test_a_repeated_tick_is_answered_again_and_not_run_again() -> None:
     assert [sample.header.tick for sample in side.published] == [T + 1, T + 2]
 
 
-def test_what_it_writes_depends_on_what_it_read() -> None:
+def test_output_depends_on_input() -> None:
     side = Script([T + 1, STOP], [T + 1])
     run(side, Shape(5, padding_bytes=7), 1)
     written = side.published[0]

@@ -49,7 +49,7 @@ def test_a_peer_does_the_work(name: str, padding_bytes: int) -> None:
     assert 0 < result["first_tick_s"] < 50
 
 
-def test_plain_sockets_read_exactly_what_they_want(leave_out: Callable[[str], None]) -> None:
+def test_plain_sockets_read_exactly_their_channels(leave_out: Callable[[str], None]) -> None:
     if not rotation.isolation():
         leave_out("needs a network namespace, so that nobody else's datagrams are counted: run as root")
     runs = rotation.rotate([PEERS["lcm_wire"]], [Scenario("five", Shape(5))], 1, 0.2, lambda _: None)

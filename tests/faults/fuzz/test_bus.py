@@ -18,7 +18,7 @@ LONG = struct.Struct(">4sIIIHH")
 
 @pytest.mark.parametrize("kind", DECODERS, ids=lambda kind: kind.__name__)
 @given(some.data())
-def test_what_our_codec_takes_it_reads_as_lcm_gen_does(kind: type[Any], data: some.DataObject) -> None:
+def test_the_codec_decodes_like_lcm_gen(kind: type[Any], data: some.DataObject) -> None:
     bytes_ = data.draw(damaged(sync_messages()[kind]))
     try:
         ours = to_dict(DECODERS[kind](bytes_))
@@ -41,7 +41,7 @@ def test_no_bytes_of_any_type_break_a_reader(data: bytes) -> None:
 
 
 @given(some.lists(some.sampled_from(PARTS).flatmap(damaged) | some.sampled_from(PARTS), max_size=6), some.data())
-def test_a_message_is_put_together_whole_or_not_at_all(parts: list[bytes], data: some.DataObject) -> None:
+def test_fragments_become_a_whole_message_or_none(parts: list[bytes], data: some.DataObject) -> None:
     assembler = wire.Assembler()
     order = data.draw(some.permutations([*parts, *PARTS]))
     for part in order:
@@ -52,7 +52,7 @@ def test_a_message_is_put_together_whole_or_not_at_all(parts: list[bytes], data:
         assert made is None or isinstance(made[1], bytes)
 
 
-def test_a_fragment_that_speaks_of_much_takes_no_memory() -> None:
+def test_a_fragment_of_a_huge_message_takes_no_memory() -> None:
     assembler = wire.Assembler()
     for number in range(1000):
         assembler.feed(LONG.pack(b"LC03", number, 255 << 20, 0, 0, 60_000) + b"a\0", 1)
@@ -60,7 +60,7 @@ def test_a_fragment_that_speaks_of_much_takes_no_memory() -> None:
     assert len(assembler._unfinished) <= 64
 
 
-def test_unfinished_messages_take_so_much_memory_and_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unfinished_messages_take_bounded_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(wire, "_UNFINISHED_BYTES_MAX", 100_000)
     assembler = wire.Assembler()
     for number in range(10):
@@ -71,7 +71,7 @@ def test_unfinished_messages_take_so_much_memory_and_no_more(monkeypatch: pytest
 
 
 @pytest.mark.parametrize("offsets", [(0, 65_000), (0, 66_000)])
-def test_fragments_that_overlap_or_leave_a_hole_are_refused(offsets: tuple[int, int]) -> None:
+def test_overlapping_or_incomplete_fragments_are_refused(offsets: tuple[int, int]) -> None:
     assembler, body = wire.Assembler(), bytes(65_485)
     size = offsets[1] + len(body)
     assembler.feed(LONG.pack(b"LC03", 1, size, offsets[0], 0, 2) + b"a\0" + body, 1)

@@ -21,23 +21,12 @@ from fwk.cli.steer.send import made
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
+from tests.harness.components import sources
 from tests.harness.fuzz import HOSTILE_TEXT, all_types
 from tests.harness.runs import PortBlock, write_files
 
 TINY = {
-    "tiny.py": """
-from fwk import Component, Config
-
-
-class TinyConfig(Config):
-    gain: float = 1.0
-    names: list[str] = []
-
-
-class Tiny(Component):
-    stage = "think"
-    config: TinyConfig
-""",
+    **sources("tiny.py"),
     "tiny.yaml": 'name: tiny\ncomponents: {a/tiny: {use: "tiny:Tiny"}}\n',
 }
 
@@ -86,18 +75,18 @@ OPTIONS = [
 
 
 @pytest.mark.parametrize("option", OPTIONS)
-def test_every_option_of_fwk_launch(tiny: Path, option: str) -> None:
+def test_every_option_of_fwk_launch_is_answered(tiny: Path, option: str) -> None:
     for text in HOSTILE_TEXT:
         check(fwk_launch, "tiny.yaml", option, text)
 
 
 @pytest.mark.parametrize("path", ["", "a/tiny.", "a/tiny.gain=", "a/tiny.names=", "a/tiny.names.0=", "*/tiny.gain="])
-def test_every_part_of_set(tiny: Path, path: str) -> None:
+def test_every_part_of_set_is_answered(tiny: Path, path: str) -> None:
     for text in HOSTILE_TEXT:
         check(fwk_launch, "tiny.yaml", "--set", path + text)
 
 
-def test_every_launch_file(tiny: Path) -> None:
+def test_every_launch_file_argument_is_answered(tiny: Path) -> None:
     for text in HOSTILE_TEXT:
         check(fwk_launch, text)
         check(fwk, "check", text)
@@ -128,7 +117,7 @@ def places(command: Any) -> Iterator[tuple[str, ...]]:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_argument_and_option_of_every_command(tiny: Path, ports: PortBlock, command: str) -> None:
+def test_every_argument_of_every_command_is_answered(tiny: Path, ports: PortBlock, command: str) -> None:
     made = COMMANDS[command]
     nobody = ("--bus-port", str(ports.bus))  # and not somebody else's run on this machine
     has_port = any("--bus-port" in each.opts for each in made.params)
@@ -139,7 +128,7 @@ def test_every_argument_and_option_of_every_command(tiny: Path, ports: PortBlock
 
 
 @pytest.mark.parametrize("command", ["status", "bb list", "config list", "log", "doctor"])
-def test_every_bus_port(tiny: Path, command: str) -> None:
+def test_every_bus_port_is_answered(tiny: Path, command: str) -> None:
     for text in ("-1", "0", "1", "65535", "65536", "x", str(2**64)):
         check(fwk, *command.split(), "--bus-port", text)
 
@@ -154,7 +143,7 @@ VALUES = some.recursive(
 
 @given(some.sampled_from(TYPES), VALUES | some.sampled_from(HOSTILE_TEXT), some.data())
 @example("robot.imu_t", "[" * 1200, None)
-def test_every_field_and_value_of_fwk_send(name: str, value: Any, data: some.DataObject | None) -> None:
+def test_every_field_and_value_of_fwk_send_is_answered(name: str, value: Any, data: some.DataObject | None) -> None:
     kind: Any = messages.type_named(name)
     fields = [*kind.__slots__, "", ".", "header.tick", "header.__class__", "decode", "a.b"]
     field = data.draw(some.sampled_from(fields)) if data else fields[-1]

@@ -39,18 +39,18 @@ def check(folder: Path, picture: bytes) -> None:
 @pytest.mark.parametrize("kind", ["png", "jpeg"])
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(some.data())
-def test_a_damaged_picture(tmp_path: Path, kind: str, data: some.DataObject) -> None:
+def test_a_damaged_picture_is_decoded_or_refused(tmp_path: Path, kind: str, data: some.DataObject) -> None:
     check(tmp_path, message(kind, data.draw(damaged(encoded(kind)))))
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(some.data())
-def test_a_damaged_message_of_a_picture(tmp_path: Path, data: some.DataObject) -> None:
+def test_a_damaged_picture_message_is_decoded_or_refused(tmp_path: Path, data: some.DataObject) -> None:
     check(tmp_path, data.draw(damaged(message("png", encoded("png")))))
 
 
 @pytest.mark.parametrize("size", [(1 << 31) - 1, 1 << 20, 1 << 16])
-def test_a_picture_that_says_it_is_huge(tmp_path: Path, size: int) -> None:
+def test_a_picture_of_huge_claimed_size_is_refused(tmp_path: Path, size: int) -> None:
     png = bytearray(encoded("png"))
     png[16:24] = size.to_bytes(4) * 2
     png[29:33] = crc32(png[12:29]).to_bytes(4)

@@ -93,7 +93,7 @@ def replay(path: Path) -> Replay:
     return made
 
 
-def test_what_is_damaged_here_is_right_before(log: Path) -> None:
+def test_the_undamaged_recording_is_valid(log: Path) -> None:
     done = replay(log)
     assert (done.compared, done.differences) == (2 * TICKS, [])
 
@@ -150,14 +150,14 @@ def test_a_plan_of_another_shape_is_read_or_refused(tmp_path: Path, key: str, va
 
 
 @pytest.mark.parametrize("text", ["", "null", "[]", "{}", "[" * 100_000, '{"components": 3}'])
-def test_a_plan_that_is_none_is_named(tmp_path: Path, text: str) -> None:
+def test_a_malformed_plan_is_named(tmp_path: Path, text: str) -> None:
     made = plan_t()
     made.version, made.json = protocol_t.VERSION, text
     with pytest.raises(RecordingError, match="its plan cannot be read"):
         replay(write(tmp_path / "log.lcm", [("fwk/plan", made.encode())]))
 
 
-def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None:
+def test_a_record_of_an_unknown_host_is_refused_with_its_place(log: Path) -> None:
     change = settings_change_t()
     unknown, blind = record(9, [1, 5], HostLost(77)), record(9, [1, 5], FrameLost(0, 0, 1))  # channel 0 is no camera's
     strange, broken, short = (record(9, [1, 5]) for _ in range(3))
@@ -171,7 +171,7 @@ def test_a_record_that_names_nobody_is_refused_with_its_place(log: Path) -> None
             replay(log)
 
 
-def test_a_mark_that_no_channel_can_have_is_refused_and_takes_no_memory(log: Path) -> None:
+def test_an_impossible_mark_is_refused_and_takes_no_memory(log: Path) -> None:
     entries = [(each.channel, each.data) for each in LogReader(log)]
     far = record(9, [1, 5])
     far.n_marks, far.channel, far.sequence = 1, [0], [1 << 60]
@@ -180,14 +180,14 @@ def test_a_mark_that_no_channel_can_have_is_refused_and_takes_no_memory(log: Pat
         replay(log)
 
 
-def test_a_component_that_fails_in_replay_is_named_with_its_place(log: Path) -> None:
+def test_a_component_failing_in_replay_is_named_with_its_place(log: Path) -> None:
     entries = [(each.channel, each.data) for each in LogReader(log)]
     cut = [(channel, data[:50] if channel == "r/imu" else data) for channel, data in entries]
     with pytest.raises(RecordingError, match=r"r/thinker fails in tick 1 .*(?s:.*)in loop"):
         replay(write(log, cut))
 
 
-def test_a_log_that_was_cut_off_is_replayed_up_to_there_and_it_is_said(log: Path) -> None:
+def test_a_truncated_log_is_replayed_to_its_end_and_reported(log: Path) -> None:
     cut = log.with_name("cut.lcm")
     cut.write_bytes(log.read_bytes()[:-10])
     shown = CliRunner().invoke(fwk, ["replay", str(cut), "--verify"])
@@ -196,7 +196,7 @@ def test_a_log_that_was_cut_off_is_replayed_up_to_there_and_it_is_said(log: Path
     assert "equal" in shown.output
 
 
-def test_a_log_that_lacks_messages_is_refused_and_replayed_up_to_there(log: Path) -> None:
+def test_a_log_that_lacks_messages_is_replayed_up_to_the_gap(log: Path) -> None:
     whole = log.read_bytes()
     at = whole.index(b"r/pose", whole.index(b"fwk/record", whole.index(b"fwk/record") + 1))
     damaged_log = log.with_name("damaged.lcm")
@@ -208,7 +208,7 @@ def test_a_log_that_lacks_messages_is_refused_and_replayed_up_to_there(log: Path
     assert (before.compared, before.differences) == (4, [])
 
 
-def test_a_type_that_was_changed_since_is_named(log: Path) -> None:
+def test_a_type_changed_since_the_recording_is_named(log: Path) -> None:
     entries = recorded()
     other = [(channel, b"12345678" + data[8:] if channel == "r/pose" else data) for channel, data in entries]
     write(log, other)
@@ -225,7 +225,7 @@ def test_a_record_of_another_version_is_named(log: Path) -> None:
         replay(write(log, entries))
 
 
-def test_a_component_that_is_gone_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_component_that_no_longer_exists_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(f"{__name__}.Thinker")
     with pytest.raises(RecordingError, match=r"r/thinker: .*:Thinker cannot be had any more: AttributeError"):
         Replay(Recording(log), ["r/thinker"])

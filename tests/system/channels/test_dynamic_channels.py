@@ -40,7 +40,7 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
 
 @pytest.mark.parametrize("clock", ["lockstep", "real time"])
 @pytest.mark.parametrize("hosts", ["", GROUPS], ids=["process", "groups"])
-def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
+def test_a_restart_closes_dynamic_channels_and_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, clock: str, hosts: str
 ) -> None:
     files = market(ports.public_url, hosts, wanderer=True)
@@ -73,9 +73,7 @@ def test_what_dies_and_comes_back_has_closed_what_it_had_open_and_all_replays(
     replayed(tmp_path, "--only", "c/trader", "--only", "d/trader")
 
 
-def test_a_changed_component_is_found_on_a_channel_that_it_opened(
-    tmp_path: Path, ports: PortBlock, launch: Launch
-) -> None:
+def test_replay_finds_a_change_on_a_dynamic_channel(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     write_files(tmp_path, market(ports.public_url))
     run = launch("market.yaml", "--ticks", "40", "--record", "log.lcm")
     assert run.wait() == 0, run.text
@@ -86,9 +84,7 @@ def test_a_changed_component_is_found_on_a_channel_that_it_opened(
     assert re.search(r"b/trader: b/spot: tick 20, stage 6, message \d+ by b/trader: heading_rad is", said), said
 
 
-def test_what_cannot_be_opened_is_refused_with_both_sides_named(
-    tmp_path: Path, ports: PortBlock, launch: Launch
-) -> None:
+def test_a_refused_dynamic_channel_names_both_sides(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     write_files(tmp_path, market(ports.public_url))
     run = launch("market.yaml", "--ticks", "300")
     assert run.wait() == 0, run.text
@@ -99,7 +95,7 @@ def test_what_cannot_be_opened_is_refused_with_both_sides_named(
     assert re.search(other, run.text), run.text
 
 
-def test_bb_shows_what_was_opened_while_the_run_goes_on(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
+def test_fwk_bb_shows_dynamic_channels(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     write_files(tmp_path, market(ports.public_url))
     run = Steered(launch("market.yaml", "--speed", "1"), ports)
     run.ticks_pass(20)
@@ -108,9 +104,7 @@ def test_bb_shows_what_was_opened_while_the_run_goes_on(tmp_path: Path, ports: P
     assert "heading_rad" in fwk(tmp_path, "bb", "show", "b/spot", "--bus-port", str(ports.bus))
 
 
-def test_what_a_writer_sent_on_a_new_channel_before_it_died_is_recorded(
-    tmp_path: Path, ports: PortBlock, launch: Launch
-) -> None:
+def test_last_messages_on_a_dynamic_channel_are_recorded(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     write_files(tmp_path, brief(ports.public_url))
     run = Steered(launch("brief.yaml", "--record", "log.lcm"), ports)
     run.ticks_pass(2)

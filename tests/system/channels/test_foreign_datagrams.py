@@ -146,7 +146,7 @@ def assert_unharmed(run: Launched, folder: Path, reference: Path) -> None:
     assert "ended:" not in run.text
 
 
-def test_strangers_on_every_inner_port_are_named_and_change_nothing(
+def test_foreign_datagrams_on_inner_ports_change_nothing(
     launch: Launch, folder: Path, ports: PortBlock, reference: Path, stranger: Stranger
 ) -> None:
     inner = Ports(ports.bus, HOSTS, CHANNELS)
@@ -198,7 +198,7 @@ def mean(run: int) -> list[tuple[str, bytes]]:
     return made
 
 
-def test_who_borrows_the_ports_of_the_run_at_another_address_is_a_stranger(
+def test_own_ports_at_another_address_are_foreign(
     launch: Launch, folder: Path, ports: PortBlock, reference: Path
 ) -> None:
     """The whole of 127.0.0.0/8 is this machine, so every port is free there once more."""
@@ -222,7 +222,7 @@ def test_who_borrows_the_ports_of_the_run_at_another_address_is_a_stranger(
         assert f"{port_of}: datagram from 127.0.0.2, port " in run.text
 
 
-def test_strangers_on_the_public_bus_are_named_and_change_nothing(
+def test_foreign_datagrams_on_the_public_bus_change_nothing(
     launch: Launch, folder: Path, ports: PortBlock, reference: Path, stranger: Stranger
 ) -> None:
     run = launch(*RUN, *UNHURRIED)

@@ -64,7 +64,7 @@ def checked(run: Steered, log: Path, published: int) -> Recording:
 
 @pytest.mark.parametrize("time", [SIMULATED, WALL], ids=["lockstep", "real time"])
 @pytest.mark.parametrize("loss", ["0", "0.2"])
-def test_every_wish_is_recorded_once_seen_by_all_in_lockstep_and_replayed(
+def test_every_outside_message_is_recorded_once_and_replayed(
     launch: Launch, tmp_path: Path, ports: PortBlock, loss: str, time: str
 ) -> None:
     write_files(tmp_path, outside_system(ports.public_url, time))
@@ -80,7 +80,7 @@ def test_every_wish_is_recorded_once_seen_by_all_in_lockstep_and_replayed(
     assert "somebody else" not in run.launched.text
 
 
-def test_who_is_started_again_has_the_newest_wish_at_once(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+def test_a_restarted_reader_has_the_newest_outside_message(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)
     Joystick(ports, run).wish(5)
@@ -95,7 +95,7 @@ def test_who_is_started_again_has_the_newest_wish_at_once(launch: Launch, tmp_pa
     assert again[0] == again[-1] == 5.0
 
 
-def test_a_flood_is_bounded_and_said_and_the_run_goes_on(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+def test_a_flood_from_outside_is_bounded_and_reported(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)
     joystick = Joystick(ports, run)
@@ -111,7 +111,7 @@ def test_a_flood_is_bounded_and_said_and_the_run_goes_on(launch: Launch, tmp_pat
 
 
 @pytest.mark.core
-def test_fwk_send_is_such_a_program(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+def test_fwk_send_is_an_outside_program(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)
     joystick = Joystick(ports, run)

@@ -11,10 +11,11 @@ from fwk.control.address import gateway_address
 from fwk.control.client import Client, RefusedError
 from fwk.lcm.messages import type_named
 from fwk.lcm.type_registry import use_types_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
-from tests.programs.command_system import TYPES, command_system
+from tests.programs.command_system import command_system
 from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
@@ -23,7 +24,7 @@ pytestmark = pytest.mark.system
 @pytest.fixture(scope="module", autouse=True)
 def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("types")
-    write_files(folder, {"lcmtypes/lift.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/lift.lcm"))
     use_types_of(folder)
 
 
@@ -45,9 +46,7 @@ def begun(recording: Recording) -> list[tuple[str, int, float]]:
     return [(lifted.sender, lifted.sequence, lifted.height_m) for lifted in recording.decoded("r/lifted")]
 
 
-def test_a_command_and_a_request_are_answered_and_the_exit_code_says_how(
-    launch: Launch, folder: Path, ports: PortBlock
-) -> None:
+def test_fwk_call_prints_answers_and_sets_the_exit_code(launch: Launch, folder: Path, ports: PortBlock) -> None:
     run = started(launch, ports)
     assert run.fwk("call", "r/lift", "height_m=1.5").startswith("r/lift: done, tick ")
     assert ": there is a floor" in run.fwk("call", "r/lift", "height_m=-1", code=1)
@@ -70,7 +69,7 @@ def test_a_command_and_a_request_are_answered_and_the_exit_code_says_how(
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
 
 
-def test_losses_change_nothing(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def test_lost_datagrams_change_nothing(launch: Launch, folder: Path, ports: PortBlock) -> None:
     run = started(launch, ports, loss="0.2")
     with Client(gateway_address(ports.bus), TIMEOUT_S) as client:
         for number in range(1, 31):
@@ -95,9 +94,7 @@ def last_state(client: Client, name: str, expires_s: float = 100.0, **fields: ob
     return "timed out"
 
 
-def test_what_was_sent_to_one_who_did_not_run_is_not_begun_later(
-    launch: Launch, folder: Path, ports: PortBlock
-) -> None:
+def test_a_command_to_a_stopped_component_never_begins(launch: Launch, folder: Path, ports: PortBlock) -> None:
     run = started(launch, ports)
     run.fwk("stop", "r/lifter")
     said = run.fwk("call", "r/lift", "height_m=1", "--timeout", "0.5", "--expires", "1000", code=1)
@@ -112,7 +109,7 @@ def test_what_was_sent_to_one_who_did_not_run_is_not_begun_later(
     assert "byte for byte" in run.fwk("replay", str(log), "--verify")
 
 
-def test_who_is_stopped_over_it_fails(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def test_a_command_fails_when_its_component_is_stopped(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))
     run = started(launch, ports)
@@ -127,7 +124,7 @@ def test_who_is_stopped_over_it_fails(launch: Launch, folder: Path, ports: PortB
     assert "byte for byte" in run.fwk("replay", str(run.end()), "--verify")
 
 
-def test_who_dies_over_it_fails(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def test_a_command_fails_when_its_component_dies(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))
     run = started(launch, ports)
@@ -140,7 +137,7 @@ def test_who_dies_over_it_fails(launch: Launch, folder: Path, ports: PortBlock) 
     assert len(begun(Recording(run.end()))) == 1
 
 
-def test_a_flood_of_calls_is_refused_and_what_is_no_command_too(launch: Launch, folder: Path, ports: PortBlock) -> None:
+def test_a_flood_of_calls_and_malformed_calls_are_refused(launch: Launch, folder: Path, ports: PortBlock) -> None:
     file = folder / "launch/lift.yaml"
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", config: { ticks: 1000000 } }'))
     run = started(launch, ports)

@@ -7,11 +7,12 @@ from pathlib import Path
 import pytest
 
 from fwk.lcm.type_registry import use_types_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.in_memory import played_in_memory
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import Launched, PortBlock, played, replayed, write_files
-from tests.programs.command_system import TYPES, command_system
+from tests.programs.command_system import command_system
 
 pytestmark = pytest.mark.system
 
@@ -24,7 +25,7 @@ WORKERS = ("one", "two")
 @pytest.fixture(scope="module", autouse=True)
 def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("types")
-    write_files(folder, {"lcmtypes/lift.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/lift.lcm"))
     use_types_of(folder)
 
 
@@ -64,7 +65,7 @@ def restart(run: Launched, name: str) -> None:
     run.until_ticks(name, 10)
 
 
-def test_every_command_is_carried_out_once_and_in_order(reference: Path) -> None:
+def test_every_command_is_executed_once_and_in_order(reference: Path) -> None:
     recording = Recording(reference)
     assert recording.gaps() == {}
     lifts = begun(recording)
@@ -81,21 +82,23 @@ def test_every_command_is_carried_out_once_and_in_order(reference: Path) -> None
 
 
 @pytest.mark.parametrize("hosting", ["robot", "single"])
-def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, reference: Path, hosting: str) -> None:
+def test_the_layout_of_processes_changes_no_message(
+    launch: Launch, folder: Path, reference: Path, hosting: str
+) -> None:
     run = launch(*RUN, "--hosting", hosting)
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") == ""
 
 
 @pytest.mark.parametrize("loss", ["0.02", "0.2"])
-def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, loss: str) -> None:
+def test_lost_datagrams_change_nothing(launch: Launch, folder: Path, reference: Path, loss: str) -> None:
     run = launch(*RUN, env={"FWK_TEST_LOSS": loss})
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") == ""
     assert "fetched" in run.text
 
 
-def test_a_system_in_memory_gives_the_same(folder: Path, reference: Path) -> None:
+def test_a_system_in_memory_gives_the_same_messages(folder: Path, reference: Path) -> None:
     assert difference(reference, played_in_memory(folder, FILE, TICKS, 3)) == ""
 
 
@@ -104,7 +107,7 @@ def test_a_recording_replays_byte_for_byte(reference: Path) -> None:
 
 
 @pytest.mark.parametrize("loss", ["0", "0.2"])
-def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: Launch, folder: Path, loss: str) -> None:
+def test_a_killed_service_repeats_no_command_and_tells_senders(launch: Launch, folder: Path, loss: str) -> None:
     run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
     run.until_ticks("r/lifter", 10)
     for _ in range(2):
@@ -128,7 +131,7 @@ def test_a_killed_owner_begins_nothing_twice_and_its_senders_are_told(launch: La
 
 
 @pytest.mark.parametrize("loss", ["0", "0.2"])
-def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder: Path, loss: str) -> None:
+def test_commands_of_a_killed_sender_are_executed_once(launch: Launch, folder: Path, loss: str) -> None:
     run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": loss})
     run.until_ticks("one/worker", 10)
     for _ in range(2):
@@ -147,7 +150,7 @@ def test_what_a_killed_sender_wanted_is_carried_out_once(launch: Launch, folder:
         replayed(folder)
 
 
-def test_an_owner_that_does_not_come_back_lets_futures_end(launch: Launch, folder: Path) -> None:
+def test_futures_end_when_the_service_stays_away(launch: Launch, folder: Path) -> None:
     file = folder / FILE
     file.write_text(file.read_text().replace('Lifter" }', 'Lifter", restart: { when: never } }'))
     run = launch(FILE, "--record", "log.lcm")
@@ -169,7 +172,7 @@ def wall(folder: Path) -> Path:
     return folder
 
 
-def test_in_real_time_an_owner_that_was_late_begins_everything_once(launch: Launch, wall: Path) -> None:
+def test_a_late_service_in_real_time_begins_each_command_once(launch: Launch, wall: Path) -> None:
     run = launch(FILE, "--record", "log.lcm")
     run.until_ticks("one/worker", 10)
     os.kill(run.host("r/lifter"), signal.SIGSTOP)
@@ -186,7 +189,7 @@ def test_in_real_time_an_owner_that_was_late_begins_everything_once(launch: Laun
     replayed(wall)
 
 
-def test_in_real_time_with_losses_nothing_is_begun_twice(launch: Launch, wall: Path) -> None:
+def test_losses_in_real_time_begin_no_command_twice(launch: Launch, wall: Path) -> None:
     run = launch(FILE, "--record", "log.lcm", env={"FWK_TEST_LOSS": "0.05"})
     run.until_ticks("r/lifter", 20)
     restart(run, "r/lifter")
@@ -196,7 +199,7 @@ def test_in_real_time_with_losses_nothing_is_begun_twice(launch: Launch, wall: P
     assert len(lifts) == len(set(lifts)) > 5
 
 
-def test_a_flood_of_commands_is_held_back_and_said(launch: Launch, folder: Path) -> None:
+def test_a_flood_of_commands_is_held_back_and_reported(launch: Launch, folder: Path) -> None:
     sets = ("--set", "one/worker.flood=1000", "--set", "r/lifter.ticks=1000")
     run = launch(*RUN, *sets)
     assert run.wait() == 0, run.text

@@ -6,6 +6,7 @@ import pytest
 
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.compare import Comparison
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -13,48 +14,7 @@ from tests.harness.runs import PortBlock, replayed, write_files
 pytestmark = pytest.mark.system
 
 FILES = {
-    "lcmtypes/crane.lcm": """
-package crane;
-struct haul_t { core.header_t header; core.command_t command; double height_m; }
-struct tally_t { core.header_t header; int32_t done; int32_t failed; }
-""",
-    "cranes.py": '''
-"""One crane for all."""
-
-from fwk import Clock, CommandsEach, Component, Sends, Writes, channel
-from lcmtypes.crane import haul_t, tally_t
-
-
-class Crane(Component):
-    stage = "act"
-    clock: Clock
-    hauls: CommandsEach[haul_t] = channel("*/haul")
-
-    def loop(self) -> None:
-        for hauls in self.hauls.values():
-            for command in list(hauls.open):
-                command.done()
-            for command in hauls:
-                command.accept()
-
-
-class Robot(Component):
-    stage = "think"
-    haul: Sends[haul_t]
-    tally: Writes[tally_t]
-
-    def init(self) -> None:
-        self.future = None
-
-    def loop(self) -> None:
-        tally = self.tally.value
-        if self.future and self.future.finished:
-            tally.done += self.future.done
-            tally.failed += not self.future.done
-        if not self.future or self.future.finished:
-            self.future = self.haul.send()
-        self.tally.write()
-''',
+    **sources("lcmtypes/crane.lcm", "cranes.py"),
     "it.yaml": """
 name: cranes
 public_url: {url}
@@ -66,9 +26,7 @@ components:
 }
 
 
-def test_every_robot_has_its_answers_in_any_layout_and_in_replay(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
+def test_every_robot_gets_its_answers_in_any_layout(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, FILES | {"it.yaml": FILES["it.yaml"].format(url=ports.public_url)})
     for name, hosting in (("it.lcm", "process"), ("single.lcm", "single")):
         run = launch("it.yaml", "--ticks", "40", "--speed", "max", "--record", name, "--hosting", hosting)

@@ -47,7 +47,9 @@ def test_everything_is_in_the_recording(reference: Path) -> None:
 
 
 @pytest.mark.parametrize("hosting", ["robot", "single", "groups"])
-def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, reference: Path, hosting: str) -> None:
+def test_the_layout_of_processes_changes_no_message(
+    launch: Launch, folder: Path, reference: Path, hosting: str
+) -> None:
     if hosting == "groups":
         with open(folder / "launch/orchestra.yaml", "a") as file:
             file.write(GROUPS)
@@ -67,7 +69,7 @@ def test_the_layout_of_processes_changes_nothing(launch: Launch, folder: Path, r
     ],
 )
 @pytest.mark.core
-def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, weather: dict[str, str]) -> None:
+def test_lost_datagrams_change_nothing(launch: Launch, folder: Path, reference: Path, weather: dict[str, str]) -> None:
     run = launch(*RUN, *RECORD, env=weather)
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") == ""
@@ -75,7 +77,7 @@ def test_losses_change_nothing(launch: Launch, folder: Path, reference: Path, we
     assert "fetched" in run.text
 
 
-def test_losses_in_the_network_change_nothing(
+def test_losses_in_the_kernel_change_nothing(
     launch: Launch, folder: Path, reference: Path, needs: Callable[..., None], leave_out: Callable[[str], None]
 ) -> None:
     needs("unshare", "ip", "iptables")
@@ -111,11 +113,11 @@ def _keep_busy(enough: Event) -> None:
         zlib.crc32(bytes(1_000_000))
 
 
-def test_a_system_in_memory_gives_the_same(folder: Path, reference: Path) -> None:
+def test_a_system_in_memory_gives_the_same_messages(folder: Path, reference: Path) -> None:
     assert difference(reference, played_in_memory(folder, RUN[0], TICKS, 7)) == ""
 
 
-def test_another_seed_gives_something_else(launch: Launch, folder: Path, reference: Path) -> None:
+def test_another_seed_gives_other_messages(launch: Launch, folder: Path, reference: Path) -> None:
     run = launch(*RUN[:-1], "8", *RECORD)
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") != ""

@@ -5,64 +5,24 @@ from pathlib import Path
 import pytest
 
 from fwk.recording.compare import Comparison
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""Says in the beginning what there is; dies once."""
-
-from pathlib import Path
-
-from fwk import Clock, Component, Reads, Writes
-from lcmtypes.soccer import pose_t
-
-
-class Speaker(Component):
-    stage = "think"
-    clock: Clock
-    pose: Writes[pose_t]
-
-    def init(self) -> None:
-        for self.pose.value.x_m in (1.0, 2.0):
-            self.pose.write()
-        self.pose.value.x_m = 3.0
-
-    def loop(self) -> None:
-        if self.clock.tick == 8 and not Path("died").exists():
-            Path("died").touch()
-            raise RuntimeError("enough")
-        if self.clock.tick % 5 == 1:
-            self.pose.write()
-
-
-class Listener(Component):
-    stage = "act"
-    pose: Reads[pose_t]
-    heard: Writes[pose_t]
-
-    def init(self) -> None:
-        self.heard.value.y_m = -1.0
-        self.heard.write()
-
-    def loop(self) -> None:
-        for pose in self.pose.fresh:
-            self.heard.value = pose
-            self.heard.write()
-'''
 LAUNCH = """
 name: early
 public_url: {url}
 components:
-  r/speaker: {{use: "parts:Speaker", restart: {{backoff_s: 0.01}}}}
-  r/listener: {{use: "parts:Listener"}}
+  r/speaker: {{use: "early:Speaker", restart: {{backoff_s: 0.01}}}}
+  r/listener: {{use: "early:Listener"}}
 """
 
 
-def test_they_go_out_with_the_first_iteration(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
-    write_files(tmp_path, {"parts.py": PARTS, "it.yaml": LAUNCH.format(url=ports.public_url)})
+def test_messages_of_init_are_sent_with_the_first_iteration(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, {**sources("early.py"), "it.yaml": LAUNCH.format(url=ports.public_url)})
     run = launch("it.yaml", "--ticks", "20", "--speed", "max", "--record", "it.lcm")
     run.wait()
     recording = Recording(tmp_path / "it.lcm")

@@ -7,43 +7,14 @@ from pathlib import Path
 import pytest
 
 from fwk.recording.compare import compare
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import BIN, PortBlock, write_files
 from tests.programs.control_system import Steered
-from tests.programs.orchestra import WEATHER
 
 pytestmark = pytest.mark.system
 
-GREEDY = '''
-"""Asks for more channels than there are, all at once, and writes down what it got."""
-
-import weather
-
-from fwk import Blackboard, Component, Config, Writes
-from lcmtypes.robot import imu_t
-
-
-class GreedyConfig(Config):
-    text: str = "x" * 10_000
-    gain: float = 0.0
-
-
-class Greedy(Component):
-    stage = "think"
-    blackboard: Blackboard
-    config: GreedyConfig
-    imu: Writes[imu_t]
-
-    def init(self) -> None:
-        names = [f"a_channel_whose_name_is_rather_long_number_{number}" for number in range(64)]
-        self.asked = [self.blackboard.open_for_writing(imu_t, name) for name in names]
-
-    def loop(self) -> None:
-        answered = sum(each.is_open or each.refused != "" for each in self.asked)
-        self.imu.value.heading_rad = answered + self.config.gain
-        self.imu.write()
-'''
 COMPONENTS = 9
 LAUNCH = """
 name: greedy
@@ -58,7 +29,7 @@ components:
 def greedy(tmp_path: Path, ports: PortBlock) -> Path:
     lines = [f'  r{number}/greedy: {{use: "greedy:Greedy"}}\n' for number in range(COMPONENTS)]
     text = LAUNCH.format(url=ports.public_url) + "".join(lines)
-    write_files(tmp_path, {"greedy.py": GREEDY, "weather.py": WEATHER, "greedy.yaml": text})
+    write_files(tmp_path, {**sources("greedy.py", "weather.py"), "greedy.yaml": text})
     return tmp_path
 
 
@@ -69,7 +40,7 @@ def replayed(log: Path) -> str:
 
 
 @pytest.mark.parametrize("loss", ["0", "0.1"])
-def test_all_that_components_ask_for_at_once_is_answered_in_any_layout(greedy: Path, launch: Launch, loss: str) -> None:
+def test_many_requests_at_once_are_answered_in_any_layout(greedy: Path, launch: Launch, loss: str) -> None:
     for hosting in ("process", "single"):
         arguments = ("--ticks", "4", "--hosting", hosting, "--record", f"{hosting}.log")
         run = launch("greedy.yaml", *arguments, env={"FWK_TEST_LOSS": loss})
@@ -80,7 +51,7 @@ def test_all_that_components_ask_for_at_once_is_answered_in_any_layout(greedy: P
     assert [imu.heading_rad for imu in answered] == [64.0] * COMPONENTS
 
 
-def test_settings_of_any_size_reach_all_in_one_tick(greedy: Path, launch: Launch, ports: PortBlock) -> None:
+def test_large_settings_reach_all_hosts_in_one_tick(greedy: Path, launch: Launch, ports: PortBlock) -> None:
     run = Steered(launch("greedy.yaml", "--record", "log.lcm"), ports)
     run.ticks_pass(3)
     run.ask("pause")

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fwk.model.tick_events import StageBegun, events_of
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -13,67 +14,16 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""One takes the main loop, one wants it too, two play."""
-
-import os
-import signal
-from pathlib import Path
-
-from fwk import Clock, Component, Config, MainLoop, ReadsEach, Writes, channel
-from lcmtypes.robot import imu_t
-
-
-class DriverConfig(Config):
-    first: int = 5
-    last: int = 12
-    order: list[str] = ["act", "think", "act", "act", "sensor_acquire"]
-    dies: int = 0
-
-
-class Player(Component):
-    """Sums up what it hears."""
-
-    stage = "act"
-    all: ReadsEach[imu_t] = channel("*/imu")
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += 1 + sum(
-            message.header.sequence for reader in self.all.values() for message in reader.fresh
-        )
-        self.imu.write()
-
-
-class Driver(Player):
-    """Has the main loop from one tick to another."""
-
-    stage = "think"
-    clock: Clock
-    config: DriverConfig
-    main_loop: MainLoop
-
-    def loop(self) -> None:
-        super().loop()
-        self.imu.value.heading_rad += 1000 * self.main_loop.mine + 10 * bool(self.main_loop.holder)
-        if self.clock.tick == self.config.first:
-            self.main_loop.take_over(self.config.order)
-        if self.clock.tick == self.config.last:
-            self.main_loop.give_back()
-        if self.clock.tick == self.config.dies and not Path("died").exists():
-            Path("died").touch()
-            os.kill(os.getpid(), signal.SIGKILL)
-'''
 LAUNCH = """
 name: taken
 public_url: {url}
 speed: max
 components:
-  a/driver: {{use: "parts:Driver"}}
-  b/driver: {{use: "parts:Driver", stage: [act, post_loop], config: {{first: 8, last: 30}}}}
-  c/player: {{use: "parts:Player", stage: sensor_acquire}}
-  d/player: {{use: "parts:Player"}}
-  e/player: {{use: "parts:Player", stage: worldstate}}
+  a/driver: {{use: "taken:Driver"}}
+  b/driver: {{use: "taken:Driver", stage: [act, post_loop], config: {{first: 8, last: 30}}}}
+  c/player: {{use: "taken:Player", stage: sensor_acquire}}
+  d/player: {{use: "taken:Player"}}
+  e/player: {{use: "taken:Player", stage: worldstate}}
 """
 STAGES = ("pre_loop", "sensor_acquire", "sensor_prepare", "sensor_process", "worldstate", "think", "skill", "act")
 USUAL = ["sensor_acquire", "worldstate", "think", "act", "post_loop"]
@@ -82,7 +32,7 @@ TAKEN = ["act", "think", "act", "act", "sensor_acquire"]
 
 @pytest.fixture
 def taken(tmp_path: Path, ports: PortBlock) -> Path:
-    write_files(tmp_path, {"parts.py": PARTS, "taken.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("taken.py"), "taken.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 
@@ -95,7 +45,7 @@ def orders(recording: Recording) -> dict[int, list[str]]:
     }
 
 
-def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_same(launch: Launch, taken: Path) -> None:
+def test_take_over_gives_the_same_in_all_layouts(launch: Launch, taken: Path) -> None:
     run = launch("taken.yaml", "--ticks", "60", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     assert f"a/driver has the main loop from tick 6 on: {', '.join(TAKEN)}" in run.text
@@ -114,7 +64,7 @@ def test_it_is_taken_over_and_given_back_and_all_layouts_and_losses_give_the_sam
         replayed(taken, log="again.lcm")
 
 
-def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> None:
+def test_a_component_away_for_many_ticks_sees_the_newest(launch: Launch, taken: Path) -> None:
     sets = ("--set", "a/driver.last=400", "--set", "a/driver.order=[think, act]")
     run = launch("taken.yaml", "--ticks", "410", "--record", "log.lcm", *sets)
     assert run.wait() == 0, run.text
@@ -127,7 +77,7 @@ def test_who_was_away_for_long_sees_the_newest(launch: Launch, taken: Path) -> N
     assert difference(taken / "log.lcm", taken / "again.lcm") == ""
 
 
-def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
+def test_a_killed_holder_gives_the_main_loop_back(launch: Launch, taken: Path) -> None:
     run = launch("taken.yaml", "--ticks", "40", "--record", "log.lcm", "--set", "a/driver.dies=9")
     assert run.wait() == 0, run.text
     assert "a/driver has given the main loop back; tick 10 runs the usual stages" in run.text
@@ -138,7 +88,7 @@ def test_a_killed_one_has_given_it_back(launch: Launch, taken: Path) -> None:
     replayed(taken)
 
 
-def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
+def test_status_names_the_holder_and_stop_gives_the_loop_back(launch: Launch, taken: Path, ports: PortBlock) -> None:
     file = taken / "taken.yaml"
     file.write_text(file.read_text().replace("speed: max", "speed: 5"))
     run = Steered(launch("taken.yaml", "--set", "a/driver.last=0"), ports)
@@ -155,7 +105,7 @@ def test_it_shows_in_status_and_a_stopped_one_has_given_it_back(launch: Launch, 
     replayed(taken, log=log)
 
 
-def test_in_real_time_it_is_taken_over_too(launch: Launch, taken: Path) -> None:
+def test_take_over_in_real_time(launch: Launch, taken: Path) -> None:
     file = taken / "taken.yaml"
     file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.5"))
     run = launch("taken.yaml", "--ticks", "30", "--record", "log.lcm")

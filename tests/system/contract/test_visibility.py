@@ -35,7 +35,7 @@ def test_every_iteration_sees_what_the_contract_says(launch: Launch, folder: Pat
     assert all(look.digest >= 0 for look in recording.decoded("a/look"))
 
 
-def test_the_record_says_in_which_order_the_main_loop_did_it(launch: Launch, folder: Path) -> None:
+def test_tick_records_hold_the_order_of_the_main_loop(launch: Launch, folder: Path) -> None:
     run = launch(*RUN, "--ticks", "10")
     assert run.wait() == 0, run.text
     recording = Recording(folder / "log.lcm")
@@ -56,7 +56,7 @@ def test_the_record_says_in_which_order_the_main_loop_did_it(launch: Launch, fol
 
 
 @pytest.mark.parametrize("moment", ["loop:kill", "loop:kill after publish", "loop:raise"])
-def test_what_a_dying_iteration_wrote_nobody_has_seen(launch: Launch, folder: Path, moment: str) -> None:
+def test_messages_of_a_dying_iteration_are_never_seen(launch: Launch, folder: Path, moment: str) -> None:
     run = launch(*RUN, "--ticks", "30", "--set", f"d/player.trouble={moment}", "--set", "d/player.trouble_tick=15")
     assert run.wait() == 0, run.text
     assert "d/player ended: " in run.text
@@ -70,9 +70,7 @@ def test_what_a_dying_iteration_wrote_nobody_has_seen(launch: Launch, folder: Pa
 
 
 @pytest.mark.parametrize("hosting", ["process", "robot", "single"])
-def test_who_dies_between_its_stages_goes_on_with_what_it_last_said_itself(
-    launch: Launch, folder: Path, hosting: str
-) -> None:
+def test_death_between_two_stages_keeps_the_own_last_message(launch: Launch, folder: Path, hosting: str) -> None:
     trouble = {"trouble": "loop:kill after publish", "trouble_tick": 15, "trouble_stage": "act"}
     sets = [word for key, value in trouble.items() for word in ("--set", f"a/player.{key}={value}")]
     run = launch(*RUN, "--ticks", "20", "--hosting", hosting, *sets)
@@ -88,10 +86,10 @@ def test_who_dies_between_its_stages_goes_on_with_what_it_last_said_itself(
 
 
 @pytest.mark.slow
-def test_whoever_is_killed_whenever_nothing_is_seen_twice_or_lost(launch: Launch, folder: Path) -> None:
+def test_kills_at_any_time_duplicate_and_lose_no_message(launch: Launch, folder: Path) -> None:
     (folder / "traces").mkdir()
     file = folder / "launch/orchestra.yaml"
-    use = 'use: "procs.player:Player"'
+    use = 'use: "player:Player"'
     file.write_text(file.read_text().replace(use, f"{use}, restart: {{ backoff_s: 0.01, limit: 100 }}"))
     run = launch(*RUN)
     luck = random.Random(1)

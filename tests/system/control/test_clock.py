@@ -23,7 +23,7 @@ def start(tmp_path: Path, ports: PortBlock, launch: Callable[..., object]) -> St
     return lambda *arguments: Steered(launch("small.yaml", *arguments), ports)  # type: ignore[arg-type]
 
 
-def test_pausing_stepping_and_speed_change_nothing(start: Start, tmp_path: Path) -> None:
+def test_pause_step_and_speed_leave_messages_unchanged(start: Start, tmp_path: Path) -> None:
     run = start("--speed", "0.2")
     said = run.json("pause")
     tick = said["tick"]
@@ -51,7 +51,7 @@ def test_pausing_stepping_and_speed_change_nothing(start: Start, tmp_path: Path)
     assert compared.messages == 4 * ticks
 
 
-def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
+def test_a_very_slow_run_can_be_sped_up_again(start: Start) -> None:
     run = start()
     assert "running at speed 1e-06" in run.fwk("speed", "1e-6")
     assert "is not a pace" in run.fwk("speed", "1e-9", code=2)
@@ -67,7 +67,7 @@ def test_time_that_hardly_goes_on_can_be_hurried_again(start: Start) -> None:
     run.end()
 
 
-def test_the_clock_on_the_wall_obeys_nobody(start: Start) -> None:
+def test_the_wall_clock_refuses_pause_step_and_speed(start: Start) -> None:
     run = start("--set", "clock=wall")
     asked = {
         ("pause",): "paused",
@@ -107,7 +107,7 @@ def test_a_paused_run_is_steered_and_the_recording_replays(start: Start) -> None
     assert changes == [(tick + 1, 1), (tick + 1, 2)]
 
 
-def test_the_clock_on_the_wall_stands_for_nobody(start: Start, tmp_path: Path) -> None:
+def test_the_wall_clock_refuses_the_control_of_time(start: Start, tmp_path: Path) -> None:
     file = tmp_path / "small.yaml"
     file.write_text(file.read_text() + "clock: wall\n")
     run = start()

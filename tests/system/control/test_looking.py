@@ -82,7 +82,7 @@ def test_the_blackboard_from_outside(run: Steered) -> None:
     run.end()
 
 
-def test_settings_change_at_a_tick_that_the_recording_names(run: Steered) -> None:
+def test_settings_change_at_the_recorded_tick(run: Steered) -> None:
     said = run.json("config", "set", "r/counter.step=0.25")
     assert said["settings"] == [{"component": "r/counter", "values": {"step": 0.25}}]
     assert run.fwk("config", "get", "r/counter.step") == "0.25\n"
@@ -103,7 +103,7 @@ def test_settings_change_at_a_tick_that_the_recording_names(run: Steered) -> Non
         assert imu.heading_rad == heading
 
 
-def test_watched_settings_are_told_and_kept_ones_are_there_next_time(run: Steered) -> None:
+def test_watch_reports_settings_and_save_keeps_them(run: Steered) -> None:
     file = run.launched.folder / "small.host.yaml"
     file.write_text("# this machine\nconfig:\n  r/counter:\n    step: 1.0  # as ever\n")
     with subprocess.Popen(
@@ -125,7 +125,7 @@ def test_watched_settings_are_told_and_kept_ones_are_there_next_time(run: Steere
     assert "r/counter.step = 2.0 (small.host.yaml:4)" in fwk(run.launched.folder, "check", "small.yaml")
 
 
-def test_a_kept_setting_is_erased_and_the_run_takes_what_the_files_say_then(run: Steered) -> None:
+def test_unset_erases_a_kept_setting_and_restores_the_files(run: Steered) -> None:
     file = run.launched.folder / "small.host.yaml"
     before = run.ask("settings", names=["r/counter.step"])["settings"][0]
     run.fwk("config", "set", "r/counter.step=7", "--save")
@@ -138,7 +138,7 @@ def test_a_kept_setting_is_erased_and_the_run_takes_what_the_files_say_then(run:
     assert "small.host.yaml: there is no 'r/counter.step'; nothing was changed" in refused
 
 
-def test_the_log_is_found_followed_and_sifted(run: Steered) -> None:
+def test_fwk_log_follows_and_filters(run: Steered) -> None:
     with subprocess.Popen(
         [BIN / "fwk", "log", "-f", "--text", "ASKED", "--bus-port", str(run.ask("run")["bus_port"])],
         stdout=subprocess.PIPE,
@@ -156,7 +156,7 @@ def test_the_log_is_found_followed_and_sifted(run: Steered) -> None:
         assert follow.wait(30) == 0
 
 
-def test_garbage_on_the_sockets_leaves_the_run_alone(run: Steered, ports: PortBlock) -> None:
+def test_garbage_on_the_control_sockets_changes_nothing(run: Steered, ports: PortBlock) -> None:
     for address in (supervisor_address(ports.bus), gateway_address(ports.bus)):
         for garbage in (b"hello\n", b"\0" * 200_000, b'{"verb": []}\n' * 1000, b'{"verb":"watch","channel":"\xff"}\n'):
             with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as stranger:
@@ -174,13 +174,13 @@ def test_garbage_on_the_sockets_leaves_the_run_alone(run: Steered, ports: PortBl
     assert not recording.gaps()
 
 
-def test_without_a_run_the_commands_say_so(tmp_path: Path) -> None:
+def test_commands_without_a_run_report_its_absence(tmp_path: Path) -> None:
     done = subprocess.run([BIN / "fwk", "status", "--bus-port", "1"], capture_output=True, text=True, check=False)
     assert done.returncode == 2
     assert done.stderr.startswith("error: no run '1' on this machine")
 
 
-def test_the_log_of_a_run_that_is_named_is_followed_until_it_ends(run: Steered) -> None:
+def test_log_of_a_named_run_is_followed_to_its_end(run: Steered) -> None:
     folder = run.launched.folder
     command = [str(BIN / "fwk"), "log", run.launched.run_dir.name, "--follow"]
     with subprocess.Popen(

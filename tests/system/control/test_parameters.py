@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import source
 from tests.harness.runs import Launched, PortBlock
-from tests.programs.control_system import PARTS, Steered, write_system
+from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
 
@@ -17,8 +18,8 @@ STAGES = {"r/counter": "think", "r/follower": "act", "r/camera": "sensor_acquire
 def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Steered:
     write_system(tmp_path, ports)
     step = 'step: float = 1.0\n    """Added in each iteration."""\n'
-    parts = PARTS.replace(step, f'{step}    size: int = Field(5, frozen=True)\n    """Fixed."""\n')
-    (tmp_path / "parts.py").write_text(parts.replace("import numpy", "from pydantic import Field\nimport numpy"))
+    parts = source("small.py").replace(step, f'{step}    size: int = Field(5, frozen=True)\n    """Fixed."""\n')
+    (tmp_path / "small.py").write_text(parts.replace("import numpy", "from pydantic import Field\nimport numpy"))
     return Steered(launch("small.yaml"), ports)
 
 
@@ -40,7 +41,7 @@ def test_state_period_stages_time_awake_and_parameters(run: Steered) -> None:
     assert "(int, default, fixed)" in run.fwk("status", "r/counter")
 
 
-def test_a_parameter_is_set_if_it_can_be_and_configuration_is_read_again(run: Steered, tmp_path: Path) -> None:
+def test_set_refuses_fixed_parameters_and_reload_reads_files(run: Steered, tmp_path: Path) -> None:
     assert "r/counter.step = 3.0 since tick" in run.fwk("config", "set", "r/counter.step=3")
     assert "'size' stays as it is while the run goes on" in run.fwk("config", "set", "r/counter.size=6", code=2)
     file = tmp_path / "small.yaml"
@@ -52,7 +53,7 @@ def test_a_parameter_is_set_if_it_can_be_and_configuration_is_read_again(run: St
     assert run.json("config", "get", "r/counter.size")[0]["value"] == 5
 
 
-def test_each_is_killed_and_comes_back_when_asked(run: Steered) -> None:
+def test_each_component_can_be_killed_and_loaded_again(run: Steered) -> None:
     for name in STAGES:
         assert f"{name} stopped" in run.fwk("kill", name)
         assert run.component(name)["state"] == "stopped"

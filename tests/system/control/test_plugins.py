@@ -5,67 +5,30 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import Launched, PortBlock, replayed, write_files
-from tests.programs.control_system import PARTS
 
 pytestmark = pytest.mark.system
 
-DIRECTOR = (
-    PARTS.replace("import Component, Config,", "import Clock, Component, Config, PluginControl,")
-    + '''
-
-class Director(Component):
-    """Has a script."""
-
-    stage = "worldstate"
-    clock: Clock
-    plugins: PluginControl
-
-    def loop(self) -> None:
-        tick, plugins = self.clock.tick, self.plugins
-        if tick == 5:
-            plugins.stop("r/counter")
-        elif tick == 8:
-            plugins.load("r/finder")
-        elif tick == 10:
-            plugins.start("r/counter")
-            plugins.unload("r/camera")
-        elif tick == 11:
-            plugins.stop("r/follower")
-            plugins.start("r/follower")
-        elif tick == 12:
-            plugins.restart("r")
-
-
-class Rival(Director):
-    """Asks for something else in the same tick; its name comes later."""
-
-    def loop(self) -> None:
-        if self.clock.tick == 5:
-            self.plugins.start("r/counter")
-        elif self.clock.tick == 7:
-            self.plugins.stop("r/counter")
-'''
-)
 LAUNCH = """
 name: directed
 speed: max
 public_url: {url}
 components:
-  b/rival: {{use: "parts:Rival"}}
-  r/counter: {{use: "parts:Counter"}}
-  r/follower: {{use: "parts:Follower"}}
-  r/camera: {{use: "parts:Camera", start: false}}
-  r/finder: {{use: "parts:Finder", start: false}}
-  a/director: {{use: "parts:Director"}}
+  b/rival: {{use: "directors:Rival"}}
+  r/counter: {{use: "small:Counter"}}
+  r/follower: {{use: "small:Follower"}}
+  r/camera: {{use: "small:Camera", start: false}}
+  r/finder: {{use: "small:Finder", start: false}}
+  a/director: {{use: "directors:Director"}}
 """
 
 
-def test_it_happens_at_the_same_ticks_in_every_run_and_replays(
+def test_plugin_requests_take_effect_at_the_same_ticks(
     tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]
 ) -> None:
-    write_files(tmp_path, {"parts.py": DIRECTOR, "it.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("small.py", "directors.py"), "it.yaml": LAUNCH.format(url=ports.public_url)})
     logs = [tmp_path / "one.lcm", tmp_path / "two.lcm"]
     for log in logs:
         run = launch("it.yaml", "--ticks", "20", "--record", str(log))

@@ -8,11 +8,14 @@ import pytest
 
 from fwk.control.client import ControlError
 from fwk.model.tick_events import HostLost, HostStarted, HostStopped
+from tests.harness.components import source
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock
-from tests.programs.control_system import PARTS, Steered, write_system
+from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
+
+PARTS = source("small.py")
 
 
 @pytest.fixture
@@ -26,7 +29,7 @@ def events(recording: Recording, kind: type[HostLost | HostStarted | HostStopped
     return [tick for tick, each in recording.events if isinstance(each, kind) and each.host == host]
 
 
-def test_stopped_it_leaves_its_last_value_started_it_goes_on_counting_messages(run: Steered) -> None:
+def test_a_stopped_writer_leaves_its_last_value_until_started(run: Steered) -> None:
     pid = run.component("r/counter")["pid"]
     assert "r/counter stopped" in run.fwk("stop", "r/counter")
     assert not psutil.pid_exists(pid)
@@ -53,7 +56,7 @@ def test_stopped_it_leaves_its_last_value_started_it_goes_on_counting_messages(r
 
 
 @pytest.mark.core
-def test_a_restart_misses_no_tick_in_lockstep(run: Steered) -> None:
+def test_a_restart_in_lockstep_misses_no_tick(run: Steered) -> None:
     for _ in range(2):
         run.steer("restart", "r/counter", "r/finder")
     assert run.component("r/counter")["starts"] == 3
@@ -66,11 +69,11 @@ def test_a_restart_misses_no_tick_in_lockstep(run: Steered) -> None:
     assert len(events(recording, HostStarted, 0)) == 3
 
 
-def test_reload_brings_the_changed_code_of_one_and_leaves_the_others(run: Steered) -> None:
-    file = run.launched.folder / "parts.py"
+def test_reload_changes_the_code_of_one_component_only(run: Steered) -> None:
+    file = run.launched.folder / "small.py"
     pids = {each["name"]: each["pid"] for each in run.ask("status")["components"]}
     file.write_text(PARTS.replace("def loop(self) -> None:\n        while", "def loop(self) -> None\n        while"))
-    assert "parts.py:" in run.fwk("reload", "r/counter", code=2)
+    assert "small.py:" in run.fwk("reload", "r/counter", code=2)
     assert run.component("r/counter")["pid"] == pids["r/counter"]
     file.write_text(PARTS.replace("+= self.config.step", "-= 1000.0").replace("x_m = 1.0", "x_m = 2.0"))
     run.fwk("reload", "r/counter")
@@ -85,8 +88,8 @@ def test_reload_brings_the_changed_code_of_one_and_leaves_the_others(run: Steere
     run.end()
 
 
-def test_code_that_does_not_start_is_told_and_put_right(run: Steered) -> None:
-    file = run.launched.folder / "parts.py"
+def test_reloaded_code_that_fails_is_reported_and_repaired(run: Steered) -> None:
+    file = run.launched.folder / "small.py"
     file.write_text(PARTS.replace('"""Counts up."""', "1 / 0"))
     said = run.fwk("reload", "r/counter", code=1)
     assert "r/counter failed" in said
@@ -118,8 +121,8 @@ def test_code_that_does_not_start_is_told_and_put_right(run: Steered) -> None:
         ),
     ],
 )
-def test_code_that_would_need_another_plan_is_refused(run: Steered, old: str, new: str, text: str) -> None:
-    file = run.launched.folder / "parts.py"
+def test_code_that_needs_another_plan_is_refused(run: Steered, old: str, new: str, text: str) -> None:
+    file = run.launched.folder / "small.py"
     assert old in PARTS
     file.write_text(PARTS.replace(old, new))
     assert text in run.fwk("reload", "r/counter", code=1)
@@ -132,7 +135,7 @@ def test_code_that_would_need_another_plan_is_refused(run: Steered, old: str, ne
     run.end()
 
 
-def test_a_vision_master_stays_as_long_as_it_has_users(run: Steered) -> None:
+def test_a_vision_master_stays_while_it_has_users(run: Steered) -> None:
     assert "r/camera is needed by r/finder" in run.fwk("unload", "r/camera", code=2)
     run.fwk("unload", "r/camera", "r/finder")
     assert "r/finder needs r/camera, which does not run" in run.fwk("start", "r/finder", code=2)
@@ -142,7 +145,7 @@ def test_a_vision_master_stays_as_long_as_it_has_users(run: Steered) -> None:
     run.end()
 
 
-def test_what_hangs_is_seen_and_stopped_while_the_loop_waits_for_it(run: Steered) -> None:
+def test_a_hanging_component_is_named_and_can_be_stopped(run: Steered) -> None:
     with pytest.raises(ControlError, match=r"not answered within 0\.5 s"):
         run.ask("set", timeout_s=0.5, changes=["r/counter.hang=true"])
     run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["r/counter"], "somebody it waits for")

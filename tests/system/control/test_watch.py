@@ -5,29 +5,29 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import source, sources
 from tests.harness.runs import Launched, PortBlock, write_files
-from tests.programs.control_system import PARTS, Steered
+from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-HELPER = "ADDED = 1.0\n"
-COUNTING = PARTS.replace("class CounterConfig", "import helper\n\n\nclass CounterConfig")
+PARTS = source("small.py")
+HELPER = source("helper.py")
 LAUNCH = """
 name: small
 public_url: {url}
 hosts: {{both: [r/camera, r/finder]}}
 components:
-  r/counter: {{use: "parts:Counter"}}
+  r/counter: {{use: "small:Counter"}}
   r/helped: {{use: "counting:Counter", channels: {{imu: r/helped_imu}}}}
   r/camera: {{use: "looking:Camera"}}
-  r/finder: {{use: "parts:Finder"}}
+  r/finder: {{use: "small:Finder"}}
 """
 
 
 @pytest.fixture
 def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Steered:
-    counting = COUNTING.replace("self.config.step\n        self.imu.write", "helper.ADDED\n        self.imu.write")
-    files = {"parts.py": PARTS, "counting.py": counting, "looking.py": PARTS, "helper.py": HELPER}
+    files = {**sources("small.py", "counting.py", "helper.py"), "looking.py": PARTS}
     write_files(tmp_path, {**files, "small.yaml": LAUNCH.format(url=ports.public_url)})
     return Steered(launch("small.yaml", "--watch"), ports)
 
@@ -36,7 +36,7 @@ def starts(run: Steered) -> dict[str, int]:
     return {each["name"].removeprefix("r/"): each["starts"] for each in run.ask("status")["components"]}
 
 
-def test_whoever_imports_a_changed_file_is_reloaded_and_nobody_else(run: Steered, tmp_path: Path) -> None:
+def test_a_changed_file_reloads_its_importers_only(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("ADDED = -1000.0\n")
     run.launched.until("helper.py changed; reloading r/helped")
     run.launched.until("r/helped runs again")
@@ -52,9 +52,7 @@ def test_whoever_imports_a_changed_file_is_reloaded_and_nobody_else(run: Steered
     assert run.launched.gone_within(5.0)
 
 
-def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_right(
-    run: Steered, tmp_path: Path
-) -> None:
+def test_a_syntax_error_keeps_the_old_code_running(run: Steered, tmp_path: Path) -> None:
     assert "noted, tick" in run.fwk("note", "here", "it", "begins")
     run.launched.until("here it begins")
     (tmp_path / "helper.py").write_text("ADDED = \n")
@@ -63,7 +61,7 @@ def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_
     assert starts(run)["helped"] == 1
     assert "helper.py:1: invalid syntax" in run.fwk("reload", "r/helped", code=2)
     run.steer("stop", "r/counter")
-    (tmp_path / "parts.py").write_text(PARTS + "\n# changed\n")
+    (tmp_path / "small.py").write_text(PARTS + "\n# changed\n")
     (tmp_path / "helper.py").write_text("ADDED = -1000.0\n")
     run.launched.until("r/helped runs again")
     run.ticks_pass()
@@ -72,7 +70,7 @@ def test_a_file_that_is_no_python_is_named_and_the_old_code_runs_on_until_it_is_
     run.end()
 
 
-def test_a_file_that_is_missing_for_a_moment_stops_nobody(run: Steered, tmp_path: Path) -> None:
+def test_a_briefly_missing_file_stops_no_component(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("ADDED = \n")
     run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
     (tmp_path / "helper.py").unlink()
@@ -87,7 +85,7 @@ def test_a_file_that_is_missing_for_a_moment_stops_nobody(run: Steered, tmp_path
     run.end()
 
 
-def test_who_failed_is_started_again_when_its_file_was_put_right(run: Steered, tmp_path: Path) -> None:
+def test_a_failed_component_restarts_when_its_file_is_repaired(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("1 / 0\n")
     run.launched.until("helper.py changed; reloading r/helped")
     run.launched.until_true(lambda: run.component("r/helped")["state"] == "failed", "r/helped fails")

@@ -29,9 +29,7 @@ def terminal(tmp_path: Path, ports: PortBlock) -> Iterator[Open]:
         each.kill()
 
 
-def test_while_one_component_is_stopped_nobody_goes_on_and_nothing_shows_in_the_recording(
-    terminal: Open, tmp_path: Path
-) -> None:
+def test_a_breakpoint_holds_all_and_leaves_no_trace(terminal: Open, tmp_path: Path) -> None:
     assert terminal("--record", "free.log").end() == 0
     debugged = terminal("--debug", "r/world_model", "--record", "stopped.log")
     assert "loop()" in debugged.prompt()
@@ -51,7 +49,7 @@ def test_while_one_component_is_stopped_nobody_goes_on_and_nothing_shows_in_the_
     assert compared.messages == 80
 
 
-def test_leaving_the_debugger_gives_the_component_back(terminal: Open) -> None:
+def test_quitting_the_debugger_gives_the_component_back(terminal: Open) -> None:
     debugged = terminal("--debug", "r/world_model")
     debugged.prompt()
     debugged.type("q")
@@ -60,7 +58,7 @@ def test_leaving_the_debugger_gives_the_component_back(terminal: Open) -> None:
     assert debugged.turns == 40
 
 
-def test_ctrl_c_stops_in_the_debugged_component_and_not_the_run(terminal: Open) -> None:
+def test_ctrl_c_stops_in_the_component_and_not_the_run(terminal: Open) -> None:
     debugged = terminal("--debug", "r/world_model", "--ticks", "100000")
     debugged.prompt()
     debugged.type("c")

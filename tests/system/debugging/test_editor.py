@@ -110,7 +110,7 @@ def terminals(tmp_path: Path) -> Iterator[Callable[[Terminal], Terminal]]:
         each.kill()
 
 
-def test_an_editor_stops_the_world_and_nothing_shows_in_the_recording(
+def test_an_editor_breakpoint_leaves_no_trace_in_the_recording(
     tmp_path: Path, ports: PortBlock, port: int, terminals: Callable[[Terminal], Terminal]
 ) -> None:
     free = terminals(Terminal.launch(tmp_path, ports, "--record", "free.log"))
@@ -119,16 +119,16 @@ def test_an_editor_stops_the_world_and_nothing_shows_in_the_recording(
     launched = terminals(Terminal.launch(tmp_path, ports, *options))
     launched.child.expect("waits for a debugger at 127.0.0.1")
     editor = Editor(port)
-    editor.attach(tmp_path / "parts.py", LOOP_LINE)
+    editor.attach(tmp_path / "sensors.py", LOOP_LINE)
     thread = editor.stopped()
     assert editor.evaluate(thread, "self.imu.value.header.tick") == "1"
     assert launched.turns == 1
-    editor.go_on(tmp_path / "parts.py", thread)
+    editor.go_on(tmp_path / "sensors.py", thread)
     assert launched.end() == 0
     assert difference(tmp_path / "free.log", tmp_path / "stopped.log") == ""
 
 
-def test_an_editor_takes_a_component_of_a_running_system_and_gives_it_back(
+def test_an_editor_attaches_to_a_running_system_and_detaches(
     tmp_path: Path, ports: PortBlock, port: int, terminals: Callable[[Terminal], Terminal], launch: Launch
 ) -> None:
     launched = launch("parts.yaml", "--set", f"public_url={ports.public_url}")
@@ -136,12 +136,12 @@ def test_an_editor_takes_a_component_of_a_running_system_and_gives_it_back(
     terminal = terminals(Terminal.debug(tmp_path, ports, NAME, "--debugpy", str(port)))
     terminal.child.expect("waits for a debugger at 127.0.0.1")
     editor = Editor(port)
-    editor.attach(tmp_path / "parts.py", LOOP_LINE)
+    editor.attach(tmp_path / "sensors.py", LOOP_LINE)
     thread = editor.stopped()
     tick = int(editor.evaluate(thread, "self.imu.value.header.tick"))
     assert run.tick == tick == terminal.turns
     assert run.component(NAME)["state"] == "held"
-    editor.go_on(tmp_path / "parts.py", thread)
+    editor.go_on(tmp_path / "sensors.py", thread)
     run.ticks_pass()
     terminal.child.sendintr()
     assert terminal.end() == 0

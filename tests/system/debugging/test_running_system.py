@@ -59,7 +59,7 @@ def until_starts(run: Steered, number: int) -> None:
     run.launched.until_true(there, f"start {number} of {NAME}")
 
 
-def test_a_breakpoint_in_a_running_system_stops_the_world_and_nothing_shows_but_a_restart(
+def test_a_breakpoint_in_a_running_system_shows_only_a_restart(
     start: Callable[..., Steered], debug: Debug, launch: Callable[..., Launched], tmp_path: Path
 ) -> None:
     run = start()
@@ -102,7 +102,7 @@ def test_a_breakpoint_in_a_running_system_stops_the_world_and_nothing_shows_but_
 
 
 @pytest.mark.parametrize("leave", ["end of input", "kill", "kill its parent", "close the terminal", "let it fail"])
-def test_however_the_debugger_is_left_the_component_goes_back(
+def test_the_component_returns_however_the_debugger_ends(
     start: Callable[..., Steered], debug: Debug, leave: str
 ) -> None:
     run = start()
@@ -131,7 +131,7 @@ def test_however_the_debugger_is_left_the_component_goes_back(
     assert Recording(run.end()).gaps() == {}
 
 
-def test_in_real_time_the_loop_goes_on_and_says_who_is_held(start: Callable[..., Steered], debug: Debug) -> None:
+def test_in_real_time_the_loop_goes_on_and_names_the_held_host(start: Callable[..., Steered], debug: Debug) -> None:
     run = start("--set", "clock=wall", "--set", "period_s=0.1")
     terminal = debug(NAME)
     terminal.prompt()
@@ -151,7 +151,7 @@ def test_in_real_time_the_loop_goes_on_and_says_who_is_held(start: Callable[...,
     assert "equal" in run.fwk("replay", str(run.end()), "--verify")
 
 
-def test_also_while_the_run_is_paused_and_then_step_by_step(start: Callable[..., Steered], debug: Debug) -> None:
+def test_a_paused_run_can_be_debugged_step_by_step(start: Callable[..., Steered], debug: Debug) -> None:
     run = start()
     run.fwk("pause")
     tick = run.tick
@@ -174,7 +174,7 @@ def test_also_while_the_run_is_paused_and_then_step_by_step(start: Callable[...,
     assert "equal" in run.fwk("replay", str(run.end()), "--verify")
 
 
-def test_by_hand_without_a_debugger(start: Callable[..., Steered], debug: Debug) -> None:
+def test_attach_without_a_debugger(start: Callable[..., Steered], debug: Debug) -> None:
     run = start()
     terminal = debug(NAME, "--no-debugger")
     until_starts(run, 2)
@@ -185,19 +185,17 @@ def test_by_hand_without_a_debugger(start: Callable[..., Steered], debug: Debug)
     run.end()
 
 
-def test_what_cannot_be_debugged_is_refused_and_runs_on(
-    start: Callable[..., Steered], debug: Debug, tmp_path: Path
-) -> None:
+def test_components_that_cannot_be_debugged_run_on(start: Callable[..., Steered], debug: Debug, tmp_path: Path) -> None:
     run = start()
     unknown = debug("r/world_modell")
     unknown.child.expect("did you mean 'r/world_model'")
     assert unknown.end() == 2
-    file = tmp_path / "parts.py"
-    file.write_text(FILES["parts.py"].replace("class WorldModel", "class World Model"))
+    file = tmp_path / "sensors.py"
+    file.write_text(FILES["sensors.py"].replace("class WorldModel", "class World Model"))
     broken = debug(NAME)
     broken.child.expect("parts cannot be imported; the run goes on with what it has")
     assert broken.end() == 2
-    file.write_text(FILES["parts.py"])
+    file.write_text(FILES["sensors.py"])
     first = debug(NAME)
     first.prompt()
     second = debug(NAME)
@@ -209,7 +207,7 @@ def test_what_cannot_be_debugged_is_refused_and_runs_on(
     run.end()
 
 
-def test_the_run_can_take_it_back_and_its_end_ends_the_debugger(start: Callable[..., Steered], debug: Debug) -> None:
+def test_restart_and_end_of_the_run_end_the_debugger(start: Callable[..., Steered], debug: Debug) -> None:
     run = start()
     terminal = debug(NAME)
     terminal.prompt()
@@ -224,7 +222,7 @@ def test_the_run_can_take_it_back_and_its_end_ends_the_debugger(start: Callable[
 
 
 @pytest.mark.parametrize("hosting", ["process", "robot"])
-def test_a_vision_component_has_its_frames_also_by_hand_and_a_group_comes_along(
+def test_an_attached_vision_group_keeps_its_frames(
     tmp_path: Path, ports: PortBlock, launch: Callable[..., object], debug: Debug, hosting: str
 ) -> None:
     write_system(tmp_path, ports)

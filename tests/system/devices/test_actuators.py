@@ -10,9 +10,10 @@ import pytest
 from fwk.control import client
 from fwk.model.tick_events import HostLost, HostStopped
 from lcmtypes.core import header_t
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import PortBlock, replayed
+from tests.harness.runs import PortBlock, replayed, write_files
 from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
@@ -63,7 +64,7 @@ def index_of(match: Steered, name: str) -> int:
     return names.index(name)
 
 
-def test_a_stopped_base_leaves_the_robot_standing_and_comes_back(match: Steered, ports: PortBlock) -> None:
+def test_a_stopped_base_stops_the_robot_and_comes_back(match: Steered, ports: PortBlock) -> None:
     base = index_of(match, "cyan1/base")
     drive(match, ports)
     match.steer("stop", "cyan1/base")
@@ -98,24 +99,16 @@ def test_a_killed_base_lets_the_motors_time_out(match: Steered, ports: PortBlock
     assert max(speed for tick, speed in speeds.items() if tick >= standing) < STANDING_M_S
 
 
-FINAL_WORDS = """
-    def finalize(self) -> None:
-        self.imu.value.heading_rad = -1.0
-        self.imu.write()
-        self.log.info("counted enough")
-"""
-
-
 @pytest.mark.parametrize("clock", ["simulated", "wall"])
 @pytest.mark.core
-def test_what_finalize_writes_is_seen_recorded_and_replayed(
+def test_messages_of_finalize_are_seen_recorded_and_replayed(
     launch: Launch, ports: PortBlock, tmp_path: Path, clock: str
 ) -> None:
     write_system(tmp_path, ports)
-    parts = (tmp_path / "parts.py").read_text()
-    old = '\n    def finalize(self) -> None:\n        self.log.info("counted enough")\n'
-    assert old in parts
-    (tmp_path / "parts.py").write_text(parts.replace(old, FINAL_WORDS))
+    write_files(tmp_path, sources("final_words.py"))
+    small = (tmp_path / "small.yaml").read_text()
+    assert "small:Counter" in small
+    (tmp_path / "small.yaml").write_text(small.replace("small:Counter", "final_words:LastWords"))
     with (tmp_path / "small.yaml").open("a") as file:
         file.write(f"clock: {clock}\nstage_time_s: 0.2\n")
     run = Steered(launch("small.yaml"), ports)

@@ -32,7 +32,7 @@ def source(path: Path) -> tuple[str, str]:
     return "--set", f"cyan1/camera.source={path}"
 
 
-def test_detectors_say_of_a_folder_what_they_said_of_the_camera(
+def test_detectors_see_the_same_in_a_folder_as_in_the_camera(
     launch: Launch, film: tuple[Path, Path, dict[str, list[bytes]]], tmp_path: Path
 ) -> None:
     folder, _, said = film
@@ -59,7 +59,7 @@ def test_a_video_gives_the_same_messages_in_every_process_layout(
     assert [percept.visible for percept in percepts] == [True] * TICKS
 
 
-def test_a_restarted_driver_goes_on_with_the_picture_of_its_tick(
+def test_a_restarted_driver_resumes_at_the_picture_of_its_tick(
     launch: Launch, film: tuple[Path, Path, dict[str, list[bytes]]], ports: PortBlock, tmp_path: Path
 ) -> None:
     looping = ("--set", "cyan1/camera.at_end=loop")
@@ -74,7 +74,7 @@ def test_a_restarted_driver_goes_on_with_the_picture_of_its_tick(
     assert all(places[(each.header.tick - 1) % TICKS] == (each.x_m, each.y_m) for each in percepts)
 
 
-def test_a_missing_source_is_named_and_nothing_starts(launch: Launch) -> None:
+def test_a_missing_source_is_named_before_anything_starts(launch: Launch) -> None:
     run = launch("vision.yaml", "--set", "cyan1/camera.source=/dev/video99")
     assert run.wait() == 1, run.text
     assert "cyan1/camera: SourceError: '/dev/video99': No such file or directory; video devices" in run.text
@@ -92,7 +92,7 @@ def with_pictures(tmp_path: Path) -> tuple[Path, list[Picture]]:
     return tmp_path / "pictures.yaml", pictures
 
 
-def test_fwk_cam_sees_what_a_running_camera_sees(
+def test_fwk_cam_shows_the_pictures_of_a_running_camera(
     launch: Launch, ports: PortBlock, with_pictures: tuple[Path, list[Picture]], tmp_path: Path
 ) -> None:
     file, pictures = with_pictures

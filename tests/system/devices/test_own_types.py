@@ -18,11 +18,12 @@ from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.replay.recording import Recording
 from tests.clients.bus import Bus, process, program, wait_until
+from tests.harness.components import source, sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
 from tests.harness.runs import Launched, PortBlock, fwk, replayed, write_files
 from tests.programs.control_system import Steered
-from tests.programs.device_system import TYPES, device_system
+from tests.programs.device_system import device_system
 
 pytestmark = pytest.mark.system
 
@@ -35,7 +36,7 @@ COUNT = 20
 @pytest.fixture(scope="session", autouse=True)
 def _device_types(tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("device_types")
-    write_files(folder, {"lcmtypes/devices.lcm": TYPES})
+    write_files(folder, sources("lcmtypes/devices.lcm"))
     use_types_of(folder)
 
 
@@ -46,7 +47,7 @@ def build(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
 
     def built() -> str:
         if not (folder / "device").exists():
-            (folder / "devices.lcm").write_text(TYPES.partition("struct stamped_t")[0])
+            (folder / "devices.lcm").write_text(source("lcmtypes/devices.lcm").partition("struct stamped_t")[0])
             command = [program("lcm-gen"), "-c", "--c-cpath", str(folder), "--c-hpath", str(folder)]
             subprocess.run([*command, str(folder / "devices.lcm")], check=True)
             paths = [f"-I{folder}", f"-I{WHEEL}/include", f"-L{WHEEL}/lib", f"-Wl,-rpath,{WHEEL}/lib"]
@@ -86,7 +87,7 @@ def plain(log: Path, channel: str, name: str) -> list[Any]:
 
 
 @pytest.mark.parametrize("time", [SIMULATED, WALL], ids=["lockstep", "real time"])
-def test_a_c_program_is_heard_and_obeyed_and_the_recording_replays(
+def test_a_c_program_exchanges_messages_and_replays(
     launch: Launch, tmp_path: Path, ports: PortBlock, device: str, time: str
 ) -> None:
     run = started(launch, tmp_path, ports, time)
@@ -107,7 +108,7 @@ def test_a_c_program_is_heard_and_obeyed_and_the_recording_replays(
 
 
 @pytest.mark.parametrize("time", [SIMULATED, WALL], ids=["lockstep", "real time"])
-def test_a_reader_that_is_killed_goes_on_and_the_recording_replays(
+def test_a_killed_reader_goes_on_and_the_recording_replays(
     launch: Launch, tmp_path: Path, ports: PortBlock, device: str, time: str
 ) -> None:
     run = started(launch, tmp_path, ports, time)
@@ -159,7 +160,7 @@ def test_a_changed_component_is_found_by_the_replay(alone: Callable[..., Launche
         pytest.param(slice(-2), "MOTORS has a message without the stamp that says what readers saw", id="half a stamp"),
     ],
 )
-def test_a_recording_whose_stamps_are_not_there_is_refused(
+def test_a_recording_without_stamps_is_refused(
     alone: Callable[..., Launched], tmp_path: Path, kept: slice, said: str
 ) -> None:
     alone("log.lcm")
@@ -170,9 +171,7 @@ def test_a_recording_whose_stamps_are_not_there_is_refused(
     assert said in replayed(tmp_path, log="without.lcm", code=2)
 
 
-def test_every_layout_of_processes_gives_the_same_and_another_setting_does_not(
-    alone: Callable[..., Launched], tmp_path: Path
-) -> None:
+def test_layouts_give_the_same_and_other_settings_do_not(alone: Callable[..., Launched], tmp_path: Path) -> None:
     alone("process.lcm", "--hosting", "process")
     alone("single.lcm", "--hosting", "single")
     assert difference(tmp_path / "process.lcm", tmp_path / "single.lcm") == ""
@@ -182,7 +181,7 @@ def test_every_layout_of_processes_gives_the_same_and_another_setting_does_not(
     assert "MOTORS: tick 1, stage 5, message 1 by r/driver: power[0] is 0.01 in process.lcm, 0.02 in other.lcm" in said
 
 
-def test_listeners_hear_what_a_part_was_told_once_each(alone: Callable[..., Launched], tmp_path: Path) -> None:
+def test_listeners_hear_each_message_to_a_part_once(alone: Callable[..., Launched], tmp_path: Path) -> None:
     alone("log.lcm")
     heard = type_named("robot.imu_t").decode(
         [event.data for event in LogReader(tmp_path / "log.lcm") if event.channel == "s/heard"][-1]
@@ -191,9 +190,7 @@ def test_listeners_hear_what_a_part_was_told_once_each(alone: Callable[..., Laun
     assert heard.yaw_rate_rad_s == 40 * 2 * 11
 
 
-def test_what_is_no_message_of_the_device_is_refused_and_counted(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
+def test_malformed_device_messages_are_refused_and_counted(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     run = started(launch, tmp_path, ports)
     bus = lcm.LCM(ports.public_url)
     joy: Any = type_named("devices.joy_t")()
@@ -240,9 +237,7 @@ def test_lcm_logplayer_plays_the_recording_to_any_program(
     assert "JOYSTICK 9: 2 axes, sent" in heard.read_text()
 
 
-def test_what_lcm_logger_hears_of_our_own_channels_is_what_we_record(
-    launch: Launch, tmp_path: Path, ports: PortBlock
-) -> None:
+def test_lcm_logger_hears_what_the_recording_holds(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, device_system(ports.public_url))
     bus = Bus(ports.public_url)
     with bus.logger(tmp_path / "heard.lcm"):

@@ -15,7 +15,7 @@ pytestmark = pytest.mark.system
 FILE = str(Path(__file__).parents[3] / "launch" / "frames.yaml")
 
 
-def test_sightings_go_through_the_tree_to_where_the_ball_is(launch: Launch, tmp_path: Path) -> None:
+def test_sightings_are_transformed_to_the_true_ball(launch: Launch, tmp_path: Path) -> None:
     run = launch(FILE, "--ticks", "160", "--speed", "max", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     recording = Recording(tmp_path / "log.lcm")
@@ -27,7 +27,7 @@ def test_sightings_go_through_the_tree_to_where_the_ball_is(launch: Launch, tmp_
     assert sorted(errors_m)[len(errors_m) // 2] < 0.3
 
 
-def test_the_provider_stays_as_long_as_somebody_uses_it_and_all_replays(launch: Launch, ports: PortBlock) -> None:
+def test_a_provider_stays_while_it_has_users_and_replays(launch: Launch, ports: PortBlock) -> None:
     run = Steered(launch(FILE, "--speed", "max"), ports)
     assert "cyan1/frame_tree is needed by cyan1/ball_spot" in run.fwk("unload", "cyan1/frame_tree", code=2)
     run.fwk("restart", "cyan1/frame_tree", "cyan1/ball_spot")

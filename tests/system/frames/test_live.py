@@ -7,6 +7,7 @@ from pathlib import Path
 import psutil
 import pytest
 
+from tests.harness.components import source, sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, write_files
@@ -14,88 +15,20 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""A camera whose frames carry a checksum, and finders that check it."""
-
-import os
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Clock, Component, Config, Image, VisionMaster, Writes, channel
-from fwk.clock import sleep_s
-from lcmtypes.soccer import pose_t
-
-
-def leave(name, number):
-    Path(f"{name}.new").write_text(str(number))
-    Path(f"{name}.new").rename(name)
-
-
-class Camera(Component):
-    stage = "sensor_acquire"
-    image: VisionMaster
-    clock: Clock
-    rng: np.random.Generator
-
-    def init(self) -> None:
-        leave("camera.pid", os.getpid())
-
-    def loop(self) -> None:
-        for _ in range(1 + self.clock.tick % 3):
-            body = self.rng.integers(0, 256, 399_996, np.uint8)
-            head = np.frombuffer(zlib.crc32(body).to_bytes(4, "big"), np.uint8)
-            self.image.publish(np.concatenate([head, body]).reshape(400, 1000))
-        leave("camera.frame", self.image.announcement.sequence + self.image.announcement.pending)
-
-
-class FinderConfig(Config):
-    dawdle_tick: int = 0
-    """From this tick on, once, it reads its frame only when the camera has overwritten it."""
-
-
-class Finder(Component):
-    """Says which frame it saw and whether it was whole."""
-
-    stage = "sensor_prepare"
-    image: Image = channel("r/image")
-    pose: Writes[pose_t]
-    clock: Clock
-    config: FinderConfig
-
-    def init(self) -> None:
-        leave(self.name.replace("/", "-") + ".pid", os.getpid())
-        self.dawdled = False
-
-    def loop(self) -> None:
-        if self.clock.tick >= self.config.dawdle_tick > 0 and not self.dawdled:
-            self.dawdled = True
-            while int(Path("camera.frame").read_text()) < self.image.announcement.value.frame + 5:
-                sleep_s(0.01)
-        pixels = self.image.pixels
-        self.pose.value.x_m = float(self.image.announcement.value.frame)
-        if pixels is None:
-            self.pose.value.y_m = -1.0
-        else:
-            flat = pixels.reshape(-1)
-            self.pose.value.y_m = float(zlib.crc32(flat[4:]) == int.from_bytes(flat[:4].tobytes(), "big"))
-        self.pose.write()
-'''
 LAUNCH = """
 name: frames
 public_url: {url}
 components:
-  r/camera: {{use: "parts:Camera"}}
-  a/finder: {{use: "parts:Finder"}}
-  b/finder: {{use: "parts:Finder"}}
-  c/finder: {{use: "parts:Finder"}}
+  r/camera: {{use: "checked_frames:Camera"}}
+  a/finder: {{use: "checked_frames:Finder"}}
+  b/finder: {{use: "checked_frames:Finder"}}
+  c/finder: {{use: "checked_frames:Finder"}}
 """
 
 
 @pytest.fixture
 def frames(tmp_path: Path, ports: PortBlock) -> Path:
-    write_files(tmp_path, {"parts.py": PARTS, "frames.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("checked_frames.py"), "frames.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 
@@ -124,7 +57,7 @@ def holders(ring: str) -> list[int]:
     return found
 
 
-def test_in_lockstep_every_reader_sees_every_tick_whole(launch: Launch, frames: Path) -> None:
+def test_readers_in_lockstep_see_a_whole_frame_each_tick(launch: Launch, frames: Path) -> None:
     run = launch("frames.yaml", "--ticks", "60", "--speed", "max", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     newest = [sum(1 + tick % 3 for tick in range(1, last + 1)) for last in range(1, 61)]
@@ -132,7 +65,7 @@ def test_in_lockstep_every_reader_sees_every_tick_whole(launch: Launch, frames: 
         assert seen(frames / "log.lcm", finder) == [(number, 1) for number in newest]
 
 
-def test_in_real_time_an_overwritten_frame_is_noticed_counted_and_said(
+def test_an_overwritten_frame_in_real_time_is_counted_and_logged(
     launch: Launch, frames: Path, ports: PortBlock
 ) -> None:
     wall(frames, 0.05)
@@ -150,9 +83,7 @@ def test_in_real_time_an_overwritten_frame_is_noticed_counted_and_said(
     assert seen(log, "b")[-1][1] == 1  # it goes on with the next
 
 
-def test_killed_readers_and_cameras_come_back_and_see_whole_frames(
-    launch: Launch, frames: Path, ports: PortBlock
-) -> None:
+def test_killed_readers_and_cameras_return_to_whole_frames(launch: Launch, frames: Path, ports: PortBlock) -> None:
     run = Steered(launch("frames.yaml", "--record", "log.lcm"), ports)
     for name in ("a-finder", "camera", "b-finder", "camera"):
         os.kill(int((frames / f"{name}.pid").read_text()), signal.SIGKILL)
@@ -166,10 +97,10 @@ def test_killed_readers_and_cameras_come_back_and_see_whole_frames(
         assert {state for _, state in seen(frames / "log.lcm", finder)} == {1}
 
 
-def test_no_shared_memory_is_left_when_everything_is_killed(launch: Launch, frames: Path, ports: PortBlock) -> None:
+def test_no_shared_memory_is_left_when_all_is_killed(launch: Launch, frames: Path, ports: PortBlock) -> None:
     own = (frames / "frames.yaml").read_text().replace("r/camera:", f"ring{ports.bus}/camera:")
     (frames / "frames.yaml").write_text(own)
-    (frames / "parts.py").write_text(PARTS.replace("r/image", f"ring{ports.bus}/image"))
+    (frames / "checked_frames.py").write_text(source("checked_frames.py").replace("r/image", f"ring{ports.bus}/image"))
     before = set(os.listdir("/dev/shm"))
     run = Steered(launch("frames.yaml"), ports)
     run.ticks_pass()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
@@ -13,63 +14,6 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""A camera of noise, and watchers that now and then are slow."""
-
-import os
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Component, Config, Image, VisionMaster, Writes, channel
-from fwk.clock import sleep_s
-from lcmtypes.soccer import pose_t
-
-
-class Camera(Component):
-    """Three frames in each tick."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-    rng: np.random.Generator
-
-    def loop(self) -> None:
-        for _ in range(3):
-            self.image.publish(self.rng.integers(0, 256, (60, 80, 3), np.uint8))
-
-
-class WatcherConfig(Config):
-    slow: bool = False
-    """Whether it dawdles now and then before it looks."""
-    looks_first: bool = False
-    """Whether it dawdles now and then after it has looked."""
-
-
-class Watcher(Component):
-    """Says which frame it was told of, what it saw, and how many it has lost."""
-
-    stage = "sensor_prepare"
-    image: Image = channel("r/image")
-    pose: Writes[pose_t]
-    rng: np.random.Generator
-    config: WatcherConfig
-
-    def init(self) -> None:
-        Path(self.name.replace("/", "-") + ".pid").write_text(str(os.getpid()))
-
-    def loop(self) -> None:
-        dawdles = self.rng.random() < 0.2
-        if self.config.slow and dawdles:
-            sleep_s(0.06)
-        pixels = self.image.pixels
-        if self.config.looks_first and dawdles:
-            sleep_s(0.06)
-        self.pose.value.x_m = float(self.image.announcement.value.frame)
-        self.pose.value.y_m = -1.0 if pixels is None else float(zlib.crc32(pixels))
-        self.pose.value.heading_rad = float(self.image.lost)
-        self.pose.write()
-'''
 LAUNCH = """
 name: watch
 public_url: {url}
@@ -89,7 +33,7 @@ hosts: {hosts}
 @pytest.fixture(params=["{}", "{pair: [b/watcher, c/watcher]}"], ids=["each alone", "two in a process"])
 def watch(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> Path:
     launch = LAUNCH.format(url=ports.public_url, hosts=request.param)
-    write_files(tmp_path, {"watch.py": PARTS, "watch.yaml": launch})
+    write_files(tmp_path, {**sources("watch.py"), "watch.yaml": launch})
     return tmp_path
 
 
@@ -98,9 +42,7 @@ def lost(folder: Path, watcher: str) -> int:
     return [pose.y_m for pose in Recording(folder / "log.lcm").decoded(f"{watcher}/pose")].count(-1.0)
 
 
-def test_frames_that_a_slow_reader_lost_are_lost_again_in_a_replay(
-    launch: Launch, watch: Path, ports: PortBlock
-) -> None:
+def test_frames_lost_by_a_slow_reader_are_lost_in_replay(launch: Launch, watch: Path, ports: PortBlock) -> None:
     run = Steered(launch("watch.yaml", "--record", "log.lcm"), ports)
     for start in (2, 3):
         run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost")

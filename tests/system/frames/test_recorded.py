@@ -12,6 +12,7 @@ import pytest
 
 from fwk.lcm.event_log import LogReader
 from fwk.recording.pictures import FRAME, pictures_in
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import difference
 from tests.harness.runs import PortBlock, fill, fwk, replayed, write_files
@@ -19,75 +20,6 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""A camera that is a device, one that is not, and who looks at them."""
-
-import os
-import zlib
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Component, ImagesEach, Image, Reads, VisionMaster, Writes, channel
-from lcmtypes.soccer import pose_t
-
-
-class Device(Component):
-    """What it sees is never the same again; in a replay it must not be touched."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-
-    @classmethod
-    def unrepeatable(cls, config):
-        return "'the eye' is a device"
-
-    def init(self) -> None:
-        with Path("opened").open("a") as file:
-            file.write("opened\\n")
-
-    def loop(self) -> None:
-        for _ in range(2):
-            noise = np.frombuffer(os.urandom(20 * 30 * 3), np.uint8)
-            self.image.publish(noise.reshape(20, 30, 3))
-
-
-class Grey(Component):
-    """Grey pictures, which depend on the run's seed alone."""
-
-    stage = "sensor_acquire"
-    image: VisionMaster
-    rng: np.random.Generator
-
-    def loop(self) -> None:
-        self.image.publish(self.rng.integers(0, 256, (20, 30), np.uint8))
-
-
-class Watcher(Component):
-    """Says what it saw."""
-
-    stage = "sensor_prepare"
-    image: Image = channel("{camera}/image")
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        pixels = self.image.pixels
-        self.pose.value.x_m = float(zlib.crc32(pixels))
-        self.pose.value.y_m = float(pixels.ndim)
-        self.pose.write()
-
-
-class Follower(Component):
-    """Needs no picture."""
-
-    stage = "think"
-    pose: Reads[pose_t] = channel("a/pose")
-    heading: Writes[pose_t]
-
-    def loop(self) -> None:
-        self.heading.value.heading_rad = self.pose.value.x_m / 1e9
-        self.heading.write()
-'''
 LAUNCH = """
 name: eyes
 public_url: {url}
@@ -102,8 +34,7 @@ components:
 
 @pytest.fixture
 def eyes(tmp_path: Path, ports: PortBlock) -> Path:
-    parts = PARTS.replace(' = channel("{camera}/image")', "").replace("ImagesEach, ", "")
-    write_files(tmp_path, {"eyes.py": parts, "eyes.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("eyes.py"), "eyes.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 
@@ -118,7 +49,7 @@ def record(launch: Launch, *options: str, log: str = "log.lcm") -> None:
     assert run.wait() == 0, run.text
 
 
-def test_without_recorded_frames_a_device_is_left_alone_and_the_rest_compared(launch: Launch, eyes: Path) -> None:
+def test_replay_without_frames_skips_device_and_its_readers(launch: Launch, eyes: Path) -> None:
     record(launch)
     said = replayed(eyes)
     assert "not replayed: r/camera: 'the eye' is a device" in said
@@ -131,9 +62,7 @@ def test_without_recorded_frames_a_device_is_left_alone_and_the_rest_compared(la
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_readers_of_recorded_frames_do_the_same_again_without_the_camera(
-    launch: Launch, eyes: Path, hosting: str
-) -> None:
+def test_readers_of_recorded_frames_replay_without_the_camera(launch: Launch, eyes: Path, hosting: str) -> None:
     wants(eyes, "record: {frames: [r, g/image]}")
     record(launch, "--hosting", hosting)
     said = replayed(eyes)
@@ -149,9 +78,7 @@ def test_readers_of_recorded_frames_do_the_same_again_without_the_camera(
     assert "x_m" in said
 
 
-def test_frames_in_a_recording_are_whole_and_do_not_change_what_else_is_in_it(
-    launch: Launch, eyes: Path, tmp_path: Path
-) -> None:
+def test_recorded_frames_are_whole_and_change_nothing_else(launch: Launch, eyes: Path, tmp_path: Path) -> None:
     without_device = "--without", "r/camera", "a/watcher"
     record(launch, *without_device, log="without.lcm")
     wants(eyes, "record: {frames: '*/image'}")
@@ -179,7 +106,7 @@ def test_a_killed_reader_of_recorded_frames_replays(launch: Launch, eyes: Path, 
     assert "equal" in replayed(eyes)
 
 
-def test_a_frame_that_is_not_in_the_recording_is_named(launch: Launch, eyes: Path) -> None:
+def test_a_frame_missing_in_the_recording_is_named(launch: Launch, eyes: Path) -> None:
     wants(eyes, "record: {frames: r/image}")
     record(launch)
     data = (eyes / "log.lcm").read_bytes()
@@ -192,7 +119,7 @@ def test_a_frame_that_is_not_in_the_recording_is_named(launch: Launch, eyes: Pat
 
 
 @pytest.mark.parametrize("clock", ["lockstep", "real time"])
-def test_frames_on_a_full_disk_are_missing_and_told_and_what_is_before_them_replays(
+def test_frames_lost_on_a_full_disk_are_reported(
     launch: Launch, eyes: Path, ports: PortBlock, small_disk: Callable[[int], Path], clock: str
 ) -> None:
     wants(eyes, "record: {frames: [r, g/image]}")
@@ -219,7 +146,7 @@ def test_frames_on_a_full_disk_are_missing_and_told_and_what_is_before_them_repl
     assert "equal" in replayed(eyes, "--to-tick", said[1], log=log)
 
 
-def test_a_camera_that_is_not_there_is_a_mistake_in_the_launch_file(launch: Launch, eyes: Path) -> None:
+def test_recording_frames_of_an_unknown_camera_is_a_mistake(launch: Launch, eyes: Path) -> None:
     wants(eyes, "record: {frames: r/imgae}")
     said = fwk(eyes, "check", "eyes.yaml", code=2)
     assert "record: no camera gives out 'r/imgae'; did you mean 'r/image'?" in said

@@ -39,7 +39,7 @@ def running(launch: Launch, *arguments: str) -> Launched:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.core
-def test_asked_to_stop_everything_stops_and_all_is_well(launch: Launch, traced: Path, number: signal.Signals) -> None:
+def test_a_signal_to_stop_ends_the_run_cleanly(launch: Launch, traced: Path, number: signal.Signals) -> None:
     run = running(launch)
     run.signal(number)
     assert run.wait(STOP_S) == 0, run.text
@@ -49,7 +49,7 @@ def test_asked_to_stop_everything_stops_and_all_is_well(launch: Launch, traced: 
     assert Recording(traced / "log.lcm").gaps() == {}
 
 
-def test_who_ignores_the_request_is_killed_and_named(launch: Launch, traced: Path) -> None:
+def test_a_component_that_ignores_sigterm_is_killed_and_named(launch: Launch, traced: Path) -> None:
     run = launch(FILE, *trouble("loop:ignore"))
     run.until_true(lambda: (traced / "ignoring").exists(), "d/player ignores signals")
     run.signal(signal.SIGINT)
@@ -58,7 +58,7 @@ def test_who_ignores_the_request_is_killed_and_named(launch: Launch, traced: Pat
     assert "d/player did not stop when asked; killed" in run.text
 
 
-def test_a_killed_supervisor_takes_everything_along_and_leaves_a_log(launch: Launch, traced: Path) -> None:
+def test_a_killed_supervisor_ends_all_and_leaves_a_log(launch: Launch, traced: Path) -> None:
     run = running(launch)
     pause(1.2)  # the recorder writes once a second
     os.kill(run.process.pid, signal.SIGKILL)
@@ -81,9 +81,7 @@ def test_a_killed_component_is_named_and_the_run_goes_on(launch: Launch, traced:
 
 
 @pytest.mark.parametrize("victim", ["zygote", "gateway"])
-def test_the_run_ends_with_its_reason_when_a_process_of_the_framework_is_killed(
-    launch: Launch, traced: Path, victim: str
-) -> None:
+def test_a_killed_framework_process_ends_the_run_with_a_reason(launch: Launch, traced: Path, victim: str) -> None:
     run = running(launch)
     os.kill(run.zygote() if victim == "zygote" else run.gateway(), signal.SIGKILL)
     assert run.wait(STOP_S) == 1, run.text
@@ -101,7 +99,7 @@ def test_the_run_ends_with_its_reason_when_a_process_of_the_framework_is_killed(
         ("init:kill", "d/player: killed by signal 9"),
     ],
 )
-def test_who_does_not_come_up_is_named_with_the_reason(launch: Launch, folder: Path, what: str, says: str) -> None:
+def test_a_component_that_does_not_start_is_named(launch: Launch, folder: Path, what: str, says: str) -> None:
     run = launch(FILE, *trouble(what))
     assert run.wait() == 1, run.text
     assert run.gone_within(0.5)
@@ -110,7 +108,7 @@ def test_who_does_not_come_up_is_named_with_the_reason(launch: Launch, folder: P
     assert "c/player:" not in run.text
 
 
-def test_who_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None:
+def test_a_component_that_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None:
     file = folder / FILE
     file.write_text(file.read_text().replace("d/player: {", "d/player: { ready_timeout_s: 0.5,"))
     run = launch(FILE, *trouble("init:wait"))
@@ -131,7 +129,7 @@ def test_who_is_not_ready_in_time_is_named(launch: Launch, folder: Path) -> None
         ("loop:crash", "d/player ended: killed by signal 11"),
     ],
 )
-def test_who_fails_once_is_named_and_started_again(launch: Launch, folder: Path, what: str, says: str) -> None:
+def test_a_component_that_fails_once_is_restarted(launch: Launch, folder: Path, what: str, says: str) -> None:
     run = launch(FILE, *trouble(what), "--ticks", "8", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     assert says in run.text
@@ -140,9 +138,7 @@ def test_who_fails_once_is_named_and_started_again(launch: Launch, folder: Path,
 
 
 @pytest.mark.parametrize(("limit", "starts"), [("when: never", 1), ("limit: 2, backoff_s: 0.01", 3)])
-def test_the_restart_policy_is_obeyed_and_the_run_goes_on_without(
-    launch: Launch, folder: Path, limit: str, starts: int
-) -> None:
+def test_the_run_goes_on_after_the_last_allowed_restart(launch: Launch, folder: Path, limit: str, starts: int) -> None:
     file = folder / FILE
     file.write_text(file.read_text().replace("d/player: {", f"d/player: {{ restart: {{ {limit} }},"))
     run = launch(FILE, *trouble("loop:raise", again=True), "--ticks", "8", "--record", "log.lcm")
@@ -154,7 +150,7 @@ def test_the_restart_policy_is_obeyed_and_the_run_goes_on_without(
     assert len(recording.messages["f/note"]) == 8
 
 
-def test_who_fails_in_finalize_is_named(launch: Launch, folder: Path) -> None:
+def test_a_failure_in_finalize_is_named(launch: Launch, folder: Path) -> None:
     run = launch(FILE, *trouble("finalize:raise"), "--ticks", "5")
     assert run.wait() == 1, run.text
     assert "orchestra: failed: d/player: RuntimeError: a wrong note" in run.text
@@ -172,9 +168,7 @@ def test_who_fails_in_finalize_is_named(launch: Launch, folder: Path) -> None:
         ("loop:os._exit", "strings ended: c/player: exit code 3"),
     ],
 )
-def test_in_a_shared_process_the_guilty_one_is_named_and_who_went_with_it(
-    launch: Launch, folder: Path, what: str, says: str
-) -> None:
+def test_a_crash_in_a_shared_host_names_cause_and_victims(launch: Launch, folder: Path, what: str, says: str) -> None:
     file = folder / FILE
     file.write_text(file.read_text() + "hosts: {strings: [a/player, c/player, e/player]}\n")
     sets = [word.replace("d/player", "c/player") for word in trouble(what)]
@@ -187,14 +181,14 @@ def test_in_a_shared_process_the_guilty_one_is_named_and_who_went_with_it(
         assert len(Recording(folder / "log.lcm").messages["e/note"]) == 8
 
 
-def test_what_components_print_is_in_the_log_with_their_names(launch: Launch, folder: Path) -> None:
+def test_printed_lines_are_logged_with_the_component_name(launch: Launch, folder: Path) -> None:
     run = launch(FILE, *trouble("loop:print"), "--ticks", "8")
     assert run.wait() == 0, run.text
     assert "d/player: words on standard output (stdout:1)" in run.text
     assert "d/player: words on standard error (stderr:1)" in run.text
 
 
-def test_a_second_run_on_the_same_ports_is_refused_and_disturbs_nothing(launch: Launch, traced: Path) -> None:
+def test_a_second_run_on_the_same_ports_is_refused(launch: Launch, traced: Path) -> None:
     first = running(launch)
     second = launch(FILE, "--ticks", "1")
     assert second.wait() == 2

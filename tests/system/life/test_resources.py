@@ -8,82 +8,25 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
 from tests.harness.runs import Launched, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""One that works, and one that takes too much or falls over."""
-
-import ctypes
-from pathlib import Path
-
-import numpy as np
-
-from fwk import Component, Config, Reads, Writes
-from lcmtypes.robot import imu_t
-from lcmtypes.soccer import pose_t
-
-_taken = []
-
-
-def long_sum(number: int) -> float:
-    return float(sum(each * each for each in range(number)))
-
-
-class Worker(Component):
-    """Computes."""
-
-    stage = "sensor_acquire"
-    imu: Writes[imu_t]
-
-    def loop(self) -> None:
-        self.imu.value.heading_rad += long_sum(3000)
-        self.imu.write()
-
-
-class GluttonConfig(Config):
-    array_mb: int = 0
-    """Taken and kept in each iteration, in one piece."""
-    objects: int = 0
-    """Taken and kept in each iteration."""
-    crash_tick: int = 0
-    """At which it falls over, in its first life."""
-
-
-class Glutton(Component):
-    """Takes."""
-
-    stage = "think"
-    config: GluttonConfig
-    imu: Reads[imu_t]
-    pose: Writes[pose_t]
-
-    def loop(self) -> None:
-        tick = self.imu.value.header.tick
-        if tick == self.config.crash_tick and not Path("crashed").exists():
-            Path("crashed").touch()
-            ctypes.string_at(0)
-        if self.config.array_mb:
-            _taken.append(np.ones(self.config.array_mb << 20, np.uint8))
-        _taken.extend([object()] for _ in range(self.config.objects))
-        self.pose.value.x_m = float(tick)
-        self.pose.write()
-'''
 LAUNCH = """
 name: parts
 public_url: {url}
 components:
-  r/worker: {{use: "parts:Worker"}}
-  r/glutton: {{use: "parts:Glutton", restart: {{backoff_s: 0.01}}, memory_limit_mb: 60}}
+  r/worker: {{use: "glutton:Worker"}}
+  r/glutton: {{use: "glutton:Glutton", restart: {{backoff_s: 0.01}}, memory_limit_mb: 60}}
 """
 
 
 @pytest.fixture
 def parts(tmp_path: Path, ports: PortBlock, launch: Launch) -> Launch:
-    write_files(tmp_path, {"parts.py": PARTS, "parts.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("glutton.py"), "parts.yaml": LAUNCH.format(url=ports.public_url)})
 
     def started(*arguments: str) -> Launched:
         return launch("parts.yaml", "--speed", "max", "--ticks", "200", *arguments)
@@ -100,7 +43,7 @@ def log_of(run: Launched) -> str:
 
 
 @pytest.mark.parametrize("hosting", ["process", "robot"])
-def test_a_profile_says_where_the_time_goes_and_changes_no_message(parts: Launch, tmp_path: Path, hosting: str) -> None:
+def test_a_profile_names_functions_and_changes_no_message(parts: Launch, tmp_path: Path, hosting: str) -> None:
     assert parts("--record", "free.log").wait() == 0
     run = parts("--record", "profiled.log", "--profile", "r/worker", "--hosting", hosting)
     assert run.wait() == 0, run.text
@@ -117,18 +60,18 @@ def test_a_profile_says_where_the_time_goes_and_changes_no_message(parts: Launch
     assert {"long_sum", "loop"} <= {frame["name"] for frame in frames}
 
 
-def test_a_profile_of_nobody_is_refused(parts: Launch) -> None:
+def test_a_profile_of_an_unknown_component_is_refused(parts: Launch) -> None:
     run = parts("--profile", "r/wroker")
     assert run.wait() == 2
     assert "did you mean 'r/worker'?" in " ".join(run.text.replace("│", " ").split())
 
 
-def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch, tmp_path: Path) -> None:
+def test_a_segmentation_fault_leaves_traceback_and_core_dump(parts: Launch, tmp_path: Path) -> None:
     run = parts("--record", "log.lcm", *settings(crash_tick=20))
     assert run.wait() == 0, run.text
     log = log_of(run)
     assert re.search(r"r/glutton stderr:\d+: Fatal Python error: Segmentation fault", log)
-    assert "parts.py" in log.partition("Fatal Python error")[2]
+    assert "glutton.py" in log.partition("Fatal Python error")[2]
     _, hard = resource.getrlimit(resource.RLIMIT_CORE)
     pattern = Path("/proc/sys/kernel/core_pattern").read_text().strip()
     dumped = ", core dumped" if hard and pattern else ""
@@ -140,9 +83,7 @@ def test_a_segmentation_fault_leaves_its_traceback_and_a_core_dump(parts: Launch
 
 
 @pytest.mark.parametrize("takes", [{"array_mb": 5}, {"objects": 30_000}])
-def test_who_takes_more_memory_than_allowed_is_ended_named_and_started_again(
-    parts: Launch, tmp_path: Path, takes: dict[str, int]
-) -> None:
+def test_a_component_beyond_its_memory_limit_is_restarted(parts: Launch, tmp_path: Path, takes: dict[str, int]) -> None:
     run = parts("--record", "log.lcm", "--ticks", "60", *settings(**takes))
     assert run.wait() == 0, run.text
     log = log_of(run)

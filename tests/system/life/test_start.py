@@ -11,29 +11,21 @@ import pytest
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
 from fwk.model.tick_events import HostStarted
+from tests.harness.components import sources
 from tests.harness.logs import Recording
 from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, write_files
-from tests.programs.control_system import PARTS, Steered
+from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-SLOW = '''
-
-class SlowCamera(Camera):
-    """Is ready when it is let."""
-
-    def init(self) -> None:
-        while not Path("go").exists():
-            sleep_s(0.01)
-'''
 LAUNCH = """
 name: small
 public_url: {url}
 components:
-  r/finder: {{use: "parts:Finder"}}
-  r/counter: {{use: "parts:Counter"}}
-  r/follower: {{use: "parts:Follower", start: false, needs: counter}}
-  r/camera: {{use: "parts:SlowCamera", ready_timeout_s: {timeout}, restart: {{when: {when}}}}}
+  r/finder: {{use: "small:Finder"}}
+  r/counter: {{use: "small:Counter"}}
+  r/follower: {{use: "small:Follower", start: false, needs: counter}}
+  r/camera: {{use: "slow_camera:SlowCamera", ready_timeout_s: {timeout}, restart: {{when: {when}}}}}
 """
 Start = Callable[..., Launched]
 
@@ -42,8 +34,7 @@ Start = Callable[..., Launched]
 def start(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Start:
     def started(*arguments: str, timeout: float = 60, when: str = "always") -> Launched:
         text = LAUNCH.format(url=ports.public_url, timeout=timeout, when=when)
-        parts = PARTS.replace("import numpy", "from pathlib import Path\n\nimport numpy") + SLOW
-        write_files(tmp_path, {"parts.py": parts, "small.yaml": text})
+        write_files(tmp_path, {**sources("small.py", "slow_camera.py"), "small.yaml": text})
         return launch("small.yaml", *arguments)
 
     return started
@@ -78,13 +69,13 @@ def test_a_user_starts_when_its_vision_master_is_ready(start: Start, ports: Port
     assert set(started) == {0, 1, 3}
 
 
-def test_who_is_not_ready_in_time_is_named_with_those_who_wait_for_it(start: Start) -> None:
+def test_a_missed_ready_timeout_names_component_and_dependents(start: Start) -> None:
     launched = start("--ticks", "5", timeout=0.5)
     assert launched.wait() == 1
     assert "r/camera: not ready after 0.5 s; still in init: r/camera\nr/finder: waits for r/camera" in launched.text
 
 
-def test_who_is_not_ready_in_time_after_a_restart_is_named_too(start: Start, ports: PortBlock, tmp_path: Path) -> None:
+def test_a_missed_ready_timeout_after_a_restart_is_named(start: Start, ports: PortBlock, tmp_path: Path) -> None:
     (tmp_path / "go").touch()
     run = Steered(start(timeout=0.5, when="never"), ports)
     (tmp_path / "go").unlink()
@@ -93,12 +84,12 @@ def test_who_is_not_ready_in_time_after_a_restart_is_named_too(start: Start, por
     run.launched.until("r/camera ended: not ready after 0.5 s; still in init: r/camera")
 
 
-def test_what_the_launch_file_does_not_have_is_not_loaded(run: Steered) -> None:
+def test_a_component_outside_the_launch_file_is_not_loaded(run: Steered) -> None:
     said = run.fwk("load", "r/folower", code=2)
     assert "no component 'r/folower'; did you mean 'r/follower'?; what can be loaded stands in the launch file" in said
 
 
-def test_what_does_not_start_with_the_run_is_loaded_later_and_replays(run: Steered, tmp_path: Path) -> None:
+def test_a_component_that_is_loaded_later_replays(run: Steered, tmp_path: Path) -> None:
     assert run.component("r/follower")["starts"] == 0
     assert "r/follower running" in run.fwk("load", "r/follower")
     run.ticks_pass()
@@ -113,7 +104,7 @@ def test_what_does_not_start_with_the_run_is_loaded_later_and_replays(run: Steer
     run.fwk("replay", str(log), "--verify")
 
 
-def test_after_a_crash_it_waits_for_its_vision_master_and_no_tick_is_missing(run: Steered, tmp_path: Path) -> None:
+def test_a_restart_waits_for_its_vision_master(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "go").unlink()
     os.kill(run.component("r/camera")["pid"], signal.SIGKILL)
     os.kill(run.component("r/finder")["pid"], signal.SIGKILL)
@@ -126,7 +117,7 @@ def test_after_a_crash_it_waits_for_its_vision_master_and_no_tick_is_missing(run
     assert [header.tick for header in recording.headers("r/seen")][:last] == list(range(1, last + 1))
 
 
-def test_who_crashes_while_its_vision_master_is_stopped_fails_with_that_reason(run: Steered) -> None:
+def test_a_crash_without_its_vision_master_fails_with_a_reason(run: Steered) -> None:
     assert "r/image keeps its last value for r/finder" in run.fwk("stop", "r/camera")
     os.kill(run.component("r/finder")["pid"], signal.SIGKILL)
     run.launched.until("r/finder: not started: it needs r/camera, which is stopped")
@@ -139,7 +130,7 @@ def test_who_crashes_while_its_vision_master_is_stopped_fails_with_that_reason(r
     run.end()
 
 
-def test_a_killed_component_does_not_come_back_by_itself(run: Steered) -> None:
+def test_a_component_stopped_by_kill_does_not_return(run: Steered) -> None:
     assert "r/counter stopped" in run.fwk("kill", "r/counter")
     run.ticks_pass()
     assert (run.component("r/counter")["state"], run.component("r/counter")["pid"]) == ("stopped", 0)

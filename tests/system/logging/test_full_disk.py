@@ -23,10 +23,12 @@ Disk = Callable[[int], Path]
 Launch = Callable[..., Launched]
 
 
-def test_log_and_recording_on_a_full_disk(tmp_path: Path, ports: PortBlock, launch: Launch, small_disk: Disk) -> None:
+def test_a_full_disk_stops_log_and_recording_only(
+    tmp_path: Path, ports: PortBlock, launch: Launch, small_disk: Disk
+) -> None:
     disk = small_disk(24)
     write_system(tmp_path, ports)
-    chatty = tmp_path / "parts.py"
+    chatty = tmp_path / "small.py"
     loop = "        self.imu.value.heading_rad += self.config.step\n"
     chatty.write_text(chatty.read_text().replace(loop, loop + "        self.log.debug('counting')\n"))
     options = ("--set", "r/counter.log_level=debug", "--set", "speed=4")
@@ -81,9 +83,7 @@ def test_a_setting_that_cannot_be_kept_is_not_set(
 
 
 @pytest.mark.slow
-def test_kill_9_while_settings_are_set_loses_nothing_that_was_acknowledged(
-    tmp_path: Path, ports: PortBlock, launch: Launch
-) -> None:
+def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     write_system(tmp_path, ports)
     file = tmp_path / "small.host.yaml"
     file.write_text("# this machine\nconfig:\n  r/counter:\n    step: 0  # as ever\n")

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, fwk, replayed, write_files
@@ -12,71 +13,24 @@ from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""Who worries, and who listens."""
-
-from fwk import Clock, Component, Config, Logger, LogLines, Writes
-from lcmtypes.robot import imu_t
-
-
-class WorrierConfig(Config):
-    lines: int = 1
-    """Warnings in tick 5."""
-    raises: bool = False
-    """Whether that tick is its last."""
-
-
-class Worrier(Component):
-    stage = "think"
-    clock: Clock
-    config: WorrierConfig
-    log: Logger
-
-    def loop(self) -> None:
-        self.log.debug("not from where it stands")
-        if self.clock.tick == 5:
-            for number in range(self.config.lines):
-                self.log.warning(f"worry {number}")
-            print("printed")
-            if self.config.raises:
-                raise RuntimeError("enough")
-
-
-class Listener(Component):
-    stage = "post_loop"
-    lines: LogLines
-    log: Logger
-    heard: Writes[imu_t]
-
-    def loop(self) -> None:
-        for line in self.lines.of("warning"):
-            self.heard.value.heading_rad += line.wall_us % 1000 / 1000 + len(line.text)
-            self.log.warning(f"heard of {line.component}: {line.text}")
-        self.heard.write()
-
-
-class Free(Listener):
-    stage = ()
-    rate_hz = 0
-'''
 LAUNCH = """
 public_url: {url}
 log: {{console: debug}}
 components:
-  a/worrier: {{use: "parts:Worrier", config: {{lines: {lines}, raises: {raises}}}, restart: {{when: never}}}}
-  a/listener: {{use: "parts:{listener}"}}
+  a/worrier: {{use: "alarm:Worrier", config: {{lines: {lines}, raises: {raises}}}, restart: {{when: never}}}}
+  a/listener: {{use: "alarm:{listener}"}}
 """
 
 
 def written(folder: Path, ports: PortBlock, listener: str = "Listener", lines: int = 1, raises: bool = False) -> None:
     text = LAUNCH.format(url=ports.public_url, listener=listener, lines=lines, raises=raises)
-    write_files(folder, {"parts.py": PARTS, "alarm.yaml": text})
+    write_files(folder, {**sources("alarm.py"), "alarm.yaml": text})
 
 
 @pytest.mark.parametrize(
     ("listener", "hosting"), [("Listener", "process"), ("Listener", "single"), ("Free", "process")]
 )
-def test_a_component_hears_the_lines_of_others_and_is_replayed_with_them(
+def test_a_reader_of_log_lines_hears_others_and_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, listener: str, hosting: str
 ) -> None:
     alone = hosting == "process"
@@ -99,7 +53,7 @@ def test_a_component_hears_the_lines_of_others_and_is_replayed_with_them(
     replayed(tmp_path, "--only", "a/listener")
 
 
-def test_more_lines_than_a_tick_takes_are_counted_and_said(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
+def test_log_lines_beyond_the_limit_of_a_tick_are_counted(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     written(tmp_path, ports, lines=150)
     run = launch("alarm.yaml", "--record", "log.lcm")
     run.until("lines did not reach the components that ask for lines: too many in one tick")

@@ -11,114 +11,20 @@ from typing import Any
 import pytest
 
 from fwk.logs.reader import read_lines
+from tests.harness.components import sources
 from tests.harness.logs import Recording
 from tests.harness.runs import Launched, PortBlock, write_files
 from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
 
-PARTS = '''
-"""Talks, in several ways."""
-
-import os
-import sys
-import threading
-from pathlib import Path
-
-from fwk import Clock, Component, Config, Logger, Writes
-from lcmtypes.robot import imu_t
-from thinking import think
-
-
-class TalkerConfig(Config):
-    lines: int = 0
-    """Lines and errors in the first iteration."""
-    printed: int = 0
-    """Lines printed in the first iteration."""
-    long: int = 0
-    """Letters of a long line."""
-    asks: bool = False
-    """Whether it prints a line without an end."""
-    thread: bool = False
-    """Whether a thread ends by an exception."""
-    thinks: bool = False
-    """Whether a plain module thinks for it."""
-    fails_at: int = 0
-    """Tick in which it raises."""
-    leaves_at: int = 0
-    """Tick in which its first process ends."""
-
-
-class Talker(Component):
-    """Talks."""
-
-    stage = "think"
-    config: TalkerConfig
-    clock: Clock
-    log: Logger
-    imu: Writes[imu_t]
-
-    def init(self) -> None:
-        if self.config.leaves_at:
-            self.log.info("begins")
-
-    def loop(self) -> None:
-        if self.clock.tick == self.config.leaves_at and not Path("left").exists():
-            Path("left").touch()
-            os._exit(3)
-        self.log.debug(f"in tick {self.clock.tick}")
-        if self.clock.tick == 3:
-            self._talk()
-        if self.clock.tick == self.config.fails_at:
-            raise RuntimeError("not this tick")
-        self.imu.value.heading_rad += 1.0
-        self.imu.write()
-
-    def _talk(self) -> None:
-        for number in range(self.config.lines):
-            self.log.info(f"chatter {number}")
-            if number % 100 == 0:
-                self.log.error(f"error {number}")
-        for number in range(self.config.printed):
-            print(f"printed {number}")
-        if self.config.printed:
-            print("to the other stream", file=sys.stderr)
-            os.write(2, b"\\xfe no text\\n")
-        if self.config.long:
-            self.log.warning("x" * self.config.long)
-        if self.config.asks:
-            print("how much? ", end="", flush=True)
-        if self.config.thinks:
-            think(self.clock.tick)
-        if self.config.thread:
-            thread = threading.Thread(target=lambda: 1 / 0, name="aside")
-            thread.start()
-            thread.join()
-'''
-THINKING = '''
-"""Knows nothing of fwk, and logs as every Python module does."""
-
-import logging
-
-log = logging.getLogger(__name__)
-
-
-def think(tick):
-    log.debug("nothing much")
-    log.warning("tick %d is odd", tick)
-    log.info("broken %d", "text")
-    try:
-        1 / 0
-    except ZeroDivisionError:
-        log.exception("cannot divide")
-'''
 LAUNCH = """
 public_url: {url}
 speed: max
 log: {log}
 components:
-  a/talker: {{use: "parts:Talker", restart: {{when: never}}, config: {config}}}
-  b/talker: {{use: "parts:Talker"}}
+  a/talker: {{use: "talker:Talker", restart: {{when: never}}, config: {config}}}
+  b/talker: {{use: "talker:Talker"}}
 """
 
 
@@ -126,7 +32,7 @@ components:
 def talk(tmp_path: Path, ports: PortBlock, launch: Callable[..., Launched]) -> Callable[..., Launched]:
     def start(*arguments: str, log: dict[str, Any] | None = None, **config: Any) -> Launched:
         text = LAUNCH.format(url=ports.public_url, log=json.dumps(log or {}), config=json.dumps(config))
-        write_files(tmp_path, {"parts.py": PARTS, "thinking.py": THINKING, "talk.yaml": text})
+        write_files(tmp_path, {**sources("talker.py"), **sources("thinking.py"), "talk.yaml": text})
         return launch("talk.yaml", *arguments)
 
     return start
@@ -136,7 +42,7 @@ def lines_of(run: Launched, component: str = "a/talker") -> list[dict[str, Any]]
     return [line for line in read_lines(run.run_dir / "fwk.log.jsonl") if line["component"] == component]
 
 
-def test_a_flood_is_cut_off_at_its_source_and_no_error_is_lost(talk: Callable[..., Launched]) -> None:
+def test_a_flood_of_lines_is_cut_off_and_no_error_is_lost(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "200", lines=20_000, log={"lines_per_s": 50})
     assert run.wait() == 0, run.text
     lines = lines_of(run)
@@ -147,10 +53,10 @@ def test_a_flood_is_cut_off_at_its_source_and_no_error_is_lost(talk: Callable[..
     chatter = sum(line["text"].startswith("chatter") for line in lines)
     assert chatter + dropped == 20_000
     assert dropped > 10_000
-    assert {line["file"] for line in told} == {"parts.py"}
+    assert {line["file"] for line in told} == {"talker.py"}
 
 
-def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[..., Launched]) -> None:
+def test_printing_too_much_is_counted_and_delays_no_component(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "50", printed=100_000, log={"lines_per_s": 50})
     assert run.wait() == 0, run.text
     printed = [line for line in lines_of(run) if line["file"] == "stdout"]
@@ -162,12 +68,12 @@ def test_printing_too_much_holds_up_nobody_and_says_how_much(talk: Callable[...,
     assert errors == ["to the other stream", "\\xfe no text"]
 
 
-def test_what_has_no_end_of_line_is_logged_while_the_process_goes_on(talk: Callable[..., Launched]) -> None:
+def test_a_line_without_an_end_is_logged_during_the_run(talk: Callable[..., Launched]) -> None:
     run = talk("--speed", "1", asks=True)
     run.until("a/talker: how much?  (stdout:1)")
 
 
-def test_long_lines_come_with_their_ends(talk: Callable[..., Launched]) -> None:
+def test_long_lines_keep_their_ends(talk: Callable[..., Launched]) -> None:
     run = talk("--ticks", "5", long=300_000)
     assert run.wait() == 0, run.text
     (line,) = [line for line in lines_of(run) if line["level"] == "warning"]
@@ -178,14 +84,14 @@ def test_exceptions_have_traceback_component_and_tick(talk: Callable[..., Launch
     run = talk("--ticks", "50", thread=True, fails_at=7)
     assert run.wait() == 1, run.text
     thread, failure = [line for line in lines_of(run) if line["level"] == "error"]
-    assert (thread["tick"], thread["file"]) == (3, "parts.py")
+    assert (thread["tick"], thread["file"]) == (3, "talker.py")
     assert thread["text"].startswith("thread aside ends by an exception that nobody caught\nTraceback")
     assert thread["text"].endswith("ZeroDivisionError: division by zero")
-    assert (failure["tick"], failure["file"]) == (7, "parts.py")
+    assert (failure["tick"], failure["file"]) == (7, "talker.py")
     assert re.match("failed in loop, tick 7\nTraceback (.|\n)*RuntimeError: not this tick$", failure["text"])
 
 
-def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_that_in_which_its_process_began(
+def test_lines_carry_the_tick_in_which_they_were_written(
     talk: Callable[..., Launched],
 ) -> None:
     run = talk("--ticks", "50", "--set", "b/talker.leaves_at=7")
@@ -197,9 +103,7 @@ def test_a_line_is_of_the_tick_in_which_it_was_written_or_before_the_first_of_th
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_what_plain_modules_log_are_lines_of_the_component_that_calls_them(
-    talk: Callable[..., Launched], hosting: str
-) -> None:
+def test_lines_of_plain_modules_belong_to_the_calling_component(talk: Callable[..., Launched], hosting: str) -> None:
     run = talk(
         "--ticks", "5", "--hosting", hosting, "--set", "b/*.thinks=true", "--set", "b/*.log_level=debug", thinks=True
     )
@@ -209,15 +113,13 @@ def test_what_plain_modules_log_are_lines_of_the_component_that_calls_them(
         ours = [line for line in lines_of(run, component) if line["file"] == "thinking.py"]
         return [(line["level"], line["tick"], line["line"], line["text"].partition("\n")[0]) for line in ours]
 
-    a = [("warning", 3, 11, "tick 3 is odd"), ("error", 3, 16, "cannot divide")]
+    a = [("warning", 3, 10, "tick 3 is odd"), ("error", 3, 15, "cannot divide")]
     assert said("a/talker") == a
-    assert said("b/talker") == [("debug", 3, 10, "nothing much"), *a]
+    assert said("b/talker") == [("debug", 3, 9, "nothing much"), *a]
     assert any(line["text"].endswith("ZeroDivisionError: division by zero") for line in lines_of(run))
 
 
-def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
-    talk: Callable[..., Launched], tmp_path: Path
-) -> None:
+def test_log_levels_and_targets_change_no_message(talk: Callable[..., Launched], tmp_path: Path) -> None:
     targets = {"console": "error", "file": "off", "recording": "warning", "file_mb": 0.05, "files": 2, "lines_per_s": 0}
     run = talk("--ticks", "500", "--set", "b/*.log_level=debug", "--record", "loud.log", log=targets)
     assert run.wait() == 0, run.text
@@ -236,9 +138,7 @@ def test_levels_and_targets_are_the_launch_files_and_decide_nothing(
     assert len(loud_heading) == 500
 
 
-def test_the_systems_log_gets_lines_of_components_and_of_what_they_print(
-    tmp_path: Path, talk: Callable[..., Launched]
-) -> None:
+def test_syslog_gets_logged_and_printed_lines(tmp_path: Path, talk: Callable[..., Launched]) -> None:
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as daemon:
         daemon.bind(str(tmp_path / "log"))
         daemon.setblocking(False)
@@ -252,7 +152,7 @@ def test_the_systems_log_gets_lines_of_components_and_of_what_they_print(
         assert any(text in each for each in heard), text
 
 
-def test_a_level_is_changed_while_it_runs(talk: Callable[..., Launched], ports: PortBlock) -> None:
+def test_a_log_level_changes_during_the_run(talk: Callable[..., Launched], ports: PortBlock) -> None:
     steered = Steered(talk("--speed", "1"), ports)
     said = steered.json("config", "set", "b/talker.log_level=debug")
     steered.ticks_pass()

@@ -38,31 +38,17 @@ STRIKES = (
     ("kill", "one/worker"),
     ("set", "d/player"),
 )
-EACH_ALONE = '''
-"""Replays each component alone; prints how many messages were compared and differed."""
-
-import json
-from pathlib import Path
-import sys
-
-from fwk.recording.replay.recording import Recording
-from fwk.recording.replay.replay import Replay
-
-sys.path.append(".")
-found = {}
-for component in Recording(Path("log.lcm")).plan.components:
-    alone = Replay(Recording(Path("log.lcm")), [component.name])
-    alone.run()
-    found[component.name] = (alone.compared, [str(each) for each in alone.differences])
-print(json.dumps(found))
-'''
 
 
 def each_alone(folder: Path) -> dict[str, tuple[int, list[str]]]:
     """Of each component how many messages were compared, and what differed."""
-    write_files(folder, {"each_alone.py": EACH_ALONE})
     done = subprocess.run(
-        [sys.executable, "each_alone.py"], cwd=folder, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
+        [sys.executable, "-m", "tests.harness.each_alone"],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT_S,
+        check=False,
     )
     assert done.returncode == 0, done.stderr
     found: dict[str, tuple[int, list[str]]] = json.loads(done.stdout)
@@ -70,7 +56,9 @@ def each_alone(folder: Path) -> dict[str, tuple[int, list[str]]]:
 
 
 @pytest.mark.parametrize("clock", ["lockstep", "real time"])
-def test_whatever_happens_is_replayed_exactly(launch: Launch, tmp_path: Path, ports: PortBlock, clock: str) -> None:
+def test_a_run_with_every_kind_of_event_is_replayed_exactly(
+    launch: Launch, tmp_path: Path, ports: PortBlock, clock: str
+) -> None:
     write_files(tmp_path, everything(ports.public_url, real_time=clock == "real time"))
     use_types_of(tmp_path)
     run = Steered(launch(FILE, "--record", "log.lcm"), ports)

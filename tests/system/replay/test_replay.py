@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 
 from fwk.model.tick_events import HostLate, HostLost, HostStopped, MainLoopGiven
+from tests.harness.components import source
 from tests.harness.fate import Fate
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, replayed, write_files
 from tests.harness.terminals import Terminal
 from tests.programs.control_system import Steered
-from tests.programs.orchestra import PLAYER
 from tests.programs.together import FILE, together
 
 pytestmark = pytest.mark.system
@@ -23,7 +23,7 @@ pytestmark = pytest.mark.system
 
 @pytest.mark.parametrize("groups", [False, True], ids=["alone", "groups"])
 @pytest.mark.parametrize("real_time", [False, True], ids=["lockstep", "real time"])
-def test_what_people_and_fate_did_to_a_run_is_replayed_exactly(
+def test_requests_and_crashes_are_replayed_exactly(
     tmp_path: Path, ports: PortBlock, launch: Launch, real_time: bool, groups: bool
 ) -> None:
     write_files(tmp_path, together(ports.public_url, real_time=real_time, groups=groups))
@@ -77,10 +77,10 @@ def recorded(folder: Path, launch: Launch) -> Path:
         ),
     ],
 )
-def test_a_changed_component_is_found_and_its_first_difference_named(
+def test_replay_names_the_first_difference_of_a_changed_class(
     recorded: Path, before: str, after: str, what: str
 ) -> None:
-    file = recorded / "procs/player.py"
+    file = recorded / "player.py"
     changed = "(self.name == 'd/player' and self.clock.tick >= 17)"
     assert before in file.read_text()
     file.write_text(file.read_text().replace(before, after.replace("CHANGED", changed)))
@@ -92,12 +92,12 @@ def test_a_changed_component_is_found_and_its_first_difference_named(
     assert "different: 4 of " in replayed(recorded, "--only", "d/*", "--from-tick", "27", code=1)
 
 
-def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: Path) -> None:
+def test_a_replay_stops_in_the_debugger_and_goes_on_exactly(recorded: Path) -> None:
     command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "12"]
     stopped = Terminal(recorded, *command, "--verify")
     assert "loop()" in stopped.prompt()
     assert "('e/player', 12)" in stopped.ask("p (self.name, self.clock.tick)")
-    stopped.ask(f"tbreak {recorded / 'procs/player.py'}:{line_of('self.note.write()')}")
+    stopped.ask(f"tbreak {recorded / 'player.py'}:{line_of('self.note.write()')}")
     stopped.ask("c")
     assert "12" in stopped.ask("p note.iterations")
     stopped.type("c")
@@ -110,8 +110,8 @@ def test_a_replay_stops_in_the_debugger_at_a_tick_and_goes_on_exactly(recorded: 
     assert left.end() == 0
 
 
-def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> None:
-    file = recorded / "procs/player.py"
+def test_a_component_that_fails_in_replay_can_be_debugged(recorded: Path) -> None:
+    file = recorded / "player.py"
     file.write_text(file.read_text().replace("        self.note.write()", "        1 / (self.clock.tick - 20)"))
     command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
     failed = Terminal(recorded, *command)
@@ -124,13 +124,13 @@ def test_a_component_that_fails_in_a_replay_can_be_looked_at(recorded: Path) -> 
 
 def line_of(text: str) -> int:
     """Where it stands in the player's file."""
-    return 1 + next(number for number, line in enumerate(PLAYER.splitlines()) if text in line)
+    return 1 + next(number for number, line in enumerate(source("player.py").splitlines()) if text in line)
 
 
 @pytest.mark.parametrize("tick", [1, 9])
 @pytest.mark.parametrize("what", ["kill after publish", "raise"])
 @pytest.mark.parametrize("hosting", ["process", "single"])
-def test_who_dies_in_an_iteration_is_replayed_from_its_new_start_on(
+def test_a_death_in_an_iteration_is_replayed_from_the_restart(
     folder: Path, launch: Launch, what: str, tick: int, hosting: str
 ) -> None:
     settings = {"trouble": f"loop:{what}", "trouble_tick": tick, "trouble_stage": "act"}

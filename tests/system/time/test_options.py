@@ -22,7 +22,7 @@ def test_time_is_logical(launch: Launch, folder: Path) -> None:
     assert last >= 1_500_000 > max(before)
 
 
-def test_speed_is_the_pace_of_logical_time(launch: Launch, folder: Path) -> None:
+def test_speed_scales_logical_time(launch: Launch, folder: Path) -> None:
     run = launch(FILE, "--time", "2", "--speed", "2")
     assert run.wait() == 0, run.text
     found = re.search(r"([\d.]+) s of logical time in ([\d.]+) s", run.text)

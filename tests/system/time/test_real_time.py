@@ -39,7 +39,7 @@ def late_ticks(recording: Recording) -> dict[int, int]:
 
 
 @pytest.mark.core
-def test_who_is_late_is_counted_and_named_and_its_outputs_come_after_its_done(launch: Launch, wall: Path) -> None:
+def test_a_late_host_is_counted_and_its_outputs_follow_its_done(launch: Launch, wall: Path) -> None:
     sets = ("--set", "d/player.trouble=loop:wait", "--set", "d/player.trouble_tick=5")
     run = launch(*RUN, *sets)
     run.until_true(lambda: (wall / "trouble-d_player").exists(), "d/player waits")
@@ -66,7 +66,7 @@ def test_who_is_late_is_counted_and_named_and_its_outputs_come_after_its_done(la
 
 
 @pytest.mark.parametrize("loss", ["0", "0.2"])
-def test_the_loop_keeps_its_pace_and_nobody_is_lost_for_good(launch: Launch, wall: Path, loss: str) -> None:
+def test_the_loop_keeps_its_pace_and_late_hosts_return(launch: Launch, wall: Path, loss: str) -> None:
     file = wall / "launch/orchestra.yaml"
     file.write_text(file.read_text().replace("stage_time_s: 0.3", "stage_time_s: 0.05"))
     run = launch(*RUN, "--ticks", "40", env={"FWK_TEST_LOSS": loss})
@@ -81,7 +81,7 @@ def test_the_loop_keeps_its_pace_and_nobody_is_lost_for_good(launch: Launch, wal
         assert max(header.tick for header in recording.headers(f"{player}/note")) > 20  # whoever was late came back
 
 
-def test_a_killed_component_comes_back_and_the_loop_does_not_wait(launch: Launch, wall: Path) -> None:
+def test_the_loop_does_not_wait_for_a_killed_component(launch: Launch, wall: Path) -> None:
     file = wall / "launch/orchestra.yaml"
     file.write_text(file.read_text().replace("c/player: {", "c/player: { restart: { backoff_s: 0.5 },"))
     run = launch(*RUN)
@@ -97,7 +97,7 @@ def test_a_killed_component_comes_back_and_the_loop_does_not_wait(launch: Launch
     assert set(ticks["f"]) - set(ticks["c"])  # the others went on
 
 
-def test_who_is_stopped_for_a_while_takes_part_again(launch: Launch, wall: Path) -> None:
+def test_a_host_that_stood_still_takes_part_again(launch: Launch, wall: Path) -> None:
     run = launch(*RUN)
     run.until_ticks("f/player", 3)
     os.kill(run.host("d/player"), signal.SIGSTOP)

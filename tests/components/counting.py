@@ -1,0 +1,16 @@
+"""A counter that leaves to a plain module how much it adds."""
+
+import helper
+from fwk import Component, Writes
+from lcmtypes.robot import imu_t
+
+
+class Counter(Component):
+    """Counts up."""
+
+    stage = "think"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += helper.ADDED
+        self.imu.write()

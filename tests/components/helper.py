@@ -1,0 +1,3 @@
+"""A plain module that a component imports."""
+
+ADDED = 1.0

@@ -1,0 +1,114 @@
+"""Writes down what it heard."""
+
+import os
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import trouble
+import weather  # noqa: F401 - loses datagrams if asked to
+from fwk import Clock, Component, Config, Reads, ReadsEach, TimeSource, Writes, channel
+from lcmtypes.play import burst_t, heard_t, note_t
+
+
+class PlayerConfig(Config):
+    bursts: int = 3
+    """Most bursts of an iteration."""
+    ballast: int = 50
+    """Bytes of the largest burst."""
+    work: int = 0
+    """Rounds of pointless work in an iteration."""
+    tone: int = 0
+    """Goes into the digest."""
+    trouble: str = ""
+    """What goes wrong, see trouble.py."""
+    trouble_tick: int = 0
+    """From when on, if not in init or finalize."""
+    trouble_stage: str = ""
+    """In which stage; the first if empty."""
+    trouble_again: bool = False
+    """Also when the player was started again."""
+
+
+class Player(Component):
+    """Hears everybody."""
+
+    stage = "think"
+
+    config: PlayerConfig
+    clock: Clock
+    rng: np.random.Generator
+    notes: ReadsEach[note_t] = channel("*/note")
+    bursts: ReadsEach[burst_t] = channel("*/burst")
+    note: Writes[note_t]
+    burst: Writes[burst_t]
+
+    def init(self) -> None:
+        self.leave_trace("pid", os.getpid())
+        self.make_trouble("init")
+        self.note.value.digest = self.config.tone
+
+    def loop(self) -> None:
+        note = self.note.value
+        note.iterations += 1
+        self.leave_trace("tick", self.clock.tick)
+        before = self.digest()
+        note.heard = [self.heard(reader) for reader in self.readers()]
+        for _ in range(self.config.work):
+            zlib.crc32(bytes(100_000))
+        note.frozen = before == self.digest()
+        note.digest = zlib.crc32(before.to_bytes(8, "big"), note.digest)
+        self.note.write()
+        for _ in range(self.rng.integers(self.config.bursts + 1)):
+            self.burst.value.ballast = self.rng.bytes(self.config.ballast)
+            self.burst.write()
+        if self.clock.tick >= self.config.trouble_tick > 0 and self.config.trouble_stage in ("", self.clock.stage):
+            self.make_trouble("loop")
+
+    def finalize(self) -> None:
+        self.make_trouble("finalize")
+
+    def leave_trace(self, kind: str, number: int) -> None:
+        if Path("traces").is_dir():
+            new = Path("traces", f"{self.name.replace('/', '_')}.{kind}.new")
+            new.write_text(str(number))
+            new.rename(new.with_suffix(""))
+
+    def make_trouble(self, where: str) -> None:
+        done = Path("trouble-" + self.name.replace("/", "_"))
+        if self.config.trouble.startswith(where + ":") and (self.config.trouble_again or not done.exists()):
+            done.touch()
+            trouble.MAKE[self.config.trouble.partition(":")[2]]()
+
+    def digest(self) -> int:
+        found = 0
+        for reader in self.readers():
+            for message in reader.fresh:
+                found = zlib.crc32(message.encode(), found)
+            found = zlib.crc32(reader.value.encode(), found)
+        return found
+
+    def readers(self) -> list[Reads[Any]]:
+        return [*self.notes.values(), *self.bursts.values()]
+
+    def heard(self, reader: Reads[Any]) -> heard_t:
+        made, numbers = heard_t(), [message.header.sequence for message in reader.fresh]
+        made.channel, made.count = reader.channel, len(numbers)
+        made.first, made.last = (numbers[0], numbers[-1]) if numbers else (0, 0)
+        made.newest_tick, made.newest_stage = reader.header.tick, reader.header.stage
+        return made
+
+
+class Conductor(Component):
+    """Says when the next tick is."""
+
+    stage = "pre_loop"
+
+    clock: Clock
+    rng: np.random.Generator
+    time_source: TimeSource
+
+    def loop(self) -> None:
+        self.time_source.next_us = self.clock.now_us + int(self.rng.integers(30_000, 70_000))

@@ -1,0 +1,32 @@
+"""A sensor, a world model and a thinker."""
+
+from pathlib import Path
+
+from fwk import Component, Reads, Writes
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+
+
+class Sensor(Component):
+    """Turns."""
+
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 0.1
+        self.imu.write()
+        Path("turns.new").write_text(str(self.imu.value.header.tick))
+        Path("turns.new").rename("turns.txt")  # who reads it sees no half of it
+
+
+class WorldModel(Component):
+    """Believes."""
+
+    stage = "worldstate"
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        self.pose.value.heading_rad = self.imu.value.heading_rad
+        self.pose.write()

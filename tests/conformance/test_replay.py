@@ -1,0 +1,66 @@
+"""Every component of `procs` writes the same messages in a replay as in the short recorded run that contains it."""
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from fwk import Component
+from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.replay import Replay
+from procs.vision.calibration import MirrorConfig
+from tests.conformance.discovery import LAUNCH, discovered, label, usage
+from tests.harness.runs import Launched, PortBlock, write_files
+from tests.procs.vision.picture_parts import shades, write_folder
+
+pytestmark = pytest.mark.system
+
+TICKS = 30
+SIZE_PX = MirrorConfig().size_px
+ALONE = """
+include: {file}
+name: alone
+components:
+  cyan1/component: {{use: "{module}:{name}"}}
+"""
+Recorded = Callable[[str, str], Path]
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
+    """Runs a launch file once for all components that it contains; returns the recording."""
+
+    @cache
+    def run(file: str, text: str) -> Path:
+        folder = tmp_path_factory.mktemp("run")
+        write_folder(folder / "pictures", shades(TICKS, SIZE_PX, SIZE_PX))
+        write_files(folder, {file: text} if text else {})
+        with PortBlock() as ports:
+            options = ("--ticks", str(TICKS), "--speed", "max", "--record", "log.lcm", "--hosting", "single")
+            where = ("--set", f"public_url={ports.public_url}")
+            launched = Launched(folder, ports, (file, *options, *where), {})
+            try:
+                assert launched.wait() == 0, launched.text
+            finally:
+                launched.end()
+        return folder / "log.lcm"
+
+    return run
+
+
+@pytest.mark.parametrize("component", discovered(), ids=label)
+def test_a_component_replays_alone(
+    recorded: Recorded, component: type[Component], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    used = usage(component)
+    if used:
+        log, name = recorded(used[0], ""), used[1].name
+    else:  # no launch file contains it: one robot with the component beside
+        text = ALONE.format(file=LAUNCH / "one-robot.yaml", module=component.__module__, name=component.__name__)
+        log, name = recorded("alone.yaml", text), "cyan1/component"
+    monkeypatch.chdir(log.parent)
+    replay = Replay(Recording(log), [name])
+    replay.run()
+    assert [str(each) for each in replay.differences] == []
+    assert replay.compared > 0
