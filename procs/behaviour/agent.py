@@ -1,4 +1,4 @@
-"""Decides what the robot does: its role in the team and the skill for the moment."""
+"""Chooses the role of the robot in its team, and the skill for the moment."""
 
 import math
 
@@ -7,6 +7,7 @@ from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, role_t, skill_command_t, skill_status_t, world_model_t
 from procs.behaviour import roles
 from procs.behaviour.game import game_of
+from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Order, Tactics
 from procs.behaviour.view import Frame, view_of
 from procs.model.field import Field, Point
@@ -21,9 +22,9 @@ class AgentConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     new_target_m: float = 0.05
-    """A skill's target that moved this far makes a new command ..."""
+    """A target that moved further than this makes a new command."""
     new_heading_rad: float = 0.05
-    """... and so does a heading that turned this far."""
+    """A heading that turned further than this makes a new command."""
 
 
 class Agent(Component):
@@ -74,7 +75,5 @@ class Agent(Component):
             return True
         # The skill has ended and is wanted again.
         ended = status.status in (skill_status_t.FINAL, skill_status_t.FAILED)
-        return ended and status.command_id == command.command_id and status.skill not in _STAYING
-
-
-_STAYING = ("stop", "goto", "keep_goal", "mark", "dribble")
+        known = SKILLS.get(status.skill)
+        return ended and status.command_id == command.command_id and known is not None and not known.lasting

@@ -1,4 +1,4 @@
-"""Where to shoot and whom to pass to: how much room is left beside the robots in the way."""
+"""Targets of shots and passes, by the room beside the robots in the way."""
 
 import math
 from collections.abc import Iterable
@@ -30,7 +30,7 @@ class Aim(NamedTuple):
 
 
 def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:
-    """Free angle beside a ball's way between two points; negative if a robot blocks it, pi if nobody is near.
+    """Free angle beside a ball's way between two points; negative if a robot blocks it, pi without a robot nearby.
 
     A robot far down the way has time to step aside, so it counts as wider.
     """

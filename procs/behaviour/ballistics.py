@@ -1,4 +1,4 @@
-"""How far a ball rolls, how hard to kick it, and where a robot can meet it."""
+"""Range of a rolling ball, speed of a kick, and meeting points of ball and robot."""
 
 import math
 from typing import NamedTuple
@@ -22,7 +22,7 @@ class Meeting(NamedTuple):
 
 
 def ball_after(ball: Ball, time_s: float) -> Point:
-    """Where the rolling ball will be, if nobody touches it."""
+    """Returns the position of the rolling ball after `time_s` without a touch."""
     speed_m_s = ball.speed_m_s
     if speed_m_s < 0.05:
         return ball.place
@@ -86,5 +86,5 @@ class Course:
 
 
 def meet(ball: Ball, place: Point) -> Meeting:
-    """The earliest meeting of the ball with one robot."""
+    """Returns the earliest meeting of the ball with a robot at `place`."""
     return Course(ball).meet(place)

@@ -1,4 +1,4 @@
-"""Where the robots without the ball stand, relative to the ball; attack frame."""
+"""Places of the robots without the ball, relative to the ball; attack frame."""
 
 import math
 
@@ -35,7 +35,7 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
 
 
 def taker_place(spot: Point, way_rad: float) -> Point:
-    """Where the taker of a set piece waits: behind the ball that it will play in that direction."""
+    """Returns the waiting place of a set piece's taker: behind the ball, opposite to the direction of play."""
     return ahead(spot, way_rad, -0.75)
 
 

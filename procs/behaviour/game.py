@@ -11,7 +11,7 @@ from procs.referee.restarts import State, Team
 
 
 class Whose(Enum):
-    """Whose set piece it is."""
+    """Team of a set piece, seen from the own team."""
 
     OURS = "ours"
     THEIRS = "theirs"
@@ -19,22 +19,22 @@ class Whose(Enum):
 
 
 class Game(NamedTuple):
-    """What the referee says."""
+    """State of the game."""
 
     state: State = State.FROZEN
     stopped: bool = True
     whose: Whose = Whose.NOBODYS
     spot: Point = Point(0.0, 0.0)
-    """Where the set piece is taken."""
+    """Place of the set piece."""
 
     @property
     def free_play(self) -> bool:
-        """Whether everybody may play the ball."""
+        """True if all robots may play the ball."""
         return self.state is State.PLAY or (self.state is State.DROP_BALL and not self.stopped)
 
     @property
     def paused(self) -> bool:
-        """Whether nobody is to move."""
+        """True if no robot may move."""
         return self.state in (State.FROZEN, State.HALF_TIME)
 
 
@@ -42,7 +42,7 @@ _STATES = {int(state): state for state in State}
 
 
 def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
-    """Turns the referee's message; a state that we do not know means standing still."""
+    """Converts the referee's message; an unknown state stops the robot."""
     whose = Whose.NOBODYS
     if message.state_team in (Team.CYAN, Team.MAGENTA):
         whose = Whose.OURS if message.state_team == team else Whose.THEIRS

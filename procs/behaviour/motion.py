@@ -1,4 +1,4 @@
-"""Velocities for an omnidirectional robot: as fast as it can still stop, no faster change than its wheels grip."""
+"""Velocities of an omnidirectional robot that can still stop at its target, within the grip of its wheels."""
 
 import math
 from typing import NamedTuple
@@ -28,7 +28,7 @@ STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
 class Limits(BaseModel):
-    """What the robot can do, and how it is steered."""
+    """Limits and gains of the motion."""
 
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
@@ -37,13 +37,13 @@ class Limits(BaseModel):
     acceleration_m_s2: PositiveFloat = 3.0
     """Limit of the change of the velocity."""
     braking_m_s2: PositiveFloat = 2.5
-    """What is counted on for stopping at the target."""
+    """Deceleration assumed for stopping at the target."""
     omega_rad_s: PositiveFloat = 5.0
     """Highest turning speed."""
     angular_acceleration_rad_s2: PositiveFloat = 18.0
     """Limit of its change."""
     angular_braking_rad_s2: PositiveFloat = 9.0
-    """What is counted on for stopping at the heading."""
+    """Deceleration assumed for stopping at the heading."""
     ball_omega_rad_s: PositiveFloat = 4.0
     """Highest turning speed with the ball in the mouth."""
     ball_acceleration_m_s2: PositiveFloat = 3.0
@@ -57,7 +57,7 @@ class Limits(BaseModel):
 
 
 def ahead_in_time(pose: Pose, measured: Velocity, duration_s: float) -> Pose:
-    """Where the robot will be; `measured` is in its own frame."""
+    """Returns the pose after `duration_s`; `measured` is in the robot frame."""
     middle_rad = pose.heading_rad + measured.omega_rad_s * duration_s / 2
     vx_m_s, vy_m_s = turned(measured.vx_m_s, measured.vy_m_s, middle_rad)
     place = Point(pose.place.x_m + vx_m_s * duration_s, pose.place.y_m + vy_m_s * duration_s)

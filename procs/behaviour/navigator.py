@@ -16,19 +16,19 @@ class NavigatorConfig(Config):
     """Settings of the way-finding."""
 
     limits: Limits = Limits()
-    """What the robot can do."""
+    """Limits of the robot's motion."""
     field: Field = Field()
     """Measures of the field."""
     target_timeout_s: float = 0.5
     """The robot stops when its target or its world model is older."""
     near_m: float = 0.08
-    """The target counts as reached this close to it ..."""
+    """Distance within which the target counts as reached."""
     near_rad: float = 0.1
-    """... and to its heading."""
+    """Angle within which the heading counts as reached."""
 
 
 class Navigator(Component):
-    """From a target in the world to a velocity in the robot's frame."""
+    """Turns a target in the world frame into a velocity in the robot frame."""
 
     stage = "act"
 

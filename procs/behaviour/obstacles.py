@@ -1,4 +1,4 @@
-"""What the robot's middle keeps out of on its way: other robots, goal posts, if asked the ball; world frame."""
+"""Areas that the robot's middle avoids: other robots, goal posts, and on demand the ball; world frame."""
 
 import math
 from collections.abc import Iterable
@@ -18,7 +18,7 @@ _NEAR_M = 6.0  # what is further away can wait
 
 
 def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
-    """Discs around what is near, where it will be in a moment."""
+    """Returns discs around near obstacles, at their positions in a moment."""
     own = Point(model.x_m, model.y_m)
     found = [
         Disc(post, _ROBOT_M + field.post_diameter_m / 2 + 0.03) for side in SIDES for post in field.goal_posts(side)

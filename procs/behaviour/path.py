@@ -14,7 +14,7 @@ _CROWD_M = 0.02
 
 
 class Disc(NamedTuple):
-    """A place that the robot's middle keeps out of."""
+    """An area that the robot's middle avoids."""
 
     middle: Point
     radius_m: float
@@ -27,7 +27,7 @@ class Way(NamedTuple):
 
     direction_rad: float
     length_m: float
-    """Length of the way, detour included, as far as it can be seen from here."""
+    """Length of the way, with the visible detour."""
     free_m: float
     """How far that direction is free."""
     blocked: bool
@@ -77,7 +77,7 @@ def _shrink(disc: Disc, start: Point, target: Point) -> Disc:
 
 
 def _free_m(start: Point, direction_rad: float, discs: Sequence[Disc]) -> float:
-    """How far a ray goes until it meets a disc; infinite if it meets none."""
+    """Returns the length of a ray up to the first disc; infinite without one."""
     dx, dy = math.cos(direction_rad), math.sin(direction_rad)
     free_m = math.inf
     for disc in discs:

@@ -1,4 +1,4 @@
-"""Who does what: every robot computes the same assignment from what the team knows."""
+"""Assignment of roles: every robot computes the same from the knowledge of the team."""
 
 import itertools
 import math
@@ -24,7 +24,7 @@ class Job(NamedTuple):
 
     role: str
     place: Point
-    """Where the role stands when it has nothing better to do."""
+    """Default place of the role."""
 
 
 def assign(view: View, field: Field) -> dict[str, Job]:
@@ -55,7 +55,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
 
 
 def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
-    # Who dribbles takes the ball along; a mate ahead of it would else seem to meet it sooner.
+    # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
     return 0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place).time_s
 
 

@@ -1,4 +1,4 @@
-"""What a robot does next: from its view of the match, the referee's state and its job to one order for its skills."""
+"""Decision of a robot: from its view of the match, the referee's state and its job to an order for a skill."""
 
 import math
 from typing import NamedTuple
@@ -34,7 +34,7 @@ class Order(NamedTuple):
 
 
 class Tactics:
-    """Decides for one robot, once a tick; remembers what it was about to do."""
+    """Decides for one robot, once a tick; keeps the last order."""
 
     def __init__(self, field: Field) -> None:
         self.field = field
@@ -180,7 +180,7 @@ def _field_players(view: View) -> list[Robot]:
 
 
 def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:
-    """Whether the own robot is the one to mark an opponent: within the limit, and no other defender is nearer."""
+    """Returns True if the own robot shall mark an opponent: within the limit, without a nearer defender."""
     own_m = math.dist(view.own.place, runner.place)
     defenders = [mate for mate in view.mates if mate.role == DEFENDER]
     return own_m < limit_m and all(own_m <= math.dist(mate.place, runner.place) for mate in defenders)

@@ -38,7 +38,7 @@ class Robot(NamedTuple):
 
 
 class Ball(NamedTuple):
-    """The ball as the team knows it; not `known` means that nobody saw it lately."""
+    """The ball as the team knows it; `known` is false without a recent sighting."""
 
     known: bool
     place: Point = Point(0.0, 0.0)
@@ -51,7 +51,7 @@ class Ball(NamedTuple):
 
 
 class View(NamedTuple):
-    """What a robot believes about the match."""
+    """Beliefs of a robot about the match."""
 
     localized: bool
     own: Robot

@@ -1,4 +1,4 @@
-"""Driver of the wheels: tells them how to turn for a wanted velocity, and sums up how far they went."""
+"""Driver of the wheels: converts velocities into rim speeds, and measured speeds into odometry."""
 
 from pydantic import PositiveFloat
 

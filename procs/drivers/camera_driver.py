@@ -41,7 +41,7 @@ class CameraDriverConfig(Config):
 
 
 class CameraDriver(Component):
-    """Frames of a video file or a folder depend on the tick alone; those of a device are what it sees."""
+    """Frames of a video file or a folder depend on the tick alone; those of a device on the time."""
 
     stage = "sensor_acquire"
     image: VisionMaster

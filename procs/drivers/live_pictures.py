@@ -21,7 +21,7 @@ CLOSE_S = 1.0
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a device is asked for; 0: its own. Whether it does so is its business."""
+    """Format requested of a device; 0: the device's own. A device may ignore it."""
 
     width_px: int = 0
     height_px: int = 0
@@ -107,13 +107,13 @@ class Live:
         return taken
 
     def news(self) -> list[str]:
-        """What happened since the last call: lost, and why; found again."""
+        """Returns the events since the last call: source lost, with the reason, or found again."""
         with self._lock:
             taken, self._news = self._news, []
         return taken
 
     def close(self) -> None:
-        """No more pictures are wanted; a source that hangs is left to itself."""
+        """Ends reading; abandons a source that hangs."""
         self._closing.set()
         self._thread.join(CLOSE_S)
 
@@ -132,7 +132,7 @@ class Live:
                 capture = self._open_again()
 
     def _open_again(self) -> cv2.VideoCapture | None:
-        """Tries until it succeeds; None if that is no longer wanted."""
+        """Retries until the source opens; returns None once the source is closed."""
         wait_s, said = self._backoff.first_s, ""
         while not self._closing.wait(wait_s):
             try:

@@ -1,4 +1,4 @@
-"""Limits of speed and acceleration between what is wanted of a base and what its wheels are told."""
+"""Limits of speed and acceleration between the wanted velocity of a base and its wheel commands."""
 
 import math
 
@@ -25,7 +25,7 @@ class Ramp:
         self._angular_acceleration_rad_s2 = angular_acceleration_rad_s2
 
     def advance(self, wanted: Velocity, duration_s: float) -> Velocity:
-        """The velocity to command for the next `duration_s`. What is no finite number counts as standstill."""
+        """The velocity to command for the next `duration_s`. Non-finite values count as standstill."""
         if not all(map(math.isfinite, wanted)):
             wanted = STANDSTILL
         speed_m_s = math.hypot(wanted.vx_m_s, wanted.vy_m_s)

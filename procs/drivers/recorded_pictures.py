@@ -13,7 +13,7 @@ PICTURES = (".bmp", ".jpeg", ".jpg", ".pgm", ".png", ".ppm", ".tif", ".tiff", ".
 
 
 class SourceError(Exception):
-    """Pictures cannot be had; says from where and why, and what would be right."""
+    """Pictures cannot be read; names the source, the reason, and the remedy."""
 
 
 class Recorded(Protocol):

@@ -1,4 +1,4 @@
-"""Keeps the tree of a robot's frames: where it stands in the world, and what is mounted on it where."""
+"""Tree of a robot's frames: its pose in the world, and the parts mounted on it."""
 
 from pydantic import Field
 

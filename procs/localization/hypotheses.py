@@ -1,4 +1,4 @@
-"""A few places where a lost robot might be, followed until one of them has clearly explained the pictures best."""
+"""Possible poses of a lost robot, followed until one explains the frames clearly best."""
 
 from dataclasses import dataclass, field
 
@@ -47,7 +47,7 @@ class Hypotheses:
         return np.vstack([one.pose for one in self.known] + [others])
 
     def update(self, poses: Floats, scores: Floats) -> None:
-        """What became of `starts`."""
+        """Takes the matched poses and scores of `starts`."""
         count = len(self.known)
         for one, pose, score in zip(self.known, poses, scores, strict=False):
             one.pose = pose

@@ -51,7 +51,7 @@ class LinePoints:
 
 @dataclass(frozen=True)
 class Matches:
-    """What became of k start poses."""
+    """Results of k start poses."""
 
     poses: Floats
     """(k, 3): x, y, heading."""

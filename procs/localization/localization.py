@@ -1,4 +1,4 @@
-"""Where the robot is: matches the white points that it sees with the field's lines, and follows with odometry."""
+"""Self-localization: matches white points with the field's lines, and follows with odometry."""
 
 import numpy as np
 from pydantic import Field as Setting
@@ -10,7 +10,7 @@ from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
 from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.model.field import Field
-from procs.model.frames import Floats, plausible, rotation, wrap
+from procs.model.frames import plausible, rotation, wrap
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 
@@ -21,7 +21,7 @@ class LocalizationConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     start_x_m: float | None = None
-    """Where the robot begins, if it is told so; world frame. All three or none."""
+    """Start of the robot if it is known, world frame. All three or none."""
     start_y_m: float | None = None
     """See start_x_m."""
     start_heading_rad: float | None = None
@@ -30,8 +30,8 @@ class LocalizationConfig(Config):
     """White points further away are not used."""
     points: int = Setting(default=100, ge=10)
     """Most white points of a frame that are used."""
-    search_period: int = Setting(default=10, ge=1)
-    """Frames from one look over the whole field to the next while the pose is known."""
+    search_period_s: float = Setting(default=0.5, gt=0.0)
+    """From one search of the whole field to the next while the pose is known."""
     lost_score: float = Setting(default=0.4, gt=0.0, lt=1.0)
     """The pose is given up when the points fit worse than this for some frames; 1 is a perfect fit."""
     good_score: float = Setting(default=0.5, gt=0.0, lt=1.0)
@@ -72,15 +72,19 @@ class Localization(Component):
         self._last: odometry_t | None = None
         self._yaw_rate_rad_s = 0.0
         self._last_us = 0
-        self._apply_settings(np.array(given) if given else None)
+        self._localizer = SelfLocalizer(line_map(config.field), self._settings(), np.array(given) if given else None)
+        self._updated_us = -1
 
     def loop(self) -> None:
         knew = self._localizer.localized
         points = self.line_points.value if self.line_points.refreshed else line_points_t()
-        self._localizer.update(self._motion(), self._compass_rad(), np.array(points.x_m), np.array(points.y_m))
+        passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
+        self._updated_us = self.clock.now_us
+        x_m, y_m = np.array(points.x_m), np.array(points.y_m)
+        self._localizer.update(self._motion(), self._compass_rad(), x_m, y_m, passed_s)
         if knew != self._localizer.localized:
-            x_m, y_m, _ = self._localizer.pose
-            self.log.info(f"localized at ({x_m:.2f}, {y_m:.2f}) m" if not knew else "lost, searching the whole field")
+            here_m = "({:.2f}, {:.2f})".format(*self._localizer.pose[:2])
+            self.log.info(f"localized at {here_m} m" if not knew else "lost, searching the whole field")
         pose = self.pose.value
         pose.x_m, pose.y_m, pose.heading_rad = self._localizer.pose.tolist()
         pose.covariance = self._localizer.covariance.tolist()
@@ -88,18 +92,17 @@ class Localization(Component):
         self.pose.write()
 
     def config_changed(self) -> None:
-        self._apply_settings(self._localizer.pose if self._localizer.localized else None)
+        self._localizer.change(line_map(self.config.field), self._settings())
 
-    def _apply_settings(self, start: Floats | None) -> None:
+    def _settings(self) -> LocalizerSettings:
         config = self.config
-        settings = LocalizerSettings(
+        return LocalizerSettings(
             reach_m=config.reach_m,
             points=config.points,
-            search_period=config.search_period,
+            search_period_s=config.search_period_s,
             lost_score=config.lost_score,
             good_score=config.good_score,
         )
-        self._localizer = SelfLocalizer(line_map(config.field), settings, start)
 
     def _compass_rad(self) -> float | None:
         imu = self.imu.value

@@ -1,15 +1,18 @@
-"""Kalman filter of a robot's pose: driven by odometry, corrected by what the lines say."""
+"""Kalman filter of a robot's pose: driven by odometry, corrected by matches with the field's lines."""
+
+import math
 
 import numpy as np
 from filterpy.kalman import KalmanFilter
 
 from procs.model.frames import Floats, rotation, wrap
 
-_PATH_ERROR = 0.1  # of the way driven since the last frame: wheel scale, encoder noise, slip
+_TICK_S = 0.05  # the errors below are those that add up in this time
+_PATH_ERROR = 0.1  # share of the way: wheel scale, encoder noise, slip
 _STANDING_M = 0.002
-_TURN_ERROR = 0.03
+_TURN_ERROR = 0.03  # share of the turn
 _STANDING_RAD = 0.002
-_STRAIN_MEMORY = 0.75  # of the mean innovation from frame to frame
+_STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
 
 
 class PoseFilter:
@@ -24,34 +27,39 @@ class PoseFilter:
         self._filter = KalmanFilter(dim_x=3, dim_z=3)
         self._filter.P = np.diag(np.square(deviations))
         self._filter.H = np.eye(3)
-        self._strain = np.zeros(3)
+        self._strain_1_s = np.zeros(3)  # mean innovation for each second between frames
 
     @property
     def covariance(self) -> Floats:
         """(3, 3) of x, y, heading."""
         return np.asarray(self._filter.P)
 
-    def predict(self, ahead_m: float, left_m: float, turn_rad: float) -> None:
-        """The robot moved, by its odometry: in the frame it had before, and turned."""
+    def predict(self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S) -> None:
+        """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn."""
         middle_rad = float(self.pose[2]) + turn_rad / 2
         way_m = rotation(middle_rad) @ (ahead_m, left_m)
         self.pose = moved(self.pose, way_m, turn_rad)
         shift = np.eye(3)
         shift[:2, 2] = -way_m[1], way_m[0]
-        error_m = _PATH_ERROR * float(np.hypot(ahead_m, left_m)) + _STANDING_M
-        error_rad = _TURN_ERROR * abs(turn_rad) + _STANDING_RAD
-        noise = np.diag(np.square((error_m, error_m, error_rad))) + np.outer(self._strain, self._strain)
+        ticks = max(duration_s, 1e-3) / _TICK_S
+        # Errors are independent from tick to tick: their variances add up, whatever the length of a tick.
+        error_m = (_PATH_ERROR * float(np.hypot(ahead_m, left_m)) / ticks + _STANDING_M) * math.sqrt(ticks)
+        error_rad = (_TURN_ERROR * abs(turn_rad) / ticks + _STANDING_RAD) * math.sqrt(ticks)
+        strain = self._strain_1_s * duration_s
+        noise = np.diag(np.square((error_m, error_m, error_rad))) + np.outer(strain, strain)
         self._filter.predict(F=shift, Q=noise)
 
-    def correct(self, pose: Floats, covariance: Floats) -> None:
-        """A measurement of the whole pose (3) with its covariance (3, 3).
+    def correct(self, pose: Floats, covariance: Floats, interval_s: float = _TICK_S) -> None:
+        """Takes a measurement of the whole pose (3) with its covariance (3, 3), `interval_s` after the last one.
 
         Wheels that slip, or another robot that pushes, make the prediction wrong frame after frame in the same
-        direction; the mean of the last innovations is therefore taken for an error of the next prediction.
+        direction; the mean of the last innovations therefore counts as an error of the next prediction.
         """
+        interval_s = max(interval_s, 1e-3)
         innovation = pose - self.pose
         innovation[2] = wrap(float(innovation[2]))
-        self._strain += (1 - _STRAIN_MEMORY) * (innovation - self._strain)
+        share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)
+        self._strain_1_s += share * (innovation / interval_s - self._strain_1_s)
         self._filter.update(innovation[:, None], R=covariance)
         error = self._filter.x[:, 0]
         self._filter.x = np.zeros((3, 1))

@@ -126,8 +126,12 @@ class Field(BaseModel):
         offsets_m = (-self.restart_offset_m, 0.0, self.restart_offset_m)
         return [Point(x_m, y_m) for x_m in (0.0, *rows_m) for y_m in offsets_m]
 
+    def restart_spots(self) -> list[Point]:
+        """The marks at which the ball is dropped: the centre and the restart marks, without the penalty marks."""
+        return [mark for mark in self.marks() if mark.y_m or not mark.x_m]
+
     def penalty_mark(self, side: float) -> Point:
-        """Where penalties against that side are shot from."""
+        """Mark for penalties against that side."""
         return Point(side * (self.half_length_m - self.penalty_mark_distance_m), 0.0)
 
     def goal_centre(self, side: float) -> Point:

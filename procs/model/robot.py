@@ -1,4 +1,4 @@
-"""What a robot's name says: `cyan3` is number 3 of team cyan, which defends the goal at negative x."""
+"""Team and number in a robot's name: `cyan3` is number 3 of team cyan, which defends the goal at negative x."""
 
 import re
 

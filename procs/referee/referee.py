@@ -1,4 +1,4 @@
-"""Leads the match: calls goals, balls out and fouls, places the ball, keeps time and score."""
+"""Referees the match: calls goals, balls out and fouls, places the ball, keeps time and score."""
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes
 from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, match_event_t, match_events_t
@@ -16,7 +16,7 @@ class RefereeConfig(Config, Rules):
 
 
 class Referee(Component):
-    """Sees only what the linesmen report, never the robots' places."""
+    """Decides from the reports of the linesmen alone; it does not know the positions of the robots."""
 
     stage = "post_loop"
 
@@ -30,6 +30,7 @@ class Referee(Component):
     def init(self) -> None:
         self._whistle = Whistle(self.config)
         self._placed = 0
+        self._before_us = -1
 
     def loop(self) -> None:
         whistle = self._whistle
@@ -39,7 +40,9 @@ class Referee(Component):
             _event(event) for report in self.match_events.fresh for event in report.events if event.kind in _KINDS
         ]
         ball = self.match_events.value
-        whistle.step(self.clock.period_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events))
+        passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
+        self._before_us = self.clock.now_us
+        whistle.step(passed_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events))
         for team in whistle.score:
             if whistle.score[team] > score[team]:
                 self._remember(True, team)

@@ -1,4 +1,4 @@
-"""How the game goes on after an interruption: which set piece, whose, and where the ball is put."""
+"""Restarts after an interruption: the set piece, its team, and the place of the ball."""
 
 import math
 from enum import IntEnum
@@ -32,12 +32,12 @@ class Team(IntEnum):
 
     @property
     def other(self) -> "Team":
-        """The opponents; nobody's are nobody."""
+        """The other team; NONE for NONE."""
         return Team(3 - self) if self else self
 
     @property
     def side(self) -> float:
-        """Side of the goal that the team defends; 0 for nobody."""
+        """Side of the goal that the team defends; 0 for NONE."""
         return (0.0, SIDES[0], SIDES[1])[self]
 
 
@@ -66,13 +66,13 @@ def kick_off(team: Team) -> Restart:
 
 
 def dropped_ball(place: Point, field: Field) -> Restart:
-    """At the mark nearest to the place; nobody's ball."""
-    spot = min(field.marks(), key=lambda mark: (math.dist(mark, place), mark))
+    """At the restart spot nearest to the place; the ball of neither team."""
+    spot = min(field.restart_spots(), key=lambda mark: (math.dist(mark, place), mark))
     return Restart(State.DROP_BALL, Team.NONE, spot)
 
 
 def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
-    """Throw-in for the other team where the ball went out; a dropped ball if nobody had touched it."""
+    """Throw-in for the other team where the ball went out; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
         return dropped_ball(place, field)
     x_m = _within(place.x_m, field.half_length_m - field.corner_radius_m)
@@ -81,7 +81,7 @@ def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
 
 
 def after_goal_line(place: Point, touched_by: Team, field: Field) -> Restart:
-    """Corner or goal kick; a dropped ball if nobody had touched it."""
+    """Corner or goal kick; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
         return dropped_ball(place, field)
     side = math.copysign(1.0, place.x_m)

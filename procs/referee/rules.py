@@ -1,4 +1,4 @@
-"""The referee's rules: from what the linesmen report to the state of the game.
+"""Rules of the referee: from the reports of the linesmen to the state of the game.
 
 A simplification of the rules of the middle size league: no cards, no dribbling limit, and fouls are free kicks. As
 there, a goal counts only if the scoring team touched the ball last in the opponents' half, own goals excepted.
@@ -16,7 +16,7 @@ from procs.referee.restarts import Restart, State, Team
 from procs.simulation.physics.events import Event, Kind
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away somebody pushed it
-_CREW_S = 0.5  # until a placement is seen to be done
+_CREW_S = 0.5  # until the report shows a placement
 
 
 class Rules(BaseModel):
@@ -33,19 +33,19 @@ class Rules(BaseModel):
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""
     set_piece_s: PositiveFloat = 7.0
-    """Who has not moved the ball by then has lost the set piece: play goes on."""
+    """Time for a set piece; after it play goes on."""
     moved_m: PositiveFloat = 0.2
     """A set piece is taken when the ball has moved that far."""
     deadlock_s: PositiveFloat = 10.0
     """A ball that stays within `deadlock_m` for so long is dropped elsewhere."""
     deadlock_m: PositiveFloat = 0.5
     collision_m_s: PositiveFloat = 3.0
-    """Robots that meet faster than this make a foul of the faster one."""
+    """Closing speed above which a collision is a foul of the faster robot."""
     field: Field = Field()
 
 
 class Sight(NamedTuple):
-    """What the linesmen report in a tick."""
+    """Report of the linesmen about a tick."""
 
     ball: Point
     events: Sequence[Event] = ()
@@ -76,7 +76,7 @@ class Referee:
         return self.state is State.FROZEN
 
     def step(self, duration_s: float, sight: Sight) -> None:
-        """Goes on by one tick of that length."""
+        """Runs one tick of `duration_s`."""
         self.time_in_state_s += duration_s
         if self.over:
             return

@@ -1,4 +1,4 @@
-"""The simulated omnidirectional camera: renders what its robot sees and gives the frames out."""
+"""Simulated omnidirectional camera: renders the view of its robot and publishes the frames."""
 
 import math
 
@@ -22,15 +22,15 @@ class CameraConfig(Config):
     """Settings of the simulated camera."""
 
     mirror: MirrorConfig = MirrorConfig()
-    """The mirror as the detectors believe it to be."""
+    """Calibration of the mirror, as the detectors have it."""
     roll_deg: float = Setting(default=0.0, ge=-5.0, le=5.0)
-    """Tilt of the mirror about the robot's x axis that nobody calibrated."""
+    """Uncalibrated tilt of the mirror about the robot's x axis."""
     pitch_deg: float = Setting(default=0.0, ge=-5.0, le=5.0)
-    """Tilt of the mirror about the robot's y axis that nobody calibrated."""
+    """Uncalibrated tilt of the mirror about the robot's y axis."""
     shake_px: float = Setting(default=0.2, ge=0.0, le=3.0)
     """Standard deviation by which the standing robot's mirror shakes the picture."""
     shake_px_per_m_s: float = Setting(default=0.3, ge=0.0, le=3.0)
-    """How much more it shakes with every metre a second that the robot drives."""
+    """Growth of that deviation with each m/s of the robot."""
     noise_levels: float = Setting(default=5.0, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
     brightness: float = Setting(default=1.0, gt=0.0, le=4.0)
@@ -50,7 +50,7 @@ class CameraConfig(Config):
 
 
 class Camera(Component):
-    """Takes the true poses of the simulator and gives out the picture that the robot's camera would take of them."""
+    """Renders the picture of the robot's camera from the true poses of the simulator."""
 
     stage = "sensor_acquire"
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")

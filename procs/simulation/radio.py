@@ -1,4 +1,4 @@
-"""The team's radio: hands each robot's messages to its mates, with loss and delay; one for each team."""
+"""Radio of a team: delivers each robot's messages to its mates, with loss and delay."""
 
 import numpy as np
 from pydantic import Field
@@ -22,7 +22,7 @@ class RadioConfig(Config):
 class Radio(Component):
     """Stands for the air between the robots of a team. The launch file gives the channels: `cyan*/team_message`.
 
-    An inbox is written only in ticks in which something arrives. Nobody gets its own messages.
+    An inbox is written only in ticks in which something arrives. No robot gets its own messages.
     """
 
     stage = "post_loop"
@@ -38,7 +38,7 @@ class Radio(Component):
         self._links: RadioLinks[team_message_t] = RadioLinks(list(self.inboxes), self.rng)
 
     def loop(self) -> None:
-        """Sends what the robots said in this tick, delivers what has arrived."""
+        """Sends the messages of this tick, delivers those that have arrived."""
         settings = RadioSettings(self.config.loss, self.config.delay_s, self.config.delay_jitter_s)
         for robot, said in self.messages.items():
             for message in said.fresh:

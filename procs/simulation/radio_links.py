@@ -12,7 +12,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class RadioSettings:
-    """How good the radio is."""
+    """Quality of the radio."""
 
     loss: float = 0.0
     """Probability that a message does not arrive, for each receiver on its own."""
@@ -31,7 +31,7 @@ class RadioLinks(Generic[T]):
         self._under_way: list[tuple[int, int, str, T]] = []
 
     def send(self, sender: str, message: T, now_us: int, settings: RadioSettings) -> None:
-        """Sends to everybody but the sender. Draws two random numbers a receiver, whatever the settings."""
+        """Sends to all receivers but the sender. Draws two random numbers a receiver, whatever the settings."""
         for receiver in self._receivers:
             if receiver == sender:
                 continue
@@ -43,7 +43,7 @@ class RadioLinks(Generic[T]):
             heapq.heappush(self._under_way, (arrival_us, self._sent, receiver, message))
 
     def receive(self, now_us: int) -> dict[str, list[T]]:
-        """What has arrived since the last call, by receiver; only receivers that got something."""
+        """Returns the messages that arrived since the last call, by receiver."""
         arrived: dict[str, list[T]] = {}
         while self._under_way and self._under_way[0][0] <= now_us:
             _, _, receiver, message = heapq.heappop(self._under_way)

@@ -1,4 +1,4 @@
-"""The world of the match: moves it by one tick, and stands in for the hardware of every robot."""
+"""Simulator of the match: moves the world by one tick, and replaces the hardware of every robot."""
 
 import math
 
@@ -123,7 +123,7 @@ class Simulator(Component):
         return reader.has_value and age_s <= self.config.command_timeout_s
 
     def _sense(self, passed_s: float) -> None:
-        # Every robot's sensors are read, asked for or not: who listens must not change anybody's random numbers.
+        # All sensors are read, with or without a reader: readers must not change the random numbers.
         for name, robot in self._world.robots.items():
             wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s())
             heading_rad, yaw_rate_rad_s = self._imus[name].read(robot.body.angle, robot.body.angular_velocity, passed_s)

@@ -1,4 +1,4 @@
-"""Draws what a robot believes: where it is, and where it takes the ball to be and how surely."""
+"""Draws the beliefs of a robot: its pose, and the ball with its uncertainty."""
 
 import math
 

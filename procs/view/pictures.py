@@ -26,7 +26,7 @@ class PicturesConfig(Config):
 
 
 class Pictures(Component):
-    """Takes part when everybody else of the tick is done, so that nobody waits for a picture."""
+    """Runs after all other stages of the tick, so that no component waits for a picture."""
 
     stage = "post_loop"
 

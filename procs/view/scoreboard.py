@@ -36,7 +36,7 @@ def score(state: game_state_t) -> str:
 
 
 def phase(state: game_state_t) -> str:
-    """What is going on: `play`, `throw-in magenta`, `corner kick cyan, taking positions`."""
+    """Returns the phase of the match: `play`, `throw-in magenta`, `corner kick cyan, taking positions`."""
     words = STATES.get(state.state, f"state {state.state}")
     set_piece = state.state not in (game_state_t.FROZEN, game_state_t.PLAY, game_state_t.HALF_TIME)
     if set_piece and state.state_team in TEAMS:
@@ -51,7 +51,7 @@ def play_time(time_s: float) -> str:
 
 
 def headline(newest: Newest) -> str:
-    """One line for the display; empty before the referee has said anything."""
+    """Returns one line for the display; empty before the first message of the referee."""
     state = newest(GAME_STATE)
     if state is None:
         return ""
@@ -65,7 +65,7 @@ def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str
 
 
 def summary(newest: Newest) -> list[str]:
-    """What to say when the run has ended; nothing if there was no referee."""
+    """Returns the lines for the end of a run; none without a referee."""
     state = newest(GAME_STATE)
     if state is None:
         return []

@@ -1,4 +1,4 @@
-"""The match seen from above: field, robots, ball, score and, if asked, what robots believe."""
+"""The match seen from above: field, robots, ball, score and, on demand, the beliefs of the robots."""
 
 import math
 from collections.abc import Callable, Mapping
@@ -106,7 +106,7 @@ def picture(newest: Callable[[str], Any]) -> Picture | None:
 
 
 def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
-    """The same with what every robot believes about itself and the ball."""
+    """Draws the same with the beliefs of every robot about itself and the ball."""
     truth = newest(TRUTH)
     if truth is None:
         return None

@@ -84,7 +84,7 @@ class BallFinder:
         return _Blob(column, row, area_px, spread_px2)
 
     def _sighting(self, blob: _Blob | None) -> BallSighting | None:
-        """The ball that a blob would be, unless it has not its size and shape."""
+        """Returns the ball at a blob; None if size or shape do not fit."""
         place = None if blob is None else self._locate(blob.column, blob.row)
         if blob is None or place is None or math.hypot(*place[:2]) > self.farthest_m:
             return None

@@ -20,7 +20,7 @@ class LineFinder:
     green: ColourRange
     white: ColourRange
     widest_m: float = 0.4
-    """A longer way over white is no line crossed but one followed, or something else."""
+    """A longer way over white is not a crossing of a line."""
 
     narrowest_m: float = 0.05
     """A shorter one is a speck, unless pixels are too coarse there to tell."""

@@ -1,4 +1,4 @@
-"""From pixels to metres: what an error in the picture means on the ground."""
+"""Errors on the ground that follow from errors in the picture."""
 
 import math
 

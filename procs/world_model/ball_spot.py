@@ -1,4 +1,4 @@
-"""Says where on the field the camera alone sees the ball: each sighting through the tree of frames of its time."""
+"""Position of the ball on the field by the camera alone, through the tree of frames at the time of the sighting."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from lcmtypes.soccer import ball_percept_t, ball_spot_t
 
 
 class BallSpot(Component):
-    """For looking at how well camera and localization go together; nothing depends on it."""
+    """Shows how well camera and localization agree; no other component reads its output."""
 
     stage = "think"
     ball_percept: Reads[ball_percept_t]
@@ -34,7 +34,7 @@ class BallSpot(Component):
         self.ball_spot.write()
 
     def _tell(self, error: TransformError) -> None:
-        """Each kind of trouble once, until it is over."""
+        """Logs each kind of failure once, until it is over."""
         kind = type(error).__name__
         if kind != self._trouble:
             self.log.warning(f"no spot of the ball: {error}")

@@ -33,7 +33,7 @@ class Machine:
         self._ended: Step | None = None
 
     def step(self, command_id: int, name: str, scene: Scene) -> Step:
-        """Goes on by one tick of the command."""
+        """Runs one tick of the command."""
         if command_id != self._command_id and (name != self._name or self._ended):
             self._skill, self._ended = (SKILLS[name]() if name in SKILLS else None), None
             if self._skill is None:

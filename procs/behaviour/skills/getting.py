@@ -40,7 +40,7 @@ class _Capture(Skill):
 
 
 class GetBall(_Capture):
-    """Drives to the ball, mouth first; if an opponent has it, from the side of the own goal, to stop it.
+    """Drives to the ball, mouth first; if an opponent has the ball, from the side of the own goal.
 
     A set piece's ball it takes from behind, so that it can play at once.
     """

@@ -11,7 +11,7 @@ _WIDE_M = 0.6  # a shot that passes the post further away is let go
 
 
 class KeepGoal(Skill):
-    """Moves along a line before the goal: where a shot comes, else where it covers the goal best."""
+    """Moves along a line before the goal: to the path of a shot, else to the place that covers the goal best."""
 
     lasting = True
 

@@ -5,10 +5,13 @@ from abc import abstractmethod
 
 from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
+from procs.behaviour.view import Robot
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, clamp, wrap_rad
 
-_LOST_S = 0.3  # the light barrier may miss the ball so long before it counts as lost
+_LOST_S = 0.3  # a ball that the light barrier misses for longer is lost
+_MOUTH_M = 0.33  # from the robot's middle to the middle of the ball in the mouth
+_LEAST_KICK_M_S = 1.0
 _DRIBBLE_M_S = 2.7
 _THERE_M = 0.3
 _SHOT_M_S = 11.0
@@ -29,7 +32,7 @@ class _WithBall(Skill):
 
     @abstractmethod
     def _play(self, scene: Scene) -> Step:
-        """What to do with the ball."""
+        """Returns the next step with the ball."""
 
 
 class Dribble(_WithBall):
@@ -45,11 +48,15 @@ class Dribble(_WithBall):
 
 
 class _Kick(_WithBall):
-    """Turns with the ball until it points at the place, allows for its own motion, and kicks."""
+    """Turns with the ball until a kick sends it to the place, and kicks.
+
+    The ball keeps the velocity of the mouth, which the robot's own drive and turn give to it; the kick adds what is
+    missing to the wanted velocity.
+    """
 
     _TIMEOUT_S = 3.0
     _LEAD_S = 0.04  # from the view to the kick
-    _WAIT_S = 0.15  # for the kicker's answer, before it is asked again
+    _WAIT_S = 0.15  # for the kicker's report, before the kick is asked for again
     _BRAKE_M_S2 = 3.0
 
     def __init__(self) -> None:
@@ -67,11 +74,11 @@ class _Kick(_WithBall):
 
     @abstractmethod
     def _speed_m_s(self, distance_m: float) -> float:
-        """Of the ball, to get so far."""
+        """Returns the speed over the ground at which the ball leaves for a place that far away."""
 
     @abstractmethod
     def _tolerance_rad(self, distance_m: float) -> float:
-        """How well the robot has to point there."""
+        """Returns the largest error of the heading at that distance."""
 
     def _await(self, scene: Scene) -> Step:
         self._asked_s += scene.duration_s
@@ -88,16 +95,19 @@ class _Kick(_WithBall):
         self._running_s += scene.duration_s
         if self._running_s > self._TIMEOUT_S:
             return failed("could not aim in time")
-        way_rad = bearing_rad(own.place, scene.place)
-        aside_m_s = own.velocity_m_s.y_m * math.cos(way_rad) - own.velocity_m_s.x_m * math.sin(way_rad)
-        wanted_rad = wrap_rad(way_rad - math.asin(clamp(aside_m_s / speed_m_s, -0.5, 0.5)))
-        turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if self._running_s > 0.06 else 0.0
+        known = not math.isnan(self._heading_rad)
+        turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
         self._heading_rad = own.heading_rad
+        ball = ahead(own.place, own.heading_rad, _MOUTH_M)
+        way_rad = bearing_rad(ball, scene.place)
+        mouth_m_s = _mouth_velocity_m_s(own, turn_rad_s)
+        missing = Point(speed_m_s * math.cos(way_rad) - mouth_m_s.x_m, speed_m_s * math.sin(way_rad) - mouth_m_s.y_m)
+        wanted_rad, kick_m_s = math.atan2(missing.y_m, missing.x_m), max(_LEAST_KICK_M_S, math.hypot(*missing))
         off_rad = wrap_rad(wanted_rad - own.heading_rad - turn_rad_s * self._LEAD_S)
-        patience = 1.0 + self._running_s  # better a poor kick than none
+        patience = 1.0 + self._running_s  # a poor kick is better than none
         if abs(off_rad) < self._tolerance_rad(distance_m) * patience and scene.charged and scene.holds_ball:
             self._kick = scene.kicks_asked + 1
-            return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=speed_m_s)
+            return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
         return Step(self._turn(scene, wanted_rad), dribble=True)
 
     def _turn(self, scene: Scene, heading_rad: float) -> Drive:
@@ -127,3 +137,12 @@ class Pass(_Kick):
 
     def _tolerance_rad(self, _distance_m: float) -> float:
         return 0.05
+
+
+def _mouth_velocity_m_s(own: Robot, turn_rad_s: float) -> Point:
+    """Returns the velocity of the ball in the mouth of a robot that drives and turns."""
+    turning_m_s = turn_rad_s * _MOUTH_M
+    return Point(
+        own.velocity_m_s.x_m - turning_m_s * math.sin(own.heading_rad),
+        own.velocity_m_s.y_m + turning_m_s * math.cos(own.heading_rad),
+    )

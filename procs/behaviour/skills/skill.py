@@ -1,4 +1,4 @@
-"""What every skill gets and gives: a scene goes in, a step comes out, once a tick; attack frame."""
+"""Interface of the skills: once a tick a scene goes in and a step comes out; attack frame."""
 
 from abc import ABC, abstractmethod
 from enum import IntEnum
@@ -18,7 +18,7 @@ class Status(IntEnum):
 
 
 class Scene(NamedTuple):
-    """Everything a skill may look at."""
+    """Input of a skill."""
 
     view: View
     place: Point
@@ -51,7 +51,7 @@ class Drive(NamedTuple):
 
 
 class Step(NamedTuple):
-    """What a skill wants now; without a drive the robot stops."""
+    """Output of a skill; without a drive the robot stops."""
 
     drive: Drive | None = None
     dribble: bool = False
@@ -70,8 +70,8 @@ class Skill(ABC):
     """One skill from its start to its end; a fresh object for every new command of another kind."""
 
     lasting = False
-    """Goes on after it has reached its end, to stay there."""
+    """True if the skill goes on at its end, to keep its place."""
 
     @abstractmethod
     def step(self, scene: Scene) -> Step:
-        """Goes on by one tick."""
+        """Runs one tick."""

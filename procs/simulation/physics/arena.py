@@ -1,4 +1,4 @@
-"""What stands still: the low wall around the field, and the goals with posts and nets."""
+"""Static bodies: the low wall around the field, and the goals with posts and nets."""
 
 import pymunk
 

@@ -1,4 +1,4 @@
-"""Notes who touches the ball and which robots collide, whatever the order in which the physics engine tells it."""
+"""Touches of the ball and collisions of robots, in an order that does not depend on the physics engine."""
 
 from typing import Any
 

@@ -27,7 +27,7 @@ class Drive:
         self._measured_s = 0.0
 
     def command(self, wheels_m_s: Wheels, now_us: int) -> None:
-        """Rim speeds wanted; the motors begin to follow after the delay. What is no number stops its wheel."""
+        """Rim speeds wanted; the motors begin to follow after the delay. NaN stops its wheel."""
         limit = self._robot.wheel_limit_m_s
         first, second, third = (min(limit, max(-limit, 0.0 if math.isnan(speed) else speed)) for speed in wheels_m_s)
         self._line.put((first, second, third), now_us)

@@ -1,4 +1,4 @@
-"""What a tick of the world tells the referee: goals, balls out of the field, touches, kicks, collisions."""
+"""Events of a tick for the referee: goals, balls out of the field, touches, kicks, collisions."""
 
 from enum import IntEnum
 from typing import NamedTuple
@@ -37,7 +37,7 @@ class LineJudge:
         self._radius_m = ball_radius_m
 
     def judge(self, x_m: float, y_m: float) -> Kind | None:
-        """What happened, seeing that the ball is now here: a goal, out, or nothing."""
+        """Returns the event of a ball that is now here: a goal, out, or None."""
         was_in_field = self.ball_in_field
         self.ball_in_field = self._field.in_field(x_m, y_m, self._radius_m)
         if self.ball_in_field or not was_in_field:

@@ -15,7 +15,7 @@ _RELEASE_US = 100_000  # after a kick the handling wheels stand still, so that t
 
 
 class KickerCommand(NamedTuple):
-    """What the driver asks for; a new `kick_id` with a speed above 0 is a new kick."""
+    """Command of the driver; a new `kick_id` with a speed above 0 is a new kick."""
 
     kick_id: int
     speed_m_s: float
@@ -23,7 +23,7 @@ class KickerCommand(NamedTuple):
 
 
 class Push(NamedTuple):
-    """What a kicker does to the ball in a step."""
+    """Effect of a kicker on the ball in a step."""
 
     change_m_s: pymunk.Vec2d
     """Of the ball's velocity, world frame."""

@@ -1,4 +1,4 @@
-"""What happens at a robot's mouth: ball handling, the light barrier and the kick."""
+"""Mouth of a robot: ball handling, light barrier and kick."""
 
 import math
 
@@ -22,7 +22,7 @@ class Mouth:
 
     @property
     def holds_ball(self) -> bool:
-        """Whether the ball lies in the mouth: what the light barrier sees."""
+        """True if the light barrier sees the ball in the mouth."""
         away = self._ball.body.position - self._robot.body.position
         if away.dot(away) > self._far_m**2:
             return False

@@ -1,4 +1,4 @@
-"""Puts what the world knows into messages."""
+"""Fills the messages of the simulator."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What a robot's wheel encoders and compass say, with their errors."""
+"""Readings of a robot's wheel encoders and compass, with their errors."""
 
 import math
 

@@ -34,7 +34,7 @@ class World:
         noise: Noise | None = None,
         starts: Mapping[str, Pose] | None = None,
     ) -> None:
-        """`robots` are names like `cyan1`; who is not in `starts` begins at the default place of its number."""
+        """`robots` are names like `cyan1`; those without a start in `starts` begin at default places."""
         self.time_us = 0
         self.last_touch = ""
         """Robot that touched the ball last since it was placed."""
@@ -75,26 +75,25 @@ class World:
         self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
 
     def advance(self, duration_us: int) -> list[Event]:
-        """Moves the world on; returns what happened, sorted by kind and robot."""
+        """Moves the world on; returns the events, sorted by kind and robot."""
         steps = max(1, math.ceil(duration_us / (self._physics.step_s * 1e6)))
         start_us = self.time_us
-        touched: set[str] = set()
-        events = []
+        touched: dict[str, Event] = {}
+        events: list[Event] = []
         for step in range(steps):
             self.time_us = start_us + duration_us * step // steps
             events += self._step(duration_us / steps / 1e6, touched)
         self.time_us = start_us + duration_us
-        events += [self._ball_event(Kind.TOUCH, robot) for robot in touched]
-        return sorted(events + self._contacts.take_collisions())
+        return sorted([*events, *touched.values(), *self._contacts.take_collisions()])
 
-    def _step(self, duration_s: float, touched: set[str]) -> list[Event]:
+    def _step(self, duration_s: float, touched: dict[str, Event]) -> list[Event]:
         pushes: dict[str, Push] = {}
         for name, robot in self.robots.items():
             robot.move(self.time_us, duration_s)
             push = self.kickers[name].act(self.time_us, duration_s)
             if push is not None:
                 pushes[name] = push
-        # All push the ball as it was before the step, so that none of two rivals has the last word.
+        # All pushes act on the ball as it was before the step, so that the order of two rivals does not matter.
         for push in pushes.values():
             self.ball.body.velocity += push.change_m_s
         events = [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
@@ -103,7 +102,7 @@ class World:
         touching = self._contacts.take_touches() | pushes.keys()
         if touching:
             self.last_touch = min(touching, key=self._distance_to_ball)
-            touched |= touching
+            touched |= {robot: self._ball_event(Kind.TOUCH, robot) for robot in touching}
         call = self._judge.judge(*self.ball.body.position)
         if call is not None:
             events.append(self._ball_event(call, self.last_touch))

@@ -1,4 +1,4 @@
-"""The field seen from straight above: a texture with green, white lines and marks, and what lies around it."""
+"""The field seen from straight above: a texture of the carpet, its lines and marks, and the floor around it."""
 
 import math
 from collections.abc import Iterable

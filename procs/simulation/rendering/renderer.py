@@ -108,7 +108,7 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def _masks(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, Picture]:
-    """What never changes: the robot's own body in the middle, nothing outside the round mirror; made once a process."""
+    """Fixed parts of a frame: the robot's own body in the middle, black outside the mirror; made once a process."""
     from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
     radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
     bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)

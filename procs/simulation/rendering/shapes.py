@@ -1,4 +1,4 @@
-"""Outlines of what stands on the field, as points in the robot frame; many bodies of one kind at once."""
+"""Outlines of bodies on the field, as points in the robot frame; many bodies of one kind at once."""
 
 import math
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ _FRONT_RAD = np.linspace(-1.1, 1.1, 8)  # the part of a round body that can be s
 
 @dataclass(frozen=True)
 class Bodies:
-    """Sizes of what stands and lies on the field, metres."""
+    """Sizes of robots and ball, metres."""
 
     robot_radius_m: float = 0.25
     robot_height_m: float = 0.6

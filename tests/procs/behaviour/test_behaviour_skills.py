@@ -183,3 +183,31 @@ def test_a_skill_that_does_not_exist_fails_and_says_which_do() -> None:
     assert step.status is Status.FAILED
     assert "juggle" in step.reason
     assert all(name in step.reason for name in SKILLS)
+
+
+@pytest.mark.parametrize(("speed_m_s", "omega_rad_s"), [(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)])
+def test_kick_allows_for_the_motion_of_the_mouth(speed_m_s: float, omega_rad_s: float) -> None:
+    """The ball leaves with the velocity of the mouth, omega x r included, plus the kick."""
+    skill, period_s, target = Shoot(), 0.05, Point(8.0, 0.0)
+    for tick in range(60):
+        heading_rad = -omega_rad_s + omega_rad_s * period_s * tick
+        own = OWN._replace(heading_rad=heading_rad, velocity_m_s=Point(0.0, speed_m_s))
+        mouth = Point(0.33 * math.cos(heading_rad), 0.33 * math.sin(heading_rad))
+        step = skill.step(scene(view(own, ball(*mouth)), *target, holds_ball=True))
+        if not step.kick_m_s:
+            continue
+        kicked_rad = heading_rad + omega_rad_s * 0.04  # the kicker fires a little later
+        vx_m_s = step.kick_m_s * math.cos(kicked_rad) - 0.33 * omega_rad_s * math.sin(kicked_rad)
+        vy_m_s = step.kick_m_s * math.sin(kicked_rad) + 0.33 * omega_rad_s * math.cos(kicked_rad) + speed_m_s
+        way_rad = math.atan2(target.y_m - mouth.y_m, target.x_m - mouth.x_m)
+        assert math.atan2(vy_m_s, vx_m_s) == pytest.approx(way_rad, abs=0.06)
+        assert math.hypot(vx_m_s, vy_m_s) == pytest.approx(11.0, rel=0.05)
+        return
+    pytest.fail("a robot that turns through the right heading kicks")
+
+
+def test_kick_is_weaker_while_driving_at_the_target() -> None:
+    skill = Shoot()
+    driving = OWN._replace(velocity_m_s=Point(2.0, 0.0))
+    kicks = [skill.step(scene(view(driving, ball(0.33, 0.0)), holds_ball=True)).kick_m_s for _ in range(3)]
+    assert max(kicks) == pytest.approx(9.0)

@@ -11,9 +11,11 @@ from fwk.testing import Bench
 from procs.localization.global_search import GlobalSearch
 from procs.localization.line_map import LineMap, line_map
 from procs.localization.line_matching import LinePoints, match
-from procs.localization.localization import Localization
+from procs.localization.localization import Localization, LocalizationConfig
+from procs.localization.pose_filter import PoseFilter
 from procs.model.field import Field
 from procs.model.frames import rotation, wrap
+from tests.procs.launched import launched_settings
 
 Floats = NDArray[np.float64]
 FIELD = Field()
@@ -364,3 +366,69 @@ def test_settings_changed_while_it_runs_count_from_the_next_frame() -> None:
     robot.pose = np.array((-6.0, -2.0, 0.0))
     frames(bench, robot, 40)
     assert not any(frames(bench, robot, 40)), "no picture is that good"
+
+
+@pytest.mark.parametrize("parity", [0, 1])
+def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> None:
+    """Cameras take turns: a robot may get its frames in even or in odd ticks only."""
+    bench, robot = Bench(Localization, **launched_settings("soccer.yaml", "cyan1/localization")), FakeRobot(3)
+    robot.pose = np.array((-5.0, 2.0, 0.3))
+    known: list[bool] = []
+    for tick in range(240):
+        if tick == 100:
+            robot.pose = np.array((4.0, -3.0, 0.3))
+        robot.drive(np.zeros(3))
+        robot.show(bench)
+        if tick % 2 != parity:
+            bench.port("line_points").waiting.clear()
+        bench.iterate()
+        known.append(bench.port("pose").sent[-1].localized)
+    assert known[99]
+    assert not all(known[100:180]), "carried 10 m away"
+    assert known[-1]
+    assert np.hypot(*robot.error(bench)[:2]) < 0.3
+
+
+def test_robot_without_compass_is_declared_lost() -> None:
+    start = {"start_x_m": -5.0, "start_y_m": 2.0, "start_heading_rad": 0.3}
+    bench, robot = Bench(Localization, **launched_settings("soccer.yaml", "cyan1/localization") | start), FakeRobot(4)
+    known: list[bool] = []
+    for tick in range(200):
+        robot.pose = np.array((-5.0, 2.0, 0.3) if tick < 60 else (4.0, -3.0, 0.3))
+        robot.drive(np.zeros(3))
+        robot.show(bench)
+        bench.port("imu").waiting.clear()
+        bench.iterate()
+        known.append(bench.port("pose").sent[-1].localized)
+    assert all(known[10:60])
+    assert not known[-1]
+
+
+def test_live_setting_keeps_the_pose_and_the_compass_offset() -> None:
+    bench, robot = Bench(Localization), FakeRobot(5)
+    robot.pose = np.array((-5.0, 2.0, 0.3))
+    frames(bench, robot, 100)
+    localizer = bench.component._localizer
+    before = localizer.covariance.tolist(), localizer.compass_offset_rad
+    bench.component.config = LocalizationConfig(points=80)
+    bench.component.config_changed()
+    localizer = bench.component._localizer
+    assert (localizer.covariance.tolist(), localizer.compass_offset_rad) == before
+
+
+def test_heading_stays_within_half_a_turn_while_searching() -> None:
+    bench, robot = Bench(Localization), FakeRobot(6)
+    robot.pose = np.array((-5.0, 2.0, 3.1))
+    for _ in range(12):
+        frames(bench, robot, 1)
+        assert abs(bench.port("pose").sent[-1].heading_rad) <= math.pi
+
+
+def test_filter_does_not_depend_on_the_length_of_a_tick() -> None:
+    deviations = []
+    for ticks in (20, 100):
+        pose_filter = PoseFilter(np.zeros(3), (0.01, 0.01, 0.01))
+        for _ in range(ticks):
+            pose_filter.predict(2.0 / ticks, 0.0, 0.5 / ticks, 1.0 / ticks)
+        deviations.append(np.sqrt(np.diag(pose_filter.covariance)))
+    assert deviations[0] == pytest.approx(deviations[1], rel=0.1)

@@ -58,3 +58,10 @@ def test_posts_leave_the_goal_width_free() -> None:
 def test_unknown_measures_are_refused() -> None:
     with pytest.raises(ValidationError, match="lenght_m"):
         Field.model_validate({"lenght_m": 18.0})
+
+
+def test_ball_is_never_dropped_at_a_penalty_mark() -> None:
+    field = Field()
+    spots = field.restart_spots()
+    assert len(spots) == 7
+    assert not {field.penalty_mark(side) for side in SIDES} & set(spots)

@@ -292,3 +292,13 @@ def test_a_goal_can_follow_a_goal_after_the_ball_was_placed() -> None:
         world.place_ball(10.0, 0.0)
         shoot(world, 4.0)
         assert [event.kind for event in run(world, 20)] == [Kind.GOAL]
+
+
+def test_touch_is_reported_where_it_happened() -> None:
+    """A ball that is kicked at the beginning of a tick is far away at its end."""
+    world = ball_in_mouth()
+    kick(world, "cyan1", 11.0)
+    (touch, _) = run(world, 1)
+    assert touch.kind is Kind.TOUCH
+    assert touch.x_m == pytest.approx(IN_MOUTH_M, abs=0.1)
+    assert world.ball.body.position.x > IN_MOUTH_M + 0.4
