@@ -134,8 +134,8 @@ def _packets(connection: socket.socket, idle_s: float, keyboard: Keyboard | None
     """
     while True:
         keys = keyboard.descriptors if keyboard else []
-        ready, _, _ = select.select([connection, *keys], [], [], idle_s)
-        if connection not in ready:
+        ready, _, _ = select.select([connection.fileno(), *keys], [], [], idle_s)
+        if connection.fileno() not in ready:
             yield b""
             continue
         try:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from fwk.cli.output import say_table
-from fwk.cli.run.run_directory import KEEP, RUNS, RunDir, prune, run_dirs
+from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, prune, run_dirs
 from fwk.cli.run.run_record import RunRecord, age_s, read_record
 from fwk.cli.run_options import BAD_INPUT, Json
 from fwk.clock import US_PER_S
@@ -17,7 +17,6 @@ from fwk.display.table import Column, Table
 from fwk.model.errors import hint
 from fwk.model.plan import RunsPlan
 
-GB = 1_000_000_000
 _MB = 1_000_000
 
 runs = typer.Typer(add_completion=False, no_args_is_help=True)

@@ -8,8 +8,8 @@ import typer
 from fwk.cli.arguments import folder, video_file
 from fwk.cli.output import BAD_INPUT, INTERRUPTED
 from fwk.cli.recordings.find_log import failing, find_log
-from fwk.cli.recordings.rendering import render
 from fwk.cli.recordings.user_folders import use_folders
+from fwk.cli.run.rendering import render
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.video import VideoError, drawing
 

@@ -14,11 +14,10 @@ from fwk.bus.port_lock import PortLock
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.output import BAD_INPUT
-from fwk.cli.recordings.runs import GB
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
 from fwk.cli.run.profile import write_profiles
-from fwk.cli.run.run_directory import RunDirError, make_run_dir, prune
+from fwk.cli.run.run_directory import GB, RunDirError, make_run_dir, prune
 from fwk.cli.run.run_files import write_run_files
 from fwk.cli.run.run_record import write_result, write_start
 from fwk.control.client import look
@@ -215,7 +214,7 @@ def _check_video(plan: Plan, video: Path | None) -> None:
 
 
 def _draw(plan: Plan, record: Path, video: Path) -> None:
-    from fwk.cli.recordings.rendering import render  # imports OpenCV, only with --video
+    from fwk.cli.run.rendering import render  # imports OpenCV, only with --video
     from fwk.recording.video import VideoError, drawing
 
     try:

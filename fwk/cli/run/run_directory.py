@@ -16,6 +16,7 @@ RUNS = Path(".cache", "fwk", "runs")
 """Below the home folder."""
 IN_USE = "in-use"
 """A file in a run directory that every process of the run holds locked."""
+GB = 1_000_000_000
 KEEP = "keep"
 """A file that somebody puts into a run directory that is not to be removed by itself."""
 _NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
