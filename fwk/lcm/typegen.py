@@ -1,23 +1,21 @@
 """Generates Python classes and type stubs from .lcm files with lcm-gen."""
 
 import hashlib
-import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import lcm
 
-_STRUCT = re.compile(r"struct\s+(\w+)\s*\{(.*?)\}", re.S)
-_PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.S)
-_MEMBER = re.compile(r"^([\w.]+)\s+(\w+)((?:\s*\[\s*\w+\s*\])*)$")
-_INTEGERS = {"int8_t", "int16_t", "int32_t", "int64_t"}
+from fwk.lcm.lcm_file import INTEGERS, LcmFile, LcmSyntaxError, Member, Struct, read_lcm_file
+from fwk.lcm.type_mistakes import mistakes_in
+
 _PRIMITIVES = {
-    **dict.fromkeys(_INTEGERS, "int"),
+    **dict.fromkeys(INTEGERS, "int"),
+    "byte": "int",
     "float": "float",
     "double": "float",
     "string": "str",
@@ -65,7 +63,7 @@ _METHODS = """        if members:
 
 
 class TypeGenerationError(Exception):
-    """lcm-gen refused a file; the text is lcm-gen's own, with file and line."""
+    """.lcm files of which no classes can be made; each line of the text is a mistake, with file and line."""
 
 
 def lcm_gen() -> Path:
@@ -81,79 +79,71 @@ def generate(folder: Path) -> list[Path]:
     that no longer exist are removed.
 
     Raises:
-        TypeGenerationError: a file does not parse, lcm-gen cannot be run, or `folder`/__init__.py exists.
+        TypeGenerationError: a file has mistakes, lcm-gen cannot be run, or `folder`/__init__.py exists.
         OSError: the folder cannot be written.
     """
-    texts = {source: _text_of(source) for source in sorted(folder.glob("*.lcm"))}
-    packages = {source: folder / _package_of(source, text).replace(".", "/") for source, text in texts.items()}
-    marks = {packages[source] / f".{source.stem}.generated": _mark(text) for source, text in texts.items()}
-    if texts and (folder / "__init__.py").exists():
+    files = _read(sorted(folder.glob("*.lcm")))
+    if files and (folder / "__init__.py").exists():
         raise TypeGenerationError(
             f"{folder / '__init__.py'}: this file hides all other message types; remove it, because '{folder.name}' "
             "is a package of several folders"
         )
+    if mistakes := mistakes_in(files):
+        raise TypeGenerationError("\n".join(mistakes))
+    packages = {file.path: folder / file.package.replace(".", "/") for file in files}
+    marks = {packages[file.path] / f".{file.path.stem}.generated": _mark(file.text) for file in files}
     found = {mark: mark.read_text() for mark in folder.rglob(".*.generated")}
     if found != marks:
-        _write_all(folder, texts, packages)
+        _write_all(folder, files, packages)
         for mark in found.keys() - marks.keys():
             mark.unlink(missing_ok=True)
         for mark, content in marks.items():
             mark.write_text(content)
-        _remove_stale(folder, {mark.parent for mark in found}, packages.values())
+        wanted = {packages[file.path] / f"{struct.name}.py" for file in files for struct in file.structs}
+        _remove_stale({mark.parent for mark in found}, set(packages.values()), wanted)
     return list(dict.fromkeys(packages.values()))
 
 
-def _text_of(source: Path) -> str:
-    data = source.read_bytes()
-    try:
-        return data.decode()
-    except UnicodeDecodeError as error:
-        line = data[: error.start].count(b"\n") + 1
-        byte = data[error.start]
-        raise TypeGenerationError(f"{source}:{line}: byte 0x{byte:02x} is not UTF-8; save the file as UTF-8") from error
-
-
-def _package_of(source: Path, text: str) -> str:
-    found = _PACKAGE.search(text)
-    if not found:
-        raise TypeGenerationError(f"{source}:1: no 'package NAME;' line; every .lcm file names its package")
-    return found[1]
+def _read(sources: Iterable[Path]) -> list[LcmFile]:
+    files, mistakes = [], []
+    for source in sources:
+        try:
+            files.append(read_lcm_file(source))
+        except LcmSyntaxError as error:
+            mistakes.append(str(error))
+    if mistakes:
+        raise TypeGenerationError("\n".join(mistakes))
+    return files
 
 
 def _mark(text: str) -> str:
     return hashlib.sha256(f"{VERSION}\n{text}".encode()).hexdigest()
 
 
-def _write_all(folder: Path, texts: dict[Path, str], packages: dict[Path, Path]) -> None:
+def _write_all(folder: Path, files: Sequence[LcmFile], packages: Mapping[Path, Path]) -> None:
     """Generates the classes in a folder of their own and moves them into place, so that readers see whole files."""
     with tempfile.TemporaryDirectory(dir=folder, prefix=".generating-") as made:
-        for source, text in texts.items():
-            _run_lcm_gen(source, Path(made))
-            package = Path(made) / _FOLDER / packages[source].relative_to(folder)
-            _complete(package, text)
-        for file in sorted((Path(made) / _FOLDER).rglob("*")):
-            target = folder / file.relative_to(Path(made) / _FOLDER)
-            if file.is_dir():
+        root = Path(made) / _FOLDER
+        for file in files:
+            _run_lcm_gen(file.path, Path(made))
+            _complete(root / packages[file.path].relative_to(folder), file.structs)
+        for path in sorted(root.rglob("*")):
+            target = folder / path.relative_to(root)
+            if path.is_dir():
                 target.mkdir(exist_ok=True)
-            elif file.parent != Path(made) / _FOLDER:  # lcm-gen writes an __init__.py that would end the namespace
-                file.replace(target)
+            elif path.parent != root:  # lcm-gen writes an __init__.py that would end the namespace
+                path.replace(target)
 
 
-def _remove_stale(folder: Path, before: set[Path], packages: Iterable[Path]) -> None:
+def _remove_stale(before: set[Path], packages: set[Path], wanted: set[Path]) -> None:
     """Removes classes that lcm-gen wrote once and that no .lcm file defines any more, and packages left empty."""
-    wanted = {
-        package / f"{name}.py"
-        for package in packages
-        for source in folder.glob("*.lcm")
-        if (text := source.read_text()) and folder / _package_of(source, text).replace(".", "/") == package
-        for name, _ in _STRUCT.findall(_COMMENT.sub("", text))
-    } | {package / "__init__.py" for package in packages}
-    for package in {*before, *packages}:
+    for package in before | packages:
+        kept = wanted | ({package / "__init__.py"} if package in packages else set())
         for file in package.glob("*.py"):
-            if file not in wanted and _GENERATED in file.read_text(errors="replace")[:200]:
+            if file not in kept and _GENERATED in file.read_text(errors="replace")[:200]:
                 file.unlink(missing_ok=True)
                 file.with_suffix(".pyi").unlink(missing_ok=True)
-        if package not in set(packages) and not list(package.glob("*.py")):
+        if package not in packages and not list(package.glob("*.py")):
             shutil.rmtree(package, ignore_errors=True)
 
 
@@ -164,56 +154,41 @@ def _run_lcm_gen(source: Path, into: Path) -> None:
     except OSError as error:
         raise TypeGenerationError(f"{source}: cannot run {command[0]}: {error}") from error
     if result.returncode:
-        raise TypeGenerationError(f"{source}: {(result.stderr or result.stdout).strip()}")
+        reason = " ".join((result.stderr or result.stdout).split())
+        raise TypeGenerationError(f"{source}: {reason}")
 
 
-def _complete(package: Path, text: str) -> None:
+def _complete(package: Path, structs: Iterable[Struct]) -> None:
     """Adds stubs and the mark of a typed package; gives the classes keyword arguments and a readable text."""
     (package / "py.typed").touch()
-    for name, body in _STRUCT.findall(_COMMENT.sub("", text)):
-        file = package / f"{name}.py"
-        code = file.read_text()
-        code = code.replace(_PLAIN_INIT, "    def __init__(self, **members):\n", 1)
-        file.write_text(code.replace(_ENCODE, _METHODS.replace("NAME", name) + _ENCODE, 1))
-        constants, members, imports = _members(package.name, body)
-        lines = ["from typing import ClassVar", "", *sorted(imports - {_import(package.name, name)}), ""]
-        lines += [f"class {name}:", *_STUB_ATTRIBUTES]
-        lines += [f"    {constant}: ClassVar[{kind}]" for constant, kind in constants]
-        lines += [f"    {member}: {kind}" for member, kind in members]
-        arguments = "".join(f", {member}: {kind} = ..." for member, kind in members)
-        lines += [f"    def __init__(self{', *' if members else ''}{arguments}) -> None: ..."]
-        lines += [method.replace("NAME", name) for method in _STUB_METHODS]
-        (package / f"{name}.pyi").write_text("\n".join(lines))
+    for struct in structs:
+        file = package / f"{struct.name}.py"
+        code = file.read_text().replace(_PLAIN_INIT, "    def __init__(self, **members):\n", 1)
+        file.write_text(code.replace(_ENCODE, _METHODS.replace("NAME", struct.name) + _ENCODE, 1))
+        (package / f"{struct.name}.pyi").write_text(_stub(struct))
 
 
-def _members(own: str, body: str) -> tuple[list[tuple[str, str]], list[tuple[str, str]], set[str]]:
-    constants, members, imports = [], [], set()
-    for statement in body.split(";"):
-        words = " ".join(statement.split())
-        if words.startswith("const "):
-            kind, rest = words[6:].split(" ", 1)
-            constants += [(part.split("=")[0].strip(), _PRIMITIVES[kind]) for part in rest.split(",")]
-            continue
-        found = _MEMBER.match(words)
-        if not found:
-            continue
-        lcm_type, member, dimensions = found.groups()
-        depth = dimensions.count("[")
-        if lcm_type == "byte":
-            kind, depth = ("int", 0) if depth == 0 else ("bytes", depth - 1)
-        elif lcm_type in _PRIMITIVES:
-            kind = _PRIMITIVES[lcm_type]
-        else:
-            package, _, kind = lcm_type.rpartition(".")
-            imports.add(_import(package or own, kind))
-        for _ in range(depth):
-            kind = f"list[{kind}]"
-        members.append((member, kind))
-    return constants, members, imports
+def _stub(struct: Struct) -> str:
+    members = [(member.name, _python_type(member)) for member in struct.members]
+    types = {struct.full_type(member) for member in struct.members} - {*_PRIMITIVES, struct.full_name}
+    imports = sorted(f"from lcmtypes.{name} import {name.rpartition('.')[2]}" for name in types)
+    arguments = "".join(f", {name}: {kind} = ..." for name, kind in members)
+    lines = [
+        *("from typing import ClassVar", "", *imports, "", f"class {struct.name}:", *_STUB_ATTRIBUTES),
+        *(f"    {constant.name}: ClassVar[{_PRIMITIVES[constant.type]}]" for constant in struct.constants),
+        *(f"    {name}: {kind}" for name, kind in members),
+        f"    def __init__(self{', *' if members else ''}{arguments}) -> None: ...",
+        *(method.replace("NAME", struct.name) for method in _STUB_METHODS),
+    ]
+    return "\n".join(lines)
 
 
-def _import(package: str, name: str) -> str:
-    return f"from lcmtypes.{package}.{name} import {name}"
+def _python_type(member: Member) -> str:
+    kind = _PRIMITIVES.get(member.type, member.type.rpartition(".")[2])
+    depth = len(member.dimensions)
+    if member.type == "byte" and depth:
+        kind, depth = "bytes", depth - 1
+    return f"{'list[' * depth}{kind}{']' * depth}"
 
 
 def main() -> None:

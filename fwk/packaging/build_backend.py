@@ -1,7 +1,8 @@
 """The project's build backend: setuptools, with the LCM types generated first and no leftovers of earlier builds."""
 
-import importlib.util
+import importlib
 import shutil
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -37,10 +38,9 @@ def build_editable(
 
 
 def _generate_types() -> None:
-    # Loaded by its path: importing fwk needs the very types that are generated here, and libraries that a build lacks.
-    spec = importlib.util.spec_from_file_location("typegen", ROOT / "fwk" / "lcm" / "typegen.py")
-    assert spec
-    assert spec.loader
-    typegen = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(typegen)
-    typegen.generate(ROOT / "lcmtypes")
+    sys.path.insert(0, str(ROOT))
+    try:
+        generate = importlib.import_module("fwk.lcm.typegen").generate
+        generate(ROOT / "lcmtypes")
+    finally:
+        sys.path.remove(str(ROOT))

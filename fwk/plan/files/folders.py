@@ -12,7 +12,6 @@ from fwk.plan.files.launch_file import FOLDER, INSTALLED, shown
 from fwk.plan.packages import component_packages
 
 _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
-_LINE = re.compile(r" : (\d+)$", re.M)
 
 
 def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
@@ -49,11 +48,12 @@ def join(folders: Sequence[str], problems: Problems) -> None:
     importlib.invalidate_caches()
 
 
-def _tell(refusal: str, problems: Problems) -> None:
-    """What lcm-gen said: `FILE: REASON`, then `FILE : LINE`, then the line itself."""
-    file, _, reason = refusal.splitlines()[0].partition(": ")
-    line = _LINE.search(refusal)
-    problems.add(f"{shown(Path(file))}:{line[1]}" if line else shown(Path(file)), "", reason)
+def _tell(mistakes: str, problems: Problems) -> None:
+    """Takes the lines of a `TypeGenerationError`, which are `FILE:LINE: what is wrong`."""
+    for mistake in mistakes.splitlines():
+        place, _, reason = mistake.partition(": ")
+        file, _, line = place.rpartition(":")
+        problems.add(f"{shown(Path(file))}:{line}" if file else shown(Path(place)), "", reason)
 
 
 def _check_package(source: Path, problems: Problems) -> None:

@@ -158,41 +158,6 @@ def test_processes_and_parts(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
 
 
-@rows(
-    Broken(
-        "lcmtypes/mine.lcm:1: the package 'robot' is taken by {lcmtypes}; give these types a package of their own",
-        """
-        components: {a/one: {use: plan_parts:Odometer}}
-        --- lcmtypes/mine.lcm
-        package robot;
-        struct mine_t { core.header_t header; }
-        """,
-    ),
-    Broken(
-        "lcmtypes/mine.lcm:2: Invalid member name: must start with [a-zA-Z_].",
-        """
-        components: {a/one: {use: plan_parts:Odometer}}
-        --- lcmtypes/mine.lcm
-        package mine;
-        struct mine_t { what }
-        """,
-    ),
-    Broken(
-        "lcmtypes/mine.lcm:1: no 'package NAME;' line; every .lcm file names its package",
-        """
-        components: {a/one: {use: plan_parts:Odometer}}
-        --- lcmtypes/mine.lcm
-        struct mine_t { core.header_t header; }
-        """,
-    ),
-)
-def test_types_of_ones_own(folder: Path, broken: Broken) -> None:
-    import lcmtypes.robot
-
-    there = Path(lcmtypes.robot.__file__).parent.parent
-    assert said(broken, folder) == [line.format(lcmtypes=there) for line in expected(broken)]
-
-
 def test_a_file_that_is_not_there(folder: Path) -> None:
     (folder / "launch").mkdir()
     (folder / "launch" / "garden.yaml").write_text("")
