@@ -4,6 +4,7 @@ import operator
 import time
 
 US_PER_S = 1_000_000
+_SILENT_ITERATIONS = 20  # of a time source that has never set the time, before it is reported
 _TIME_MAX_US = 10**18  # of logical time: 30,000 years, so that periods can be added
 SECONDS_MAX = 1e9
 """The longest duration that anybody may ask for, 30 years."""
@@ -48,6 +49,9 @@ class TimeSource:
     def __init__(self) -> None:
         self.said_us = -1
         """For the framework: what was said in this iteration; -1: nothing."""
+        self._was_right = False
+        self._wrong = 0
+        self._silent = 0
 
     @property
     def next_us(self) -> int:
@@ -63,6 +67,25 @@ class TimeSource:
         if not 0 <= said_us <= _TIME_MAX_US:
             raise ValueError(f"next_us is {value!r}; it should be whole microseconds, from 0 to {_TIME_MAX_US}")
         self.said_us = said_us
+
+    def _mistake(self, now_us: int) -> str:
+        """For the framework, after an iteration at `now_us`: what is wrong with `next_us`, to be logged; mostly empty.
+
+        A time that is not after `now_us` is reported the 1st, 10th, 100th time; silence once, after some iterations
+        without any time.
+        """
+        if self.said_us > now_us:
+            self._was_right = True
+        elif self.said_us >= 0:
+            self._wrong += 1
+            if str(self._wrong).strip("0") == "1":
+                said = f"next_us = {self.said_us} is not after this tick's time, {now_us} us"
+                return f"time source: {said}; time goes on by the period instead ({self._wrong} times so far)"
+        elif not self._was_right:
+            self._silent += 1
+            if self._silent == _SILENT_ITERATIONS:
+                return f"time source: next_us was not set in {self._silent} iterations; time goes on by the period"
+        return ""
 
 
 def rate_word(rate_hz: float) -> str:

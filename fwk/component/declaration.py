@@ -2,6 +2,7 @@
 
 import typing
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from functools import cache
 from typing import Any, ClassVar, get_args, get_origin
 
@@ -24,6 +25,8 @@ from lcmtypes.core import log_t
 from lcmtypes.robot import frame_t
 
 RATE_MAX_HZ = 10_000
+_METHODS = ("init", "loop", "finalize", "config_changed")
+_ALIKE = 0.8  # similarity of a misspelt method's name: `lop` is one, `look` is a method of its own
 
 
 @dataclass(frozen=True)
@@ -72,6 +75,7 @@ def _read(component: type[Component]) -> Declaration:
         raise DeclarationError(f"{where}: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous")
     if not stages and rate_hz is None:
         raise DeclarationError(f'{where}: no stage; say for example: stage = "think"')
+    _check_methods(component, where)
     hints = _hints(component, where)
     ports: list[Port] = []
     aspects, asks, config = {}, {}, Config
@@ -100,9 +104,14 @@ def _read(component: type[Component]) -> Declaration:
             if LOG_LEVEL in wish.model_fields:
                 raise DeclarationError(f"{where}: every component has a setting '{LOG_LEVEL}'; call its own otherwise")
             config = wish
+        elif wish in PORT_KINDS:
+            name = wish.__name__
+            types = "request_t, reply_t" if name.startswith(("Serves", "Calls")) else "message_t"
+            right = f"name its type: {attribute}: {name}[{types}]"
+            raise DeclarationError(f"{where}.{attribute}: {name} of which messages? {right}")
         elif get_origin(wish) is not ClassVar and default is None:
             raise DeclarationError(
-                f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is no aspect; "
+                f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is not an aspect; "
                 "annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, Serves, "
                 "ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, LogLines, "
                 "numpy.random.Generator, TimeSource, MainLoop, PluginControl, Blackboard or an Aspect, and set plain "
@@ -128,6 +137,19 @@ def _stages(component: type[Component], where: str) -> tuple[str, ...]:
     if not isinstance(stages, tuple | list) or not all(isinstance(stage, str) for stage in stages):
         raise DeclarationError(f'{where}: stage is {said!r}; it should be text such as "think", or a tuple of it')
     return tuple(stages)
+
+
+def _check_methods(component: type[Component], where: str) -> None:
+    """Finds a method that is called almost like one of `Component`, such as `lop`, in a class without that one."""
+    for base in component.__mro__[: component.__mro__.index(Component)]:
+        for name, value in vars(base).items():
+            if not callable(value) or name.startswith("_") or hasattr(Component, name):
+                continue
+            near = get_close_matches(name.lower(), _METHODS, 1, _ALIKE)
+            if near and getattr(component, near[0]) is getattr(Component, near[0]):
+                raise DeclarationError(
+                    f"{where}.{name}: the framework calls no method '{name}'; did you mean '{near[0]}'?"
+                )
 
 
 def _hints(kind: type, where: str) -> dict[str, Any]:

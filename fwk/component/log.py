@@ -1,9 +1,11 @@
 """The logging aspect: lines of text that carry component, tick, times and place."""
 
 import sys
+import sysconfig
 import traceback
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 from fwk.clock import Clock, sleep_s, wall_us
 from fwk.component.rate_limit import RateLimit
@@ -17,6 +19,9 @@ Text = str | Callable[[], str]
 
 _BEGIN, _END = 12_000, 4_000  # characters kept of a text too long for one datagram, in UTF-8 at most 64 kB
 _BREATH_S = 0.001
+_LIBRARIES = [sysconfig.get_path(name) + "/" for name in ("stdlib", "purelib", "platlib")]
+_NOT_OWN = ("<", str(Path(__file__).parent.parent) + "/", *_LIBRARIES)
+"""Beginnings of files whose lines are not a component's own: generated code, the framework, libraries."""
 
 
 class Logger:
@@ -62,9 +67,14 @@ class Logger:
         self._write(log_t.ERROR, text)
 
     def exception(self, text: str, error: BaseException) -> None:
-        """As `error`, with the traceback; the line's place is where the exception was raised."""
+        """As `error`, with the traceback.
+
+        The line's place is the innermost line of the traceback outside the framework and the libraries, such as a
+        component's own `write()` of a value that the message cannot hold.
+        """
         frames = traceback.extract_tb(error.__traceback__)
-        place = (short_path(frames[-1].filename), frames[-1].lineno or 0) if frames else ("", 0)
+        own = [frame for frame in frames if not frame.filename.startswith(_NOT_OWN)] or frames
+        place = (short_path(own[-1].filename), own[-1].lineno or 0) if own else ("", 0)
         self.write(log_t.ERROR, f"{text}\n{''.join(traceback.format_exception(error)).rstrip()}", *place)
 
     def write(self, level: int, text: str, file: str, line_number: int) -> None:

@@ -85,6 +85,7 @@ class Runner:
         self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
         self.clock = Clock(surroundings.period_us)
         self.time_source = TimeSource()
+        self._is_time_source = "time_source" in declaration.aspects.values()
         self.main_loop = MainLoop(name, surroundings.stages)
         self.has_main_loop = "main_loop" in declaration.aspects.values()
         """Whether the component may take over the main loop."""
@@ -183,6 +184,8 @@ class Runner:
             for writer in self.writers.values():
                 writer.drop()
             raise
+        if self._is_time_source and (mistake := self.time_source._mistake(time_us)):
+            self.log.warning(mistake)
         return self._written()
 
     def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:

@@ -1,9 +1,9 @@
 """What the framework knows of LCM types: fingerprints, headers in raw bytes, counts, and readable errors."""
 
 import struct
-from collections.abc import Callable, Sized
+from collections.abc import Callable, Mapping, Sized
 from importlib import import_module
-from typing import Any, ClassVar, Protocol, Self, runtime_checkable
+from typing import Any, ClassVar, Protocol, Self, cast, runtime_checkable
 
 from fwk.lcm import codec
 from lcmtypes.core import header_t
@@ -101,6 +101,11 @@ def type_named(name: str) -> type[Message]:
 def fingerprint(message_type: type[Message]) -> bytes:
     """The eight bytes that every message of this type begins with."""
     return message_type._get_packed_fingerprint()
+
+
+def is_same_type(one: type[Message], other: type[Message]) -> bool:
+    """Whether two types are the same, by name too: LCM gives types with the same members the same fingerprint."""
+    return fingerprint(one) == fingerprint(other) and type_name(one) == type_name(other)
 
 
 def has_header(message_type: type[Message]) -> bool:
@@ -203,24 +208,75 @@ def _plan(cls: type[Message]) -> tuple[list[tuple[str, str]], list[tuple[str, bo
 
 
 _CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "boolean": "?"}
+_SHOWN = 60  # characters of a value that does not fit
 
 
-def _culprit(message: Any, message_type: type[Message]) -> str:
+def _culprit(message: Any, message_type: type[Message], path: str = "") -> str:
+    """The first member that does not fit its type, with its path, such as `points[2].x_m is 'a', not a double`."""
     if not isinstance(message, message_type):
-        return f"it is a {type(message).__name__}"
+        where = f"{path} is" if path else "it is"
+        return f"{where} a {type(message).__name__}, not a {type_name(message_type)}"
     for name, kind, dimensions in zip(message.__slots__, message.__typenames__, message.__dimensions__, strict=True):
-        value = getattr(message, name, None)
-        if dimensions is None and kind in _CODES:
-            try:
-                struct.pack(">" + _CODES[kind], value)
-            except (struct.error, OverflowError, TypeError):
-                return f"{name} is {value!r}, which is no {kind}"
-        if dimensions is None and kind == "string" and not isinstance(value, str):
-            return f"{name} is {value!r}, which is no string"
-        size = dimensions[0] if dimensions else None
-        if isinstance(size, int) and (not isinstance(value, Sized) or len(value) != size):
-            return f"{name} is {value!r}, which is no array of {size}"
+        full = f"{path}.{name}" if path else name
+        if not hasattr(message, name):
+            return f"{full} is missing"
+        value = getattr(message, name)
+        if wrong := _wrong_shape(value, dimensions or [], full) or _wrong_value(value, kind, dimensions or [], full):
+            return wrong
     return ""
+
+
+def _wrong_shape(value: Any, dimensions: list[int | str], path: str) -> str:
+    """What is wrong with the fixed sizes of an array; `?` stands for a size that may vary."""
+    wanted = [size if isinstance(size, int) else "?" for size in dimensions]
+    found = _shape(value, len(dimensions))
+    if len(found) == len(wanted) and all(b in ("?", a) for a, b in zip(found, wanted, strict=True)):
+        return ""
+    right = f"it should be an array of {' x '.join(map(str, wanted))}"
+    if not found:
+        return f"{path} is {_brief(value)}; {right}"
+    return f"{path} is an array of {' x '.join(map(str, found))}; {right}"
+
+
+def _shape(value: Any, depth: int) -> list[int]:
+    """Sizes of nested sequences; of ragged ones the first that differs from the others shows."""
+    if not depth or isinstance(value, str) or not isinstance(value, Sized):
+        return []
+    if isinstance(value, bytes | bytearray):
+        return [len(value)]
+    inner = [_shape(item, depth - 1) for item in cast("list[Any]", value)]
+    return [
+        len(value),
+        *(next((shape for shape in inner if shape != inner[0]), inner[0]) if inner else [0] * (depth - 1)),
+    ]
+
+
+def _wrong_value(value: Any, kind: str, dimensions: list[int | str], path: str) -> str:
+    if dimensions:
+        if isinstance(value, bytes | bytearray):
+            return ""
+        items = (_wrong_value(item, kind, dimensions[1:], f"{path}[{index}]") for index, item in enumerate(value))
+        return next(filter(None, items), "")
+    if kind in _CODES:
+        try:
+            struct.pack(">" + _CODES[kind], value)
+        except (struct.error, OverflowError, TypeError):
+            return f"{path} is {_brief(value)}, not {_article(kind)} {kind}"
+    elif kind == "string":
+        if not isinstance(value, str):
+            return f"{path} is {_brief(value)}, not a string"
+    elif kind != "byte":
+        return _culprit(value, type_named(kind.removeprefix("lcmtypes.")), path)
+    return ""
+
+
+def _article(kind: str) -> str:
+    return "an" if kind.startswith("int") else "a"
+
+
+def _brief(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
 
 
 def to_dict(message: Any) -> Any:
@@ -230,3 +286,27 @@ def to_dict(message: Any) -> Any:
     if isinstance(message, (list, tuple)):
         return [to_dict(item) for item in message]
     return message
+
+
+def of_dict(message_type: type[Message], members: Mapping[str, Any]) -> Any:
+    """Makes a message of members given as plain data: a dict becomes a struct, a list of dicts an array of structs.
+
+    Raises:
+        MessageError: the type has no such member.
+    """
+    made: Any = message_type()
+    kinds = dict(zip(made.__slots__, made.__typenames__, strict=True))
+    for name, value in members.items():
+        if name not in kinds:
+            known = ", ".join(kinds)
+            raise MessageError(f"{type_name(message_type)} has no field '{name}'; its fields are {known}")
+        setattr(made, name, _of_plain(kinds[name], value))
+    return made
+
+
+def _of_plain(kind: str, value: Any) -> Any:
+    if "." in kind and isinstance(value, Mapping):
+        return of_dict(type_named(kind.removeprefix("lcmtypes.")), value)
+    if "." in kind and isinstance(value, list | tuple):
+        return [_of_plain(kind, item) for item in value]
+    return value

@@ -1,16 +1,17 @@
 """Finds the class that a launch file names with `use`, such as `drivers.wheels`."""
 
 import inspect
-import pkgutil
+import os
 import re
 import sys
 import sysconfig
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, TracebackType
+
+from pydantic import PydanticUserError
 
 from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
@@ -18,6 +19,10 @@ from fwk.component.port import DeclarationError
 from fwk.model.errors import hint
 from fwk.plan.packages import component_packages
 
+INSTALLED = Path(__file__).resolve().parents[2]
+"""Where `fwk` and the installed packages of components lie side by side."""
+_DEPTH = 2  # folders below a folder of modules that are searched for a module to propose
+_FILES_MAX = 200  # of a folder, looked at for that
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 
 
@@ -68,7 +73,7 @@ def imported(name: str, folders: Sequence[str] = ()) -> ModuleType:
         return import_module(name)
     except ModuleNotFoundError as error:
         if error.name and (name == error.name or name.startswith(f"{error.name}.")):
-            raise UnusableError(f"no module '{name}'; {hint(name, _neighbours(name, folders))}") from error
+            raise UnusableError(f"no module '{name}'; {_missing(name, folders)}") from error
         raise UnusableError(_failure(name, error)) from error
     except (Exception, SystemExit) as error:
         raise UnusableError(_failure(name, error)) from error
@@ -77,8 +82,19 @@ def imported(name: str, folders: Sequence[str] = ()) -> ModuleType:
 def _failure(name: str, error: BaseException) -> str:
     if isinstance(error, SyntaxError) and error.filename:
         return f"cannot import '{name}': {error.msg} ({_shown(error.filename)}:{error.lineno})"
-    reason = "".join(traceback.format_exception_only(error)).strip().splitlines()[-1]
+    reason = _setting_mistake(error) or "".join(traceback.format_exception_only(error)).strip().splitlines()[-1]
     return f"cannot import '{name}': {reason}{_blamed(error.__traceback__)}"
+
+
+def _setting_mistake(error: BaseException) -> str:
+    """What is wrong with a class of settings that has a type that no file can hold, such as an array."""
+    found = isinstance(error, PydanticUserError) and re.search(
+        r"schema for (?:<class '([^']*)'>|(\S+?)\.? )", str(error)
+    )
+    if not found:
+        return ""
+    right = "use numbers, text, bool, a list or tuple of them, an Enum, or a Config"
+    return f"a setting cannot be of type {found[1] or found[2]}; {right}"
 
 
 def _blamed(trace: TracebackType | None) -> str:
@@ -96,24 +112,58 @@ def _shown(file: str) -> str:
     return str(path.relative_to(Path.cwd())) if path.is_relative_to(Path.cwd()) else file
 
 
-def _neighbours(name: str, folders: Sequence[str]) -> list[str]:
-    """Modules that are where a missing one should be."""
-    parent = name.rpartition(".")[0]
-    while parent:
-        try:
-            spec = find_spec(parent)
-        except (ImportError, ValueError):
-            spec = None
-        if spec and spec.submodule_search_locations:
-            return [f"{parent}.{found.name}" for found in pkgutil.iter_modules(spec.submodule_search_locations)]
-        parent = parent.rpartition(".")[0]
-    packages = [path.name for folder in folders for path in Path(folder).glob("*/") if any(path.glob("*.py"))]
-    inside = [
-        f"{package}.{found.name}"
-        for package in {*packages, *component_packages()}
-        for found in pkgutil.iter_modules([f"{folder}/{package}" for folder in (*folders, *sys.path)])
-    ]
-    return [found.name for found in pkgutil.iter_modules(list(folders))] + inside
+def _missing(name: str, folders: Sequence[str]) -> str:
+    """What would be right instead of a module that does not exist: one with a similar name, or the author's own."""
+    if reason := _hidden(name):
+        return reason
+    own, installed = _modules_in(folders), _modules_in([str(INSTALLED)])
+    near = hint(name, [*own, *installed], " ")
+    return near if near != " " else hint(name, _beside(name, own) or own or _beside(name, installed) or installed)
+
+
+def _beside(name: str, modules: Sequence[str]) -> list[str]:
+    """The modules in the same package as a missing one, or in the nearest package around it that exists."""
+    package = name.rpartition(".")[0]
+    while package:
+        if found := [module for module in modules if module.startswith(f"{package}.")]:
+            return found
+        package = package.rpartition(".")[0]
+    return []
+
+
+def _modules_in(folders: Sequence[str]) -> list[str]:
+    """Names of the modules in folders, and in the packages below them; of installed ones, the announced packages."""
+    found: set[str] = set()
+    for folder in folders:
+        starts = [f"{folder}/{name}" for name in component_packages()] if folder == str(INSTALLED) else [folder]
+        for start in starts:
+            found |= {".".join(Path(os.path.relpath(file, folder)).parts)[:-3] for file in _python_files(start, _DEPTH)}
+    return sorted(found)
+
+
+def _python_files(folder: str, depth: int) -> Iterator[str]:
+    """The modules in a folder and, of the folders below, in those that hold a few files, as packages do."""
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)[:_FILES_MAX]
+    except OSError:
+        return
+    for entry in entries:
+        stem = entry.name.removesuffix(".py")
+        if stem.isidentifier() and stem != entry.name and stem != "__init__":
+            yield entry.path
+        elif depth and entry.name.isidentifier() and entry.is_dir():
+            yield from _python_files(entry.path, depth - 1)
+
+
+def _hidden(name: str) -> str:
+    """That a file `__init__.py` of the author hides the installed modules of a package, if that is the reason."""
+    package = name.partition(".")[0]
+    file = getattr(sys.modules.get(package), "__file__", None)
+    if package not in component_packages() or not file or Path(file).is_relative_to(INSTALLED):
+        return ""
+    if not any((INSTALLED / name.replace(".", "/")).with_suffix(suffix).exists() for suffix in (".py", "")):
+        return ""
+    return f"{_shown(file)} hides the installed package '{package}'; remove this file to use modules of both"
 
 
 def _public(module: ModuleType) -> list[str]:

@@ -21,13 +21,17 @@ class PortBench:
     def put(self, message: Any = None, header: Any = None, **fields: Any) -> None:
         """Makes a message visible to the next iteration: a whole one, or some fields of one that is otherwise zero.
 
+        A nested struct may be given as a dict: `put(ball={"x_m": 1.0})`.
+
         Its header, or the stamp of one whose type has none, is `header` or the message's own; all but the number.
         """
-        made = cast(Any, message if message is not None else self.message_type())
-        for name, value in fields.items():
-            if name not in self.message_type.__slots__:
-                raise AttributeError(f"{messages.type_name(self.message_type)} has no field '{name}'")
-            setattr(made, name, value)
+        made = cast(Any, message)
+        if made is None:
+            made = messages.of_dict(self.message_type, fields)
+        else:
+            plain = messages.of_dict(self.message_type, fields)
+            for name in fields:
+                setattr(made, name, getattr(plain, name))
         self._sequence += 1
         given = header or (made.header if messages.has_header(self.message_type) else header_t())
         numbers = given.tick, self._sequence, given.time_us, given.stage

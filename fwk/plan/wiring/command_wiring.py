@@ -105,7 +105,7 @@ class CommandLines:
 
     def _fits(self, sender: _End, target: str, owner: _End) -> bool:
         for sent, taken, what in zip(sender.types, owner.types, ("", "the reply to "), strict=True):
-            if messages.fingerprint(sent) != messages.fingerprint(taken):
+            if not messages.is_same_type(sent, taken):
                 text = (
                     f"{what}'{target}' is {messages.type_name(taken)} for {owner.name}, which carries it out, "
                     f"and {messages.type_name(sent)} for {sender.name}, which sends it; use one type"

@@ -139,11 +139,10 @@ class _Wiring:
 
     def _missing(self, wish: Wish, port: Port, channel: str) -> str:
         """That a channel has no writer, or an image no camera, and which other a port could read."""
-        wanted = messages.fingerprint(port.message_type)
         alike = [
             name
             for name, (_, each) in self._writers.items()
-            if messages.fingerprint(each.message_type) == wanted and (each.images or not port.images)
+            if messages.is_same_type(each.message_type, port.message_type) and (each.images or not port.images)
         ]
         if port.images:
             right = hint(channel, alike, "add a camera that writes it, or name another channel")
@@ -154,7 +153,7 @@ class _Wiring:
     def _fits(self, wish: Wish, port: Port, name: str) -> None:
         index, written = self._writers[name]
         writer = "programs outside" if index == NOBODY else self._wishes[index].name
-        if messages.fingerprint(written.message_type) != messages.fingerprint(port.message_type):
+        if not messages.is_same_type(written.message_type, port.message_type):
             self._report(
                 wish.name,
                 port.attribute,

@@ -8,7 +8,7 @@ from fwk.model.errors import PlanError
 from fwk.plan.load import load_plan
 
 HEAD = """
-from fwk import Aspect, Clock, Component, Config, MainLoop, Reads, ReadsEach, Writes, channel
+from fwk import Aspect, Clock, Component, Config, MainLoop, Reads, ReadsEach, Serves, Writes, channel
 from lcmtypes.core import command_t
 from lcmtypes.robot import odometry_t
 class Settings(Config):
@@ -30,7 +30,12 @@ ROWS = {
     "ball: 'Reads[odometry_t'": "Odd: an annotation cannot be read: Forward reference must be an expression -- got "
     "'Reads[odometry_t'",
     "ball: 'Reads[ball_t]'": "Odd: an annotation cannot be read: name 'ball_t' is not defined",
-    "ball: Reads": "Odd.ball: Reads is no aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
+    "def lop(self) -> None: ...": "Odd.lop: the framework calls no method 'lop'; did you mean 'loop'?",
+    "def Finalise(self) -> None: ...": "Odd.Finalise: the framework calls no method 'Finalise'; "
+    "did you mean 'finalize'?",
+    "ball: Reads": "Odd.ball: Reads of which messages? name its type: ball: Reads[message_t]",
+    "way: Serves": "Odd.way: Serves of which messages? name its type: way: Serves[request_t, reply_t]",
+    "ball: int": "Odd.ball: int is not an aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
     "CommandsEach, Sends, SendsEach, Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, "
     "VisionMaster, a Config, Clock, Logger, LogLines, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
@@ -57,3 +62,13 @@ def test_it_is_told(folder: Path, number: int) -> None:
     with pytest.raises(PlanError) as told:
         load_plan("it.yaml")
     assert str(told.value) == f"it.yaml:1: it/a: odd{number}.{text.format(number)}"
+
+
+def test_methods_with_similar_names_are_left_alone(folder: Path) -> None:
+    (folder / "calm.py").write_text(
+        "from fwk import Component\n"
+        'class Calm(Component):\n    stage = "think"\n    def loop(self) -> None: ...\n'
+        "    def loops(self) -> int: ...\n    def look(self) -> None: ...\n    def _lop(self) -> None: ...\n"
+    )
+    (folder / "it.yaml").write_text("components: {it/a: {use: calm}}")
+    assert [each.name for each in load_plan("it.yaml").components] == ["it/a"]

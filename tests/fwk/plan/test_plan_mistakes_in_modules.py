@@ -1,5 +1,7 @@
 """What the check says of modules and classes that a launch file names."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
@@ -26,6 +28,30 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         components: {it/a: {use: mine.tracker.inner}}
         --- mine/tracker.py
         --- mine/tracker_inner.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'procs.flying'; there is procs.garden.watering, procs.weeding",
+        """
+        components: {it/a: {use: procs.flying}}
+        --- procs/garden/watering.py
+        --- procs/weeding.py
+        """,
+    ),
+    Broken(
+        "it.yaml:1: it/a: no module 'procs.vision.omni_bal'; did you mean 'procs.vision.omni_ball'?",
+        "components: {it/a: {use: procs.vision.omni_bal}}",
+    ),
+    Broken(
+        "it.yaml:1: it/a: cannot import 'arrays': a setting cannot be of type numpy.ndarray; use numbers, text, bool, "
+        "a list or tuple of them, an Enum, or a Config (arrays.py:3)",
+        """
+        components: {it/a: {use: arrays}}
+        --- arrays.py
+        from fwk import Config
+        import numpy as np
+        class Arrays(Config):
+            mine: np.ndarray
         """,
     ),
     Broken(
@@ -158,3 +184,15 @@ def test_modules_and_classes(folder: Path, broken: Broken) -> None:
 )
 def test_imports(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
+
+
+def test_an_init_file_that_hides_installed_components_is_named(folder: Path) -> None:
+    (folder / "procs").mkdir()
+    (folder / "procs" / "__init__.py").touch()
+    (folder / "it.yaml").write_text("components: {it/a: {use: procs.view.pictures}}")
+    program = "from fwk.plan.load import load_plan; load_plan('it.yaml')"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=False, timeout=250)
+    assert done.stderr.splitlines()[-1].endswith(
+        "it.yaml:1: it/a: no module 'procs.view.pictures'; procs/__init__.py hides the installed package 'procs'; "
+        "remove this file to use modules of both"
+    )

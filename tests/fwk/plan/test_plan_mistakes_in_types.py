@@ -93,6 +93,21 @@ def test_types_of_ones_own(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == [line.replace("{installed}", str(INSTALLED)) for line in expected(broken)]
 
 
+def test_types_with_equal_members_are_told_apart(folder: Path) -> None:
+    struct = "struct NAME_t { core.header_t header; double x_m; }\n"
+    twin = Broken(
+        "it.yaml:3: a/two: 'a/place' is written by a/one as twins.here_t and read by a/two as twins.there_t; "
+        "use one type",
+        "components:\n  a/one: {use: twin:One}\n  a/two: {use: twin:Two}\n--- lcmtypes/twins.lcm\npackage twins;\n"
+        + struct.replace("NAME", "here")
+        + struct.replace("NAME", "there")
+        + "--- twin.py\nfrom fwk import Component, Reads, Writes\nfrom lcmtypes.twins import here_t, there_t\n"
+        + 'class One(Component):\n    stage = "act"\n    place: Writes[here_t]\n'
+        + 'class Two(Component):\n    stage = "act"\n    place: Reads[there_t]\n',
+    )
+    assert said(twin, folder) == expected(twin)
+
+
 def test_a_latin_1_comment_is_named_with_its_line(folder: Path) -> None:
     (folder / "lcmtypes").mkdir()
     (folder / "lcmtypes" / "mine.lcm").write_bytes("package mine;\n// Größe\n".encode("latin-1"))
