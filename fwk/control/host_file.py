@@ -57,7 +57,7 @@ def keep(file: Path, settings: Sequence[Kept]) -> None:
 
 
 def forget(file: Path, paths: Sequence[str]) -> None:
-    """Takes settings, `NAME.SETTING` each, out of the file.
+    """Takes settings, `NAME.SETTING` each, out of the file; removes a file that then holds nothing.
 
     Raises:
         KeepError: one of them is not in it, or it cannot be written; the file is as it was.
@@ -79,8 +79,12 @@ def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
     file = file.resolve()
     try:
         with _locked(file.parent) as folder:
-            text = file.read_text(encoding="utf-8") if file.exists() else ""
-            _write(file, edit(text), folder)
+            edited = edit(file.read_text(encoding="utf-8") if file.exists() else "")
+            if edited.strip():
+                _write(file, edited, folder)
+            else:
+                file.unlink(missing_ok=True)
+                os.fsync(folder)
     except (EditError, UnicodeDecodeError) as error:
         raise KeepError(f"{shown(file)}: {error}") from error
     except OSError as error:

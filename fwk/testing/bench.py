@@ -20,13 +20,13 @@ SENDER = "test/sender"
 
 
 class Bench:
-    """A component on the bench: `bench.port("ball").put(x_m=1.0)`, `bench.iterate()`, `bench.port("pose").sent[-1]`.
+    """A component on the bench: `bench.ball.put(x_m=1.0)`, `bench.iterate()`, `bench.pose.sent[-1]`.
 
-    Ports of many instances have one `PortBench` for each namespace given in `namespaces`:
-    `bench.port("motors", "cyan1")`.
+    Each port of the component is an attribute of its bench. A port of many instances is a mapping from the namespaces
+    given in `namespaces`: `bench.motors["cyan1"]`. A port whose name the bench uses itself is `bench.port("tick")`.
 
-    Commands go to a component that carries them out by `bench.port("kick").put(speed_m_s=3.0)`, its answers are in
-    `sent`. What a component sends to be carried out is in `sent`; `bench.owner_of("kick").answer()` answers the newest.
+    Commands go to a component that carries them out by `bench.kick.put(speed_m_s=3.0)`, its answers are in `sent`.
+    Commands that a component sends are in `sent`, too; `bench.owner_of("kick").answer()` answers the newest.
     """
 
     def __init__(
@@ -93,6 +93,17 @@ class Bench:
         """The outside of a port; of one of several instances if a namespace is given."""
         names = self._by_attribute[attribute]
         return self._by_name[next(name for name in names if not namespace or name.startswith(f"{namespace}/"))]
+
+    def __getattr__(self, attribute: str) -> Any:
+        """The outside of the port with that name, or those of its instances by namespace."""
+        names = self.__dict__.get("_by_attribute", {}).get(attribute)
+        if names is None:
+            known = ", ".join(self.__dict__.get("_by_attribute", {})) or "none"
+            raise AttributeError(f"the component has no port '{attribute}'; its ports: {known}")
+        each = next(port.each for port in self.declaration.ports if port.attribute == attribute)
+        if each:
+            return {name.rpartition("/")[0]: self._by_name[name] for name in names}
+        return self._by_name[names[0]]
 
     def owner_of(self, attribute: str, namespace: str = "") -> OtherOwner:
         """The owner of the commands that the component sends by a port."""

@@ -33,6 +33,8 @@ class PortBench:
             for name in fields:
                 setattr(made, name, getattr(plain, name))
         self._sequence += 1
+        if isinstance(header, dict):
+            header = header_t(**header)
         given = header or (made.header if messages.has_header(self.message_type) else header_t())
         numbers = given.tick, self._sequence, given.time_us, given.stage
         self.waiting.append(self._stamp(made, *numbers, given.writer))

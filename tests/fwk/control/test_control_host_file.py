@@ -45,6 +45,16 @@ def test_what_was_kept_is_forgotten_all_or_nothing(tmp_path: Path) -> None:
     assert file.read_text() == OLD
 
 
+def test_a_file_whose_last_setting_is_forgotten_is_removed(tmp_path: Path) -> None:
+    file = tmp_path / "a.host.yaml"
+    keep(file, [Kept("a/b", "gain", 0.5)])
+    forget(file, ["a/b.gain"])
+    assert list(tmp_path.iterdir()) == []
+    file.write_text("# mine\nconfig: {a/b: {gain: 1}}\n")
+    forget(file, ["a/b.gain"])
+    assert file.read_text() == "# mine\n"
+
+
 def test_a_file_of_nothing_but_a_tab_is_as_good_as_empty(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text("\t")

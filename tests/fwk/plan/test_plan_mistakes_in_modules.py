@@ -31,9 +31,9 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: no module 'procs.flying'; there is procs.garden.watering, procs.weeding",
+        "it.yaml:1: it/a: no module 'procs.quux'; there is procs.garden.watering, procs.weeding",
         """
-        components: {it/a: {use: procs.flying}}
+        components: {it/a: {use: procs.quux}}
         --- procs/garden/watering.py
         --- procs/weeding.py
         """,
