@@ -3,6 +3,7 @@
 import typing
 from dataclasses import dataclass, field, replace
 from functools import cache
+from inspect import get_annotations
 from typing import Any, ClassVar, get_args, get_origin
 
 import numpy as np
@@ -24,6 +25,8 @@ from lcmtypes.core import log_t
 from lcmtypes.robot import frame_t
 
 RATE_MAX_HZ = 10_000
+_OF_ALL = frozenset(get_annotations(Component))
+"""Annotated attributes that every component has; they are no aspects."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +79,7 @@ def _read(component: type[Component]) -> Declaration:
     ports: list[Port] = []
     aspects, asks, config = {}, {}, Config
     for attribute, wish in hints.items():
-        if attribute in ("stage", "rate_hz", "name", "changed_settings", "provides") or attribute.startswith("_"):
+        if attribute in _OF_ALL or attribute.startswith("_"):
             continue
         if hasattr(Component, attribute) and attribute != "config":
             raise DeclarationError(f"{where}.{attribute}: every component has '{attribute}'; call this one otherwise")

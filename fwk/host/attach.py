@@ -11,10 +11,10 @@ from typing import Any
 
 from fwk.component.images import Ring
 from fwk.component.port import DeclarationError
-from fwk.host.assignment import Assignment, Start
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
-from fwk.host.failures import Failure
 from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
 from fwk.host.process import StopSignal, raise_file_limit
@@ -61,12 +61,12 @@ class Place:
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
         driver = HostDriver(self._assignment(told), stop)
-        forward_logging(driver.host.log_of_now)
+        forward_logging(driver.host.current_log)
         try:
             if self.debug:
                 return debug(self.debug, driver.serve)
             driver.serve()
-        except Failure as failure:
+        except ComponentFailedError as failure:
             print(f"error: {failure}", file=sys.stderr)
             return FAILED
         return 0

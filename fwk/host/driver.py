@@ -3,11 +3,12 @@
 from collections.abc import Callable
 
 from fwk.bus.network import UdpNetwork
+from fwk.engine.assignment import Assignment
 from fwk.engine.runner import Runner
-from fwk.host.assignment import Assignment
 from fwk.host.background_server import BackgroundServer
 from fwk.host.continuous import host_of
 from fwk.host.hooks import ProcessHooks
+from fwk.host.memory import lift_limit
 from fwk.host.process import StopSignal, give_memory_back
 
 
@@ -17,13 +18,19 @@ class HostDriver:
     def __init__(self, assignment: Assignment, stop: StopSignal, make_runner: Callable[..., Runner] = Runner) -> None:
         self._network = UdpNetwork()
         self._network.watch(stop.wakeup)
-        hooks = ProcessHooks(stop, make_runner, BackgroundServer().serving, give_memory_back)
+        hooks = ProcessHooks(
+            stopping=stop,
+            make_runner=make_runner,
+            background=BackgroundServer().serving,
+            initialized=give_memory_back,
+            lift_memory_limit=lift_limit,
+        )
         self.host = host_of(assignment, self._network, hooks)
 
     def serve(self) -> None:
         """Takes the host's components from `init` to `finalize`.
 
         Raises:
-            Failure: a component raised.
+            ComponentFailedError: a component raised.
         """
         self._network.run(self.host.serve())

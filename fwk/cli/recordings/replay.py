@@ -1,6 +1,5 @@
 """`fwk replay`: recorded inputs to real components, and whether they do the same again."""
 
-import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -8,10 +7,10 @@ from typing import Annotated
 import typer
 
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
-from fwk.host.failures import Failure
-from fwk.lcm.type_registry import use_types_of
+from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.errors import hint
 from fwk.recording.difference import Difference
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -71,8 +70,7 @@ def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, deb
     recording = Recording(log)
     for folder in recording.plan.folders:
         use_types_of(Path(folder))
-        if folder not in sys.path:
-            sys.path.append(folder)
+    put_first(recording.plan.folders)
     made = Replay(recording, only)
     if debugged:
         _debug(made, debugged, from_tick, to_tick)
@@ -96,7 +94,7 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
         try:
             made.run(to_tick, begins)
         except RecordingError as error:
-            raise Failure(str(error)) from (error.__cause__ or error)
+            raise ComponentFailedError(str(error)) from (error.__cause__ or error)
 
     request = DebugRequest(components[name].host, components[name])
     if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:

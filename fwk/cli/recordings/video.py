@@ -1,6 +1,5 @@
 """`fwk video LOG -o FILE.mp4`: a recording to look at."""
 
-import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -8,7 +7,7 @@ import typer
 
 from fwk.cli.arguments import folder, video_file
 from fwk.cli.recordings.find_log import failing, find_log
-from fwk.lcm.type_registry import use_types_of
+from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.video import VideoError, drawing, render_video
 
@@ -27,7 +26,7 @@ def video(
     with failing(2):
         use_types_of(types)
         file = find_log(log)
-        sys.path.append(str(types.resolve()))
+        put_first([str(types.resolve())])
         try:
             pictures = render_video(file, out, drawing(draw or _drawing_of_run(file)))
         except VideoError as error:
@@ -46,5 +45,5 @@ def _drawing_of_run(log: Path) -> str:
         raise VideoError(f"{plan.file}: names no drawing ('video: module:function'); name one with --draw")
     for folder_of_run in plan.folders:
         use_types_of(Path(folder_of_run))
-    sys.path.extend(plan.folders)
+    put_first(plan.folders)
     return plan.video

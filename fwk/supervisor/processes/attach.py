@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from fwk.component.images import Ring
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.model.plan import Plan
 from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.processes.external_process import Hand

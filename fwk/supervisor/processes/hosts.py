@@ -7,8 +7,8 @@ from functools import partial
 from fwk.bus.network import Steps
 from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger
+from fwk.engine.assignment import Start
 from fwk.engine.visibility import Ledger
-from fwk.host.assignment import Start
 from fwk.host.debugger import LEFT
 from fwk.model.plan import NOBODY, Plan
 from fwk.supervisor.event_loop import EventLoop

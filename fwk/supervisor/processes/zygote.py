@@ -13,12 +13,12 @@ from collections.abc import Mapping
 from typing import Any
 
 from fwk.component.images import Ring
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.failures import ComponentFailedError
 from fwk.engine.runner import Runner
-from fwk.host.assignment import Assignment, Start
-from fwk.host.crash_marker import Progress
+from fwk.host.crash_marker import CrashMarker
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
-from fwk.host.failures import Failure
 from fwk.host.hot_reload import forget_modules
 from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
@@ -53,7 +53,7 @@ class Zygote:
         profile: ProfileRequest | None = None,
     ) -> None:
         self._socket, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._progress = Progress(len(plan.hosts))
+        self._progress = CrashMarker(len(plan.hosts))
         parent = os.getpid()
         gc.collect()
         gc.freeze()  # what is here now stays; hosts share its memory as long as nobody touches it
@@ -139,7 +139,7 @@ class _Forker:
         plan: Plan,
         run: int,
         rings: Mapping[str, Ring],
-        progress: Progress,
+        progress: CrashMarker,
         connection: socket.socket,
         debug: DebugRequest | None,
         profile: ProfileRequest | None,
@@ -244,12 +244,12 @@ def _serve_host(
     profile = Profile(profiled, assignment.start.incarnation) if profiled else None
     driver = HostDriver(assignment, stop, profile.runner if profile else Runner)
     log_uncaught(driver.host.log)
-    forward_logging(driver.host.log_of_now)
+    forward_logging(driver.host.current_log)
     try:
         if debugged:
             return debug(debugged, driver.serve)
         driver.serve()
-    except Failure:
+    except ComponentFailedError:
         return 1  # logged and reported already
     finally:
         if profile:
