@@ -50,6 +50,10 @@ class Component:
     """Aspects that others get from this component."""
     rate_hz: ClassVar[float | None] = None
     """Instead of a stage: iterations a second of a continuous component; 0: again when there is something newer."""
+    reaches_outside: ClassVar[bool | None] = None
+    """Whether the component drives a device or talks to other programs. True: a replay leaves it alone. None: a replay
+    runs it, and leaves it alone as soon as it opens a device, a connection or a program. False: a replay lets it do so.
+    """
     name: str
     """Full name: `cyan1/omni_ball`."""
     changed_settings: frozenset[str] = frozenset()
@@ -65,11 +69,12 @@ class Component:
 
     @classmethod
     def unrepeatable(cls, config: Any) -> str:  # noqa: ARG003 - for those who derive
-        """Why a replay cannot run it again with these settings: `'/dev/video0' is a device`; nothing: it can.
+        """Returns why a replay cannot run the component with these settings; empty: it can.
 
-        For whoever gets more from outside than its inputs, such as the driver of a device: a replay leaves it alone.
+        For components that depend on more than their inputs, for example `'/dev/video0' is a device`. A replay leaves
+        them alone.
         """
-        return ""
+        return "it reaches outside" if cls.reaches_outside else ""
 
     def init(self) -> None:
         """Called once before the first iteration; an exception means that the component does not start.

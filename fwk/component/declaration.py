@@ -4,6 +4,7 @@ import typing
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cache
+from inspect import get_annotations
 from typing import Any, ClassVar, get_args, get_origin
 
 import numpy as np
@@ -27,6 +28,8 @@ from lcmtypes.robot import frame_t
 RATE_MAX_HZ = 10_000
 _METHODS = ("init", "loop", "finalize", "config_changed")
 _ALIKE = 0.8  # similarity of a misspelt method's name: `lop` is one, `look` is a method of its own
+_OF_ALL = frozenset(get_annotations(Component))
+"""Annotated attributes that every component has; they are no aspects."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +83,7 @@ def _read(component: type[Component]) -> Declaration:
     ports: list[Port] = []
     aspects, asks, config = {}, {}, Config
     for attribute, wish in hints.items():
-        if attribute in ("stage", "rate_hz", "name", "changed_settings", "provides") or attribute.startswith("_"):
+        if attribute in _OF_ALL or attribute.startswith("_"):
             continue
         if hasattr(Component, attribute) and attribute != "config":
             raise DeclarationError(f"{where}.{attribute}: every component has '{attribute}'; call this one otherwise")

@@ -1,4 +1,4 @@
-"""The messages of one channel in a reading process: visible, missing, void or lost."""
+"""The messages of one channel in a reading host: visible, missing, void or lost."""
 
 from fwk.lcm.messages import Header, MessageError
 from fwk.model.plan import ChannelPlan
@@ -9,8 +9,10 @@ class ChannelBuffer:
 
     def __init__(self, plan: ChannelPlan) -> None:
         self.plan = plan
-        self.mark = 0  # highest sequence number that is visible
-        self.floor = 0  # everything up to here was taken or is not wanted any more
+        self.mark = 0
+        """Highest visible sequence number."""
+        self.floor = 0
+        """Messages up to this number were taken or are not wanted any more."""
         self.missed: list[int] = []
         """Sequence numbers of messages that were visible and never came."""
         self._held: dict[int, bytes] = {}
@@ -29,22 +31,22 @@ class ChannelBuffer:
                 self._held[sequence] = data
 
     def collect(self) -> bool:
-        """Whether everything up to the mark is here."""
+        """Returns whether all messages up to the mark are here."""
         wanted = self.mark - self.floor
-        if self._newest == self.mark:  # none beyond it, so that counting is enough
+        if self._newest == self.mark:  # no message beyond the mark: counting is enough
             return len(self._held) == wanted
         return len(self._held) >= wanted and not self.missing()
 
     def missing(self) -> list[int]:
-        """Sequence numbers up to the mark that are not here."""
+        """Returns the sequence numbers up to the mark that are not here."""
         return ChannelBuffer.lacks(self, self.mark)
 
     def lacks(self, sequence: int) -> list[int]:
-        """Sequence numbers up to this one, visible or not, that are not here."""
+        """Returns the sequence numbers up to `sequence`, visible or not, that are not here."""
         return [number for number in range(self.floor + 1, sequence + 1) if number not in self._held]
 
     def take(self) -> list[bytes]:
-        """The messages that became visible since the last time, oldest first."""
+        """Returns the messages that became visible since the last call, oldest first."""
         held, floor = self._held, self.floor
         self.floor = self.mark
         taken = [held.pop(number, b"") for number in range(floor + 1, self.mark + 1)]
@@ -53,29 +55,29 @@ class ChannelBuffer:
             taken = [data for data in taken if data]
         return taken
 
-    def skip_to(self, sequence: int) -> None:
-        """Does not want anything up to `sequence`: a late joiner takes the newest only."""
-        self.floor = max(self.floor, sequence)
+    def keep_newest(self) -> None:
+        """Drops every visible message but the newest, as the catch-up rule wants it."""
+        self.floor = max(self.floor, self.mark - 1)
         for number in [number for number in self._held if number <= self.floor]:
             del self._held[number]
 
     def give_up(self, first: int, last: int) -> int:
-        """The writer no longer has these: lost for good. Returns how many were still missing."""
+        """Counts messages that the writer no longer has as lost; returns how many were still missing."""
         lost = [number for number in self.missing() if first <= number <= last]
         for number in lost:
             self._held[number] = b""
         if lost:
-            self._newest = max(self._newest, lost[-1])  # nothing up to there is waited for any more
+            self._newest = max(self._newest, lost[-1])  # no message up to there is waited for any more
         return len(lost)
 
     def held(self, first: int, last: int) -> list[tuple[int, bytes]]:
-        """What is here and was not taken yet, of these numbers, oldest first."""
+        """Returns the messages `first` to `last` that are here and not taken yet, oldest first."""
         return sorted((number, data) for number, data in self._held.items() if first <= number <= last and data)
 
     def void(self, above: int, up_to_tick: int, before_incarnation: int) -> None:
-        """Forgets what a writer that died in a tick had sent beyond the marks.
+        """Drops messages that a writer sent beyond the marks before it died.
 
-        What its next start, or another component that may write the channel later on, has sent is younger.
+        Messages of its next incarnation, or of another component that writes the channel later, are younger.
         """
         for number in [number for number in self._held if number > above]:
             tick, incarnation = _age(self._held[number])
@@ -85,9 +87,9 @@ class ChannelBuffer:
 
 
 def _age(data: bytes) -> tuple[int, int]:
-    """Tick of a message, and which start of its writer sent it: 1, or the number after '#' in the header's writer.
+    """Returns tick and incarnation of a message; the incarnation follows '#' in the header's writer.
 
-    Of two with the same number the older one was sent by somebody who died before its done.
+    Of two messages with the same sequence number the older one was sent by a writer that died before its done.
     """
     try:
         header = Header.of(data)

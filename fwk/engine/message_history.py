@@ -1,15 +1,22 @@
-"""What a writer has sent lately, kept for readers that lost it."""
+"""The newest messages that a writer has sent, kept for readers that lose some of them."""
 
 from collections import deque
 from collections.abc import Iterable, Iterator
 
 MESSAGES_MAX = 256
 BYTES_MAX = 64 << 20
-TICKS = 17  # the recorder may be 16 ticks behind
+TICKS = 17
+"""The recorder may be 16 ticks behind."""
 
 
 def gaps(there: Iterable[int], first: int, last: int) -> Iterator[tuple[int, int]]:
-    """The ranges between two numbers that are not there, each with its first and last; `there` is in order."""
+    """Yields the ranges from `first` to `last` that are not in `there`, each with its first and last number.
+
+    Args:
+        there: numbers in ascending order.
+        first: the first number that counts.
+        last: the last number that counts.
+    """
     expected = first
     for number in (*there, last + 1):
         if number > expected:
@@ -17,11 +24,11 @@ def gaps(there: Iterable[int], first: int, last: int) -> Iterator[tuple[int, int
         expected = number + 1
 
 
-class History:
-    """The last messages of one channel by sequence number.
+class MessageHistory:
+    """The newest messages of one channel by sequence number.
 
-    Those of the running and the last tick are always kept: in lockstep nobody is further behind, except the recorder.
-    For it those of the last 17 ticks are kept, as long as they take no more than 64 MiB; always up to 256 messages.
+    It always keeps the messages of the running and the previous tick: in lockstep no reader but the recorder is further
+    behind. For the recorder it keeps those of 17 ticks as long as they take at most 64 MiB, and always 256 messages.
     """
 
     def __init__(self) -> None:
@@ -29,7 +36,7 @@ class History:
         self._bytes = 0
 
     def add(self, tick: int, sequence: int, data: bytes) -> None:
-        """Keeps a message that was written in this tick, and drops what is too old."""
+        """Keeps a message that was written in this tick, and drops messages that are too old."""
         kept = self._kept
         kept.append((tick, sequence, data))
         self._bytes += len(data)
@@ -40,9 +47,9 @@ class History:
 
     @property
     def newest(self) -> int:
-        """The newest number; 0: none."""
+        """Returns the newest sequence number; 0: none."""
         return self._kept[-1][1] if self._kept else 0
 
     def between(self, first: int, last: int) -> list[tuple[int, bytes]]:
-        """The kept messages with these numbers, oldest first."""
+        """Returns the kept messages `first` to `last`, oldest first."""
         return [(sequence, data) for _, sequence, data in self._kept if first <= sequence <= last]

@@ -1,7 +1,6 @@
 """One component with its aspects, taken through its iterations: the same for host process, test bench and replay."""
 
 import hashlib
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -29,24 +28,14 @@ from fwk.lcm import envelope
 from fwk.lcm.messages import Message, has_header
 from lcmtypes.core import header_t, log_t
 
-AWAY_TICKS = 16
-"""Who took no part for longer is like a newcomer, because writers may no longer have everything."""
 LOST_FRAMES = "lost_frames"
-"""Key in what `Runner.wishes` returns: frames that the component did not get."""
+"""Key in what `Runner.requests` returns: frames that the component did not get."""
 NOTHING: list[bytes] = []
 """No message came. Readers do not change what they are given."""
 
 
-def is_new(tick: int, answered: int) -> bool:
-    """Whether a process that is told a tick is new in the run, or was away for long: it wants the newest alone.
-
-    `answered` is the newest tick that it has answered; 0: none.
-    """
-    return tick > (answered + AWAY_TICKS if answered else 1)
-
-
 @dataclass(frozen=True)
-class Surroundings:
+class RunSection:
     """What a component gets from the run it is part of."""
 
     seed: int
@@ -75,7 +64,7 @@ class Runner:
         name: str,
         config: Config | None,
         channels: Mapping[str, Sequence[str]],
-        surroundings: Surroundings,
+        section: RunSection,
         incarnation: int = 1,
     ) -> None:
         self.name = name
@@ -83,29 +72,26 @@ class Runner:
         self.writers: dict[str, Writes[Any]] = {}
         self.images: dict[str, Image] = {}
         self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
-        self.clock = Clock(surroundings.period_us)
+        self.clock = Clock(section.period_us)
         self.time_source = TimeSource()
         self._is_time_source = "time_source" in declaration.aspects.values()
-        self.main_loop = MainLoop(name, surroundings.stages)
+        self.main_loop = MainLoop(name, section.stages)
         self.has_main_loop = "main_loop" in declaration.aspects.values()
         """Whether the component may take over the main loop."""
-        self.plugins = PluginControl(name, surroundings.components)
+        self.plugins = PluginControl(name, section.components)
         self.has_plugins = "plugins" in declaration.aspects.values()
         """Whether the component may start and stop others."""
         self.stamp = Stamp(name if incarnation == 1 else f"{name}#{incarnation}")
         self._config = config or declaration.config()
-        limit = RateLimit(surroundings.lines_per_s)
-        self.log = Logger(name, self.clock, surroundings.sink, self._log_level, limit)
+        limit = RateLimit(section.lines_per_s)
+        self.log = Logger(name, self.clock, section.sink, self._log_level, limit)
         self.component: Component = declaration.component()
-        self._rings, self._frames = surroundings.rings, surroundings.frames
-        self._away_after = 1 if incarnation == 1 else 0  # tick
+        self._rings, self._frames = section.rings, section.frames
         self._histories: dict[str, int] = {}
         for port in declaration.ports:
             if port.history:
                 longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
                 self._histories |= longest
-        collects = declaration.rate_hz is not None  # a continuous one's process takes in what comes meanwhile
-        self._away_ticks = sys.maxsize if collects else AWAY_TICKS
         self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]
@@ -122,7 +108,7 @@ class Runner:
         if self.has_blackboard:
             self._begin.append(self.blackboard.begin)
         for attribute, aspect in declaration.aspects.items():
-            self._put(attribute, self._aspect(aspect, surroundings.seed))
+            self._put(attribute, self._aspect(aspect, section.seed))
 
     def init(self) -> None:
         """Prepares the component, and before it the aspects that other components provide it with."""
@@ -149,16 +135,10 @@ class Runner:
             self.component.changed_settings = changed - {LOG_LEVEL}
             self.component.config_changed()
 
-    def is_new(self, tick: int) -> bool:
-        """Whether the iteration of that tick is that of a newcomer, or of one that was away for long."""
-        return tick > self._away_after
-
     def iterate(
         self, tick: int, stage: int, stage_name: str, time_us: int, fresh: Mapping[str, list[bytes]]
     ) -> list[tuple[str, bytes]]:
         """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
-
-        Who comes new into a run that goes on, or was away for long, sees of each channel the newest alone.
 
         `fresh` holds for the channels of its readers what became visible since the last iteration. Whatever the
         component raises comes out, and then nothing was written.
@@ -167,9 +147,6 @@ class Runner:
         clock.tick = stamp.tick = tick
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
-        if tick > self._away_after:
-            fresh = {channel: arrived[-1:] for channel, arrived in fresh.items()}
-        self._away_after = tick + self._away_ticks
         for reader in self._refreshed:
             reader.freeze(NOTHING)
         self._refreshed = [self.readers[channel] for channel in fresh]
@@ -209,15 +186,15 @@ class Runner:
     def _log_level(self) -> int:
         return LEVELS[getattr(self._config, LOG_LEVEL)]
 
-    def wishes(self) -> dict[str, Any]:
-        """What the iteration asked of the main loop and the blackboard, by aspect, and which frames it missed."""
+    def requests(self) -> dict[str, Any]:
+        """Returns what the iteration requested of the run, by aspect, and the frames that it missed."""
         order = self.main_loop.take()
         asked = {
             "plugins": self.plugins.take(),
             "blackboard": self.blackboard.take(),
             LOST_FRAMES: self.missed_frames(),
         }
-        made: dict[str, Any] = {aspect: wishes for aspect, wishes in asked.items() if wishes}
+        made: dict[str, Any] = {aspect: request for aspect, request in asked.items() if request}
         return made if order is None else {**made, "main_loop": order}
 
     def missed_frames(self) -> dict[str, list[int]]:

@@ -12,9 +12,9 @@ from fwk.bus.sockets import port_of, told
 from fwk.bus.waiting import Source
 from fwk.clock import Clock
 from fwk.component.log import Logger
+from fwk.engine.catch_up import AWAY_TICKS
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import gaps
-from fwk.engine.runner import AWAY_TICKS
 from fwk.gateway.ingress import Outside
 from fwk.gateway.ingress_filter import Strangers
 from fwk.gateway.pacing import PacedPublisher
@@ -279,7 +279,7 @@ class Gateway:
             if envelope.is_plain(opening.type_name):
                 self.opened_plain.add(opening.name)
             if kind == "write":
-                self._inputs.comes_from(opening.channel, self._plan.components[component].host)
+                self._inputs.set_writer(opening.channel, self._plan.components[component].host)
 
     def _listen(self, facts: Iterable[Fact]) -> None:
         """To channels that were never open before."""
@@ -374,7 +374,7 @@ class Gateway:
         who reads all is further behind than, and all since. The answer is final: the tick that the reader takes part
         in, and with it the next record, may be waiting for it.
         """
-        box = self._inputs.box(fetch.channel)
+        box = self._inputs.buffer(fetch.channel)
         found = self._outside.kept(fetch.channel, fetch.first_sequence, fetch.last_sequence)
         if found is None:
             recent = [(number, data) for _, number, data in self._recent.get(fetch.channel, [])]
@@ -396,7 +396,7 @@ class Gateway:
     def _give_up(self, gone: gone_t) -> None:
         lost = self._inputs.gone(gone)
         if lost:
-            channel = self._inputs.box(gone.channel).plan.name
+            channel = self._inputs.buffer(gone.channel).plan.name
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
 

@@ -4,7 +4,7 @@ from typing import Any
 
 from fwk.bus.sender import Sender
 from fwk.clock import Clock
-from fwk.engine.message_history import History
+from fwk.engine.message_history import MessageHistory
 from fwk.host.inputs import Inputs
 from fwk.lcm import envelope, messages
 from fwk.model.plan import ChannelPlan
@@ -30,7 +30,7 @@ class Outside:
             channel.index: envelope.stamper(messages.type_named(channel.type_name), channel.name)
             for channel in channels
         }
-        self._histories = {channel.index: History() for channel in channels}
+        self._histories = {channel.index: MessageHistory() for channel in channels}
         self._sequences = {channel.index: 0 for channel in channels}
         self._visible = {channel.index: 0 for channel in channels}
         self._ports = ports
@@ -53,7 +53,7 @@ class Outside:
         data = self._stamp[index](message, tick, sequence, self._clock.now_us, STAGE, WRITER)
         self._sequences[index] = sequence
         self._histories[index].add(tick, sequence, data)
-        self._inputs.box(index).put(sequence, data)
+        self._inputs.buffer(index).put(sequence, data)
         self._sender.publish(name.encode(), data, self._ports.channel(index))
         return sequence
 

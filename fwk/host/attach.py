@@ -12,10 +12,10 @@ from typing import Any
 
 from fwk.component.images import Ring
 from fwk.component.port import DeclarationError
-from fwk.host.assignment import Assignment, Start
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
-from fwk.host.failures import Failure
 from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
 from fwk.host.process import StopSignal, raise_file_limit
@@ -66,12 +66,12 @@ class Place:
         held = socket.socket(fileno=told["descriptors"][0])
         held.setblocking(False)
         driver = HostDriver(self._assignment(told), stop, held={port: held})
-        forward_logging(driver.host.log_of_now)
+        forward_logging(driver.host.current_log)
         try:
             if self.debug:
                 return debug(self.debug, driver.serve)
             driver.serve()
-        except Failure as failure:
+        except ComponentFailedError as failure:
             print(f"error: {failure}", file=sys.stderr)
             return FAILED
         return 0

@@ -1,24 +1,27 @@
-"""The host of a continuous component: it iterates at its own pace on the newest marks that it was told."""
+"""The host participant of a continuous component: iterates at its own rate on the newest marks."""
 
 import math
 from collections.abc import Sequence
 
 from fwk.bus import sync
+from fwk.bus.backoff import Backoff
 from fwk.bus.network import Network, Steps
 from fwk.clock import US_PER_S
+from fwk.engine.assignment import Assignment
+from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.host.assignment import Assignment
-from fwk.host.dynamic_channels import Opened
+from fwk.host.dynamic_channels import DynamicChannels
 from fwk.host.hooks import ProcessHooks
 from fwk.host.host import Host
 from fwk.lcm.messages import MessageError
 from lcmtypes.core import channels_change_t, done_t, header_t, protocol_t, settings_change_t, tick_t
 
-REPEAT_US = 2_000  # a done that was not taken is sent again after so long, later less and less often
+REPEAT_US = 2_000
+"""First wait before a done that was not taken is sent again; it doubles up to `REPEAT_LONGEST_US`."""
 REPEAT_LONGEST_US = 100_000
 TAKEN_TIMEOUT_US = US_PER_S
 """How long a host that is stopped waits until its last iteration was taken."""
-_MOST = header_t.FINAL - 1  # iterations on the same marks
+_MOST = header_t.FINAL - 1  # iterations on the same marks; numbers above mean something else
 
 
 class ContinuousHost(Host):
@@ -30,22 +33,21 @@ class ContinuousHost(Host):
 
     def __init__(self, assignment: Assignment, network: Network, hooks: ProcessHooks) -> None:
         super().__init__(assignment, network, hooks)
-        own = self._members.plans[0]
+        own = self.group.plans[0]
         rate_hz = own.rate_hz or 0.0
         self._period_us = round(US_PER_S / rate_hz) if rate_hz else 0
         a_tick = max(1, math.ceil(rate_hz * self._plan.period_us / US_PER_S))
         self._most = _MOST if self._plan.clock == "wall" and rate_hz else a_tick
         self._names = (own.name,)
-        self._told: list[tick_t] = []  # not taken over yet
-        self._tick: tick_t | None = None  # the newest one that was taken over
-        self._moved: dict[int, ChannelBuffer] = {}  # in which something became visible since the last iteration
-        # Changes by number, for the next iteration.
-        self._settings: dict[int, settings_change_t] = {}
+        self._catch_up = CatchUp(assignment.start.incarnation, continuous=True)
+        self._told: list[tick_t] = []  # ticks that were not taken over yet
+        self._tick: tick_t | None = None  # the newest tick that was taken over
+        self._moved: dict[int, ChannelBuffer] = {}  # buffers with messages that became visible since the last iteration
+        self._settings: dict[int, settings_change_t] = {}  # changes for the next iteration, by number
         self._channels: dict[int, channels_change_t] = {}
-        self._runs = 0  # iterations on the marks of that tick
-        self._due_us = 0  # wall time of the next iteration; who is late catches up one period at the most
-        self._repeat_us = REPEAT_US
-        self._sent_us = 0
+        self._runs = 0  # iterations on the marks of `_tick`
+        self._due_us = 0  # wall time of the next iteration; a late one is made up for by one period at most
+        self._repeats = Backoff(0, REPEAT_US, REPEAT_LONGEST_US)
         self._taken = True  # whether the supervisor has the last done
 
     def _work(self) -> Steps[None]:
@@ -76,7 +78,7 @@ class ContinuousHost(Host):
         if self._ready:
             until_us = min(until_us, self._due_us)
         if not self._taken:
-            until_us = min(until_us, self._sent_us + self._repeat_us)
+            until_us = min(until_us, self._repeats.due_us)
         return until_us
 
     def _handle_message(self, channel: bytes, data: bytes) -> None:
@@ -103,18 +105,18 @@ class ContinuousHost(Host):
         return self._sender.due_us
 
     def _take_over(self) -> None:
-        """Takes over what ticks say, in their order."""
+        """Takes over the marks and changes of ticks that arrived, in their order."""
         told, self._told = self._told, []
         for tick in told:
             if self._tick and tick.tick <= self._tick.tick:
                 continue
-            for box in self.inputs.advance(tick.channel, tick.sequence, tick.voids):
-                self._moved[box.plan.index] = box
-            if not self._clock.tick and tick.tick > 1:  # it has not run yet
-                self.inputs.newest_only()
-            for box in self._moved.values():
-                box.collect()
-            # Changes are told again until they are taken over.
+            for buffer in self.inputs.advance(tick.channel, tick.sequence, tick.voids):
+                self._moved[buffer.plan.index] = buffer
+            if self._catch_up.applies(tick.tick):
+                self.inputs.keep_newest()
+            for buffer in self._moved.values():
+                buffer.collect()
+            # Changes are repeated until an iteration has them.
             self._settings |= {change.number: change for change in tick.settings}
             self._channels |= {change.number: change for change in tick.channels}
             self._tick, self._runs = tick, 0
@@ -125,8 +127,8 @@ class ContinuousHost(Host):
         settings = [self._settings[number] for number in sorted(self._settings)]
         channels = [self._channels[number] for number in sorted(self._channels)]
         self._settings, self._channels = {}, {}
-        if self._opened and channels:
-            self._open(self._opened, channels, tick)
+        if self._dynamic and channels:
+            self._open(self._dynamic, channels, tick)
         moved = list(self._moved.values())
         lacking = self.inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
@@ -134,45 +136,46 @@ class ContinuousHost(Host):
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
         self._moved = {}
-        self._members.deliver(moved)
+        self.group.deliver(moved)
         if settings or channels:
-            self._members.configure(settings, channels)
-        self._members.tell_holder(tick.main_loop)
+            self.group.configure(settings, channels)
+        self.group.set_holder(tick.main_loop)
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
+        self._catch_up.took_part(tick.tick)
         self._runs += 1
-        number = self._runs  # a tick that comes meanwhile begins to count anew
+        number = self._runs  # a tick that arrives during the iteration counts anew
         self._due_us = self._period_us + max(self._due_us, self._now_us() - self._period_us)
         with self._hooks.background(self._own, self._serve_in_background):
-            ran = self._members.run(self._names, "", tick, number)
+            ran = self.group.run(self._names, "", tick, number)
         self._answered, self._taken = (tick.tick, number), False
         done = self._message
         done.kind, done.tick, done.step, done.iteration = done_t.ITERATION, tick.tick, -1, number
-        self._sent_us, self._repeat_us = self._now_us(), REPEAT_US
-        self._finish(self._names, *ran)
+        self._repeats = Backoff(self._now_us(), REPEAT_US, REPEAT_LONGEST_US)
+        self._finish(self._names, ran)
 
-    def _open(self, opened: Opened, changes: Sequence[channels_change_t], tick: tick_t) -> None:
-        """Before an iteration: what is open from now on. Of what is new it wants the newest alone, as of the tick."""
-        new = opened.take_over(changes)
+    def _open(self, dynamic: DynamicChannels, changes: Sequence[channels_change_t], tick: tick_t) -> None:
+        """Applies decisions on dynamic channels before an iteration; the catch-up rule holds for newly read ones."""
+        new = dynamic.take_over(changes)
         self.inputs.advance(tick.channel, tick.sequence, tick.voids)
-        for box in new:
-            box.skip_to(box.mark - 1)
-        moved = {**self._moved, **{box.plan.index: box for box in new if box.mark}}
-        self._moved = {index: box for index, box in moved.items() if index in self.inputs}
+        for buffer in new:
+            buffer.keep_newest()
+        moved = {**self._moved, **{buffer.plan.index: buffer for buffer in new if buffer.mark}}
+        self._moved = {index: buffer for index, buffer in moved.items() if index in self.inputs}
 
     def _wait_until_taken(self) -> Steps[None]:
         """Waits for the done before the last one: without it, its messages would be seen but not its iteration."""
         until_us = self._now_us() + TAKEN_TIMEOUT_US
         while not self._taken and self._now_us() < until_us:
-            yield min(until_us, self._sent_us + self._repeat_us, self._sender.due_us)
+            yield min(until_us, self._repeats.due_us, self._sender.due_us)
             self._handle_own()
             self._repeat_if_due()
             self._sender.send_due()
 
     def _repeat_if_due(self) -> None:
-        if self._taken or self._now_us() < self._sent_us + self._repeat_us:
+        if self._taken or self._now_us() < self._repeats.due_us:
             return
         self._sender.publish(sync.DONE, self._done, self._sync_port)
-        self._sent_us, self._repeat_us = self._now_us(), min(2 * self._repeat_us, REPEAT_LONGEST_US)
+        self._repeats.repeated(self._now_us())
 
 
 def host_of(assignment: Assignment, network: Network, hooks: ProcessHooks) -> Host:

@@ -1,4 +1,4 @@
-"""Which component of a shared process works at the moment, in memory that outlives the process: to find the guilty."""
+"""Shared-memory marker of the component that each host executes, to attribute crashes."""
 
 import mmap
 import struct
@@ -8,8 +8,8 @@ from fwk.model.plan import NOBODY
 _ENTRY = struct.Struct("=i")
 
 
-class Progress:
-    """One number for each host; the processes forked after this was made write it, the supervisor reads it."""
+class CrashMarker:
+    """One component index for each host; processes forked afterwards write it, the supervisor reads it."""
 
     def __init__(self, hosts: int) -> None:
         self._memory = mmap.mmap(-1, max(1, hosts) * _ENTRY.size)
@@ -17,10 +17,10 @@ class Progress:
             self.works(host, NOBODY)
 
     def works(self, host: int, component: int) -> None:
-        """That component begins to work; `NOBODY`: the framework itself."""
+        """Notes that a component of the host is being executed; `NOBODY`: none is."""
         _ENTRY.pack_into(self._memory, host * _ENTRY.size, component)
 
     def at(self, host: int) -> int:
-        """Index of the component that works, or worked when the process ended."""
+        """Returns the index of the component that is being executed, or was when the process ended."""
         index: int = _ENTRY.unpack_from(self._memory, host * _ENTRY.size)[0]
         return index

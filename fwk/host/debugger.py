@@ -12,7 +12,7 @@ from importlib import import_module
 from types import FrameType
 from typing import Any
 
-from fwk.host.failures import Failure
+from fwk.engine.failures import ComponentFailedError
 from fwk.model.plan import ComponentPlan
 
 LEFT = 75
@@ -69,7 +69,7 @@ def debug(
         debugger.run_quietly(serve)
     except bdb.BdbQuit:
         return LEFT
-    except Failure as failure:
+    except ComponentFailedError as failure:
         print(f"fwk: {failure}", flush=True)
         print(f"fwk: you are where it was raised; 'q' leaves the debugger and {leaving}", flush=True)
         debugger.look_back_at(failure.__cause__ or failure)

@@ -4,11 +4,12 @@ import socket
 from collections.abc import Callable, Mapping
 
 from fwk.bus.network import UdpNetwork
+from fwk.engine.assignment import Assignment
 from fwk.engine.runner import Runner
-from fwk.host.assignment import Assignment
 from fwk.host.background_server import BackgroundServer
 from fwk.host.continuous import host_of
 from fwk.host.hooks import ProcessHooks
+from fwk.host.memory import lift_limit
 from fwk.host.process import StopSignal, give_memory_back
 
 
@@ -24,13 +25,19 @@ class HostDriver:
     ) -> None:
         self._network = UdpNetwork(held)
         self._network.watch(stop.wakeup)
-        hooks = ProcessHooks(stop, make_runner, BackgroundServer().serving, give_memory_back)
+        hooks = ProcessHooks(
+            stopping=stop,
+            make_runner=make_runner,
+            background=BackgroundServer().serving,
+            initialized=give_memory_back,
+            lift_memory_limit=lift_limit,
+        )
         self.host = host_of(assignment, self._network, hooks)
 
     def serve(self) -> None:
         """Takes the host's components from `init` to `finalize`.
 
         Raises:
-            Failure: a component raised.
+            ComponentFailedError: a component raised.
         """
         self._network.run(self.host.serve())

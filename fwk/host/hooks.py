@@ -2,9 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
 
+from fwk.component.component import Component
 from fwk.engine.runner import Runner
 from fwk.host.background_server import Background, no_background
+from fwk.model.plan import ComponentPlan
+
+
+def imported_class(component: ComponentPlan) -> type[Component]:
+    """Imports the class of a component."""
+    found: type[Component] = getattr(import_module(component.module), component.class_name)
+    return found
 
 
 def _never() -> bool:
@@ -17,13 +26,17 @@ def _nothing() -> None:
 
 @dataclass(frozen=True)
 class ProcessHooks:
-    """Ties a host to its process; the defaults are those of a host without a process of its own."""
+    """Ties a host to its process; the defaults suit a host without a process of its own."""
 
     stopping: Callable[[], bool] = _never
     """Returns whether the process has been asked to stop."""
+    find_class: Callable[[ComponentPlan], type[Component]] = imported_class
+    """Returns the class of a component."""
     make_runner: Callable[..., Runner] = Runner
     """Builds the runner of a component, for example one that is profiled."""
     background: Background = no_background
     """Serves other hosts while a continuous component iterates."""
     initialized: Callable[[], None] = _nothing
     """Called when every `init` has returned."""
+    lift_memory_limit: Callable[[], None] = _nothing
+    """Ends the process's memory limit."""

@@ -1,4 +1,4 @@
-"""The host process: answers each tick with one iteration of each of its components and one done."""
+"""The host participant: answers each tick with one iteration of each of its components and one done."""
 
 import struct
 from collections.abc import Sequence
@@ -10,11 +10,11 @@ from fwk.bus.receiver import Receiver
 from fwk.bus.sender import Sender
 from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger
+from fwk.engine.assignment import Assignment
+from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.engine.runner import is_new
-from fwk.host.assignment import Assignment
-from fwk.host.component_group import Members
-from fwk.host.dynamic_channels import Opened
+from fwk.engine.component_group import ComponentGroup, Ran, Written
+from fwk.host.dynamic_channels import DynamicChannels
 from fwk.host.hooks import ProcessHooks
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
@@ -30,7 +30,7 @@ REPORT_US = US_PER_S
 
 
 class Host:
-    """Takes its components from `init` to `finalize`: a participant, which `serve` runs."""
+    """Takes its components from `init` to `finalize`; `serve` is the participant."""
 
     def __init__(self, assignment: Assignment, network: Network, hooks: ProcessHooks) -> None:
         plan = assignment.plan
@@ -45,9 +45,17 @@ class Host:
         self._sender = Sender(self._ports.host(assignment.host), network)
         self._clock = Clock(plan.period_us)
         self.log = Logger(plan.hosts[assignment.host].name, self._clock, self._send_log)
-        self._members = Members(assignment, hooks.make_runner, network.now_us, self.log, self._send_log)
+        self.group = ComponentGroup(
+            assignment,
+            hooks.find_class,
+            hooks.make_runner,
+            network.now_us,
+            hooks.lift_memory_limit,
+            self.log,
+            self._send_log,
+        )
         self._complaints = Complaints(self.log)
-        indices = {component.index for component in self._members.plans}
+        indices = {component.index for component in self.group.plans}
         written = {channel.name: channel for channel in plan.channels if channel.writer in indices}
         read = [channel for channel in plan.channels if not indices.isdisjoint(channel.readers)]
         local = [channel for channel in read if channel.name in written]
@@ -65,53 +73,55 @@ class Host:
         self._outputs = Outputs(
             written, self._ports, self._sender, self.inputs.local, assignment.start.sequences, network.now_us
         )
-        self._opened: Opened | None = None
-        if instances := self._members.instances:
-            self._opened = Opened(plan, assignment.host, self._members, instances, self.inputs, self._outputs)
+        self._dynamic: DynamicChannels | None = None
+        if table := self.group.table:
+            self._dynamic = DynamicChannels(plan, assignment.host, self.group, table, self.inputs, self._outputs)
         self._own = Receiver(self._sender.socket, self._ports.members, "of this run", "fwk/fetch", self._complaints)
-        self._ticks: dict[int, tuple[int, Receiver]] = {}  # by descriptor: stage, where its ticks arrive
-        for stage in sorted({stage for component in self._members.plans for stage in component.stages}):
+        self._ticks: dict[int, tuple[int, Receiver]] = {}  # by descriptor: stage, receiver of its ticks
+        stages = {stage for component in self.group.plans for stage in component.stages}
+        for stage in sorted(stages.union(assignment.further_stages)):
             source = network.group_socket(self._ports.stage(stage))
             receiver = Receiver(source, (self._ports.supervisor,), "the supervisor's", "fwk/tick", self._complaints)
             self._ticks[source.fileno()] = stage, receiver
         network.watch(self._own)
         for _, receiver in self._ticks.values():
             network.watch(receiver)
-        self._takes_part = [
-            [component.name for component in self._members.plans if stage in component.stages]
+        self._names_of_stage = [
+            [component.name for component in self.group.plans if stage in component.stages]
             for stage in range(len(plan.stages))
         ]
-        self._answered = (0, -1)  # the newest (tick, stage) done
+        self._catch_up = CatchUp(assignment.start.incarnation)
+        self._answered = (0, -1)  # the newest (tick, step) that was answered
         self._done = b""
         self._shutdown: Shutdown | None = None
-        self._message = done_t()  # the next done; what stays the same in it is written once
+        self._message = done_t()  # the next done; fields that stay the same are written once
         self._message.run, self._message.host = assignment.run, assignment.host
         self._message.incarnation = assignment.start.incarnation
         self._report_us = 0
 
-    def log_of_now(self) -> Logger:
-        """That of the component that works now; while none does, the process's own."""
-        return self._members.log_of_now() or self.log
+    def current_log(self) -> Logger:
+        """Returns the log of the component that is being executed; while none is, the host's own."""
+        return self.group.current_log() or self.log
 
     def serve(self) -> Steps[None]:
         """Initialises the components, answers ticks until the process is asked to stop, finalizes the components.
 
         Raises:
-            Failure: a component raised.
+            ComponentFailedError: a component raised.
         """
         try:
             self._init()
             yield from self._work()
             yield from self._finalize()
         except MemoryError as error:  # between two iterations
-            self._members.out_of_memory(error)
+            self.group.out_of_memory(error)
         finally:
             self._report()
-            for runner in self._members.runners.values():
+            for runner in self.group.runners.values():
                 runner.log.tell_dropped(at_the_end=True)
 
     def _init(self) -> None:
-        self._members.init(self._report)
+        self.group.init(self._report)
         self._hooks.initialized()
         self._report()
 
@@ -132,14 +142,14 @@ class Host:
                 self._report()
 
     def _finalize(self) -> Steps[None]:
-        """Finalizes the components and sends what they wrote, with a last done: it counts if the run goes on."""
+        """Finalizes the components and sends what they wrote with a final done, which counts if the run goes on."""
         self._ignore_ticks(True)
-        written, tick = self._members.finalize()
+        written, tick = self.group.finalize()
         before = self._done
         done = self._message
         clear_requests(done)
         done.kind, done.tick, done.step, done.iteration = done_t.FINAL, tick, -1, 0
-        self._members.put_lost_frames(done)
+        self.group.put_lost_frames(done)
         self._publish(written, -1, 0)
         self._shutdown = Shutdown(self._network, self._ports, self._sender, before, done, self._outputs.sent)
         yield from self._shutdown.wait(self._handle_own)
@@ -159,38 +169,40 @@ class Host:
         return tick if tick.run == self._assignment.run else None
 
     def _ignore_ticks(self, ignored: bool) -> None:
-        """Leaves ticks in their sockets, where repeated ones would end every wait at once."""
+        """Leaves ticks in their sockets, where repeated ticks would end every wait at once."""
         for _, receiver in self._ticks.values():
             (self._network.unwatch if ignored else self._network.watch)(receiver)
 
     def _answer(self, tick: tick_t, stage: int) -> Steps[None]:
+        """Runs the iterations of a tick, once; repeats the done for a tick that was answered before."""
         if self._assignment.host in tick.absent:
             return
         this = (tick.tick, tick.step)
         if this <= self._answered:
             if this == self._answered:
-                self._sender.publish(sync.DONE, self._done, self._ports.sync)
+                self._sender.publish(sync.DONE, self._done, self._sync_port)
             return
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
-        new = self._opened.take_over(tick.channels) if self._opened and tick.channels else ()
+        new = self._dynamic.take_over(tick.channels) if self._dynamic and tick.channels else ()
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
-        for box in new:
-            box.skip_to(box.mark - 1)
-        if is_new(tick.tick, self._answered[0]):
-            self.inputs.newest_only()
+        for buffer in new:
+            buffer.keep_newest()
+        if self._catch_up.applies(tick.tick):
+            self.inputs.keep_newest()
         lacking = self.inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
             return
         if self._answered[0] == 0:
             self.inputs.forget_predecessor()
-        self._members.deliver(moved)
+        self.group.deliver(moved)
         if tick.settings or tick.channels:
-            self._members.configure(tick.settings, tick.channels)
-        self._members.tell_holder(tick.main_loop)
-        names = self._takes_part[stage]
+            self.group.configure(tick.settings, tick.channels)
+        self.group.set_holder(tick.main_loop)
+        names = self._names_of_stage[stage]
         done = self._message
         done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, tick.step, 0
-        self._finish(names, *self._members.run(names, self._plan.stages[stage], tick, tick.step))
+        self._finish(names, self.group.run(names, self._plan.stages[stage], tick, tick.step))
+        self._catch_up.took_part(tick.tick)
         self._answered = this
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
@@ -200,16 +212,16 @@ class Host:
         self._ignore_ticks(False)
         return complete
 
-    def _finish(self, names: Sequence[str], written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
-        """Sends what these components wrote, and the done, with their requests and what this host never got."""
+    def _finish(self, names: Sequence[str], ran: Ran) -> None:
+        """Sends what these components wrote, and the done with their requests and the messages that were lost."""
         done = self._message
         clear_requests(done)
-        self._members.put_requests(names, done)
+        self.group.put_requests(names, done)
         if self.inputs.lost:
-            done.lost = [lost_message(channel, sequence) for channel, sequence in self.inputs.missed()]
-        self._publish(written, next_us, busy_us)
+            done.lost = [lost_message(channel, sequence) for channel, sequence in self.inputs.new_losses()]
+        self._publish(ran.written, ran.next_us, ran.busy_us)
 
-    def _publish(self, written: list[tuple[str, bytes]], next_us: int, busy_us: int) -> None:
+    def _publish(self, written: Written, next_us: int, busy_us: int) -> None:
         marks = self._outputs.publish(written)
         done = self._message
         done.next_time_us, done.busy_us = next_us, busy_us
@@ -243,18 +255,19 @@ class Host:
     def _give_up(self, gone: gone_t) -> None:
         lost = self.inputs.gone(gone)
         if lost:
-            channel = self.inputs.box(gone.channel).plan.name
+            channel = self.inputs.buffer(gone.channel).plan.name
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.warning(f"{channel}: {lost} messages of {numbers} lost: their writer no longer has them")
 
     def _report(self) -> None:
+        """Sends the states and figures of all components."""
         self._report_us = self._now_us() + (READY_REPORT_US if self._answered[0] == 0 else REPORT_US)
-        runners, figures = self._members.runners, self._members.figures.values()
+        runners, metrics = self.group.runners, self.group.metrics.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host
         actual.incarnation = self._assignment.start.incarnation
-        actual.components = [each.message() for each in figures]
-        actual.times = [each.histogram() for each in figures]
+        actual.components = [each.message() for each in metrics]
+        actual.times = [each.histogram() for each in metrics]
         actual.n = len(actual.components)
         for component in actual.components:
             if component.name in runners:
@@ -262,7 +275,7 @@ class Host:
         first = actual.components[0]
         first.lost += self.inputs.lost
         first.fetched, first.strangers = self.inputs.fetched, self._complaints.total
-        self._sender.publish(b"fwk/actual", actual.encode(), self._ports.sync)
+        self._sender.publish(b"fwk/actual", actual.encode(), self._sync_port)
         for runner in runners.values():
             runner.log.tell_dropped()
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Container, Sequence
 
+from fwk.bus.backoff import Backoff
 from fwk.bus.channel_socket import ChannelSocket, Complain
 from fwk.bus.network import Network, Steps
 from fwk.bus.sender import Sender
@@ -10,17 +11,18 @@ from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, void_t
 
-FIRST_WAIT_US = 200  # on one machine a message is there before the tick that names it, unless it was lost
+FIRST_WAIT_US = 200
+"""Wait before the first fetch: on one machine a message arrives before the tick that names it, unless it was lost."""
 SECOND_WAIT_US = 2_000
 LONGEST_WAIT_US = 100_000
-PATIENCE_US = 500_000  # in real time: who has not answered by then perhaps stands still
+WRITER_TIMEOUT_US = 500_000
+"""In real time: a writer that has not answered by then perhaps stands still, and the gateway is asked instead."""
 
 
 class Inputs:
-    """The channels that a process reads, whether from other processes or from itself (`local`).
+    """The channels that a host reads, from other hosts or from itself (`local`).
 
-    A process that was started in the place of another (`restarted`) may have to ask for messages of its own channels,
-    too: those of its predecessor.
+    A later incarnation (`restarted`) may have to fetch messages of its own channels, too: those of its predecessor.
     """
 
     def __init__(
@@ -39,97 +41,96 @@ class Inputs:
         self._network = network
         self._sender = sender
         self._ports = ports
-        self._patience_us = PATIENCE_US if plan.clock == "wall" else 0
+        self._writer_timeout_us = WRITER_TIMEOUT_US if plan.clock == "wall" else 0
         self._host = host
         self._run = run
         self._plan = plan
         self._complain = complain
         self._writer_host = {channel.index: self._host_of(channel.writer) for channel in read}
         own = {channel.name for channel in local}
-        self._boxes: dict[int, ChannelBuffer] = {}
+        self._buffers: dict[int, ChannelBuffer] = {}
         for channel in read:
             if channel.name in own and not restarted:
-                self._boxes[channel.index] = ChannelBuffer(channel)
+                self._buffers[channel.index] = ChannelBuffer(channel)
             else:
                 senders = (ports.host(self._writer_host[channel.index]), ports.host(ports.gateway))
-                self._boxes[channel.index] = self._listen(channel, senders)
-        self.local = {channel.name: self._boxes[channel.index] for channel in local}
-        self.fetched = 0  # messages that were lost and came after asking
-        self.lost = 0  # messages that could not be had any more
+                self._buffers[channel.index] = self._listen(channel, senders)
+        self.local = {channel.name: self._buffers[channel.index] for channel in local}
+        self.fetched = 0
+        """Messages that were lost on their way and came after a fetch."""
+        self.lost = 0
+        """Messages that no process has any more."""
 
     def close(self) -> None:
         """Gives all sockets back."""
-        for box in self._boxes.values():
-            if isinstance(box, ChannelSocket):
-                box.close()
+        for buffer in self._buffers.values():
+            if isinstance(buffer, ChannelSocket):
+                buffer.close()
 
     def advance(
         self, channels: Sequence[int], sequences: Sequence[int], voids: Sequence[void_t]
     ) -> list[ChannelBuffer]:
-        """Takes over a tick's marks; returns the boxes in which something becomes visible."""
+        """Takes over the marks of a tick; returns the buffers in which messages became visible."""
         for void in voids:
-            box = self._boxes.get(void.channel)
-            if box is not None:
-                box.void(void.above_sequence, void.up_to_tick, void.before_incarnation)
+            buffer = self._buffers.get(void.channel)
+            if buffer is not None:
+                buffer.void(void.above_sequence, void.up_to_tick, void.before_incarnation)
         moved = []
         for index, sequence in zip(channels, sequences, strict=True):
-            box = self._boxes.get(index)
-            if box is not None and sequence > box.mark:
-                box.mark = sequence
-                moved.append(box)
+            buffer = self._buffers.get(index)
+            if buffer is not None and sequence > buffer.mark:
+                buffer.mark = sequence
+                moved.append(buffer)
         return moved
 
     def open(self, channel: ChannelPlan, writer_host: int | None = None) -> ChannelBuffer:
-        """From now on a channel is read that was not.
-
-        Its messages come from that host; without one from where the plan says.
-        """
+        """Begins to read a channel; its writer is on `writer_host`, or where the plan says."""
         if writer_host is None:
             writer_host = self._host_of(channel.writer)
         self._writer_host[channel.index] = writer_host
-        # Its writer may change, sooner than this process hears of it: whatever comes from the run is taken.
-        box = self._boxes[channel.index] = self._listen(channel, self._ports.members)
-        return box
+        # Its writer may change before this host hears of it, so every process of the run may send.
+        buffer = self._buffers[channel.index] = self._listen(channel, self._ports.members)
+        return buffer
 
     def _listen(self, channel: ChannelPlan, senders: Container[int]) -> ChannelSocket:
         source = self._network.group_socket(self._ports.channel(channel.index))
         return ChannelSocket(channel, source, senders, self._complain)
 
-    def comes_from(self, channel: int, writer_host: int) -> None:
-        """Another process writes a channel from now on, and is asked for what is lost of it."""
-        if channel in self._boxes:
+    def set_writer(self, channel: int, writer_host: int) -> None:
+        """Fetches lost messages of a channel from another host from now on."""
+        if channel in self._buffers:
             self._writer_host[channel] = writer_host
 
     def close_channel(self, channel: int) -> None:
-        """Nobody here reads a channel any more."""
-        box = self._boxes.pop(channel)
-        if isinstance(box, ChannelSocket):
-            box.close()
+        """Ends reading a channel."""
+        buffer = self._buffers.pop(channel)
+        if isinstance(buffer, ChannelSocket):
+            buffer.close()
 
     def __contains__(self, channel: int) -> bool:
-        return channel in self._boxes
+        return channel in self._buffers
 
     def _host_of(self, writer: int) -> int:
         return self._ports.gateway if writer == NOBODY else self._plan.components[writer].host
 
-    def box(self, channel: int) -> ChannelBuffer:
-        """The channel with that index."""
-        return self._boxes[channel]
+    def buffer(self, channel: int) -> ChannelBuffer:
+        """Returns the buffer of the channel with this index."""
+        return self._buffers[channel]
 
-    def newest_only(self) -> None:
-        """For a late joiner: of what is visible already it wants the newest."""
-        for box in self._boxes.values():
-            box.skip_to(box.mark - 1)
+    def keep_newest(self) -> None:
+        """Drops every visible message but the newest of each channel, as the catch-up rule wants it."""
+        for buffer in self._buffers.values():
+            buffer.keep_newest()
 
     def forget_predecessor(self) -> None:
-        """From now on what this process reads of itself never comes from outside."""
-        for box in self.local.values():
-            if isinstance(box, ChannelSocket):
-                box.close()
+        """Stops listening to this host's own channels, as no message of a predecessor is missing any more."""
+        for buffer in self.local.values():
+            if isinstance(buffer, ChannelSocket):
+                buffer.close()
 
-    def collect(self, boxes: Sequence[ChannelBuffer]) -> list[ChannelBuffer]:
-        """Takes everything visible in `boxes` from their sockets; returns the boxes that still lack messages."""
-        return [box for box in boxes if not box.collect()]
+    def collect(self, buffers: Sequence[ChannelBuffer]) -> list[ChannelBuffer]:
+        """Takes everything visible in `buffers` from their sockets; returns the buffers that still lack messages."""
+        return [buffer for buffer in buffers if not buffer.collect()]
 
     def fetch(self, lacking: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> Steps[bool]:
         """Fetches until everything visible in `lacking` is here; returns False if `serve` says that waiting is over.
@@ -138,62 +139,68 @@ class Inputs:
         that stands still is not waited for: after a while the gateway is asked, and what it does not have is lost.
         """
         network = self._network
-        watched = [box for box in lacking if isinstance(box, ChannelSocket) and not box.closed]
-        for box in watched:
-            network.watch(box)
+        watched = [buffer for buffer in lacking if isinstance(buffer, ChannelSocket) and not buffer.closed]
+        for buffer in watched:
+            network.watch(buffer)
         began_us = network.now_us()
-        next_us, ask_us, asked = SECOND_WAIT_US, began_us + FIRST_WAIT_US, 0
+        fetches = Backoff(began_us, FIRST_WAIT_US, LONGEST_WAIT_US, SECOND_WAIT_US)
+        fetched = 0
         while lacking:
-            yield min(ask_us, self._sender.due_us)
+            yield min(fetches.due_us, self._sender.due_us)
             self._sender.send_due()
             if not serve():
                 break
             lacking = self.collect(lacking)
-            if lacking and network.now_us() >= ask_us:
-                asked = max(asked, sum(len(box.missing()) for box in lacking))
-                ask_us = network.now_us() + next_us
-                self._ask(lacking, patient=not self._patience_us or ask_us < began_us + self._patience_us)
-                next_us = min(2 * next_us, LONGEST_WAIT_US)
-        for box in watched:
-            network.unwatch(box)
-        self.fetched += asked
+            now_us = network.now_us()
+            if lacking and now_us >= fetches.due_us:
+                fetched = max(fetched, sum(len(buffer.missing()) for buffer in lacking))
+                fetches.repeated(now_us)
+                self._fetch_all(lacking, self._asks_writer(began_us, fetches.due_us))
+        for buffer in watched:
+            network.unwatch(buffer)
+        self.fetched += fetched
         return not lacking
 
+    def _asks_writer(self, began_us: int, due_us: int) -> bool:
+        """Returns whether a writer still has time to answer before it is taken for one that stands still."""
+        return not self._writer_timeout_us or due_us < began_us + self._writer_timeout_us
+
     def gone(self, message: gone_t) -> int:
-        """A writer no longer has some messages; returns how many were lost by that."""
-        box = self._boxes.get(message.channel)
-        lost = box.give_up(message.first_sequence, message.last_sequence) if box else 0
+        """Takes the answer that messages are no longer kept; returns how many were lost by that."""
+        buffer = self._buffers.get(message.channel)
+        lost = buffer.give_up(message.first_sequence, message.last_sequence) if buffer else 0
         self.lost += lost
         return lost
 
     def have(self, marks: Sequence[tuple[int, int]]) -> bool:
-        """Whether everything up to these numbers of channels is here, visible or not; asks for what is not."""
+        """Returns whether all messages up to these marks are here, visible or not; fetches missing ones."""
         lacking = []
         for index, sequence in marks:
-            missing = self._boxes[index].lacks(sequence)
+            missing = self._buffers[index].lacks(sequence)
             if missing:
-                lacking.append((self._boxes[index], missing))
-        for box, missing in lacking:
-            self._fetch(box, missing, self._writer_host[box.plan.index])
+                lacking.append((self._buffers[index], missing))
+        for buffer, missing in lacking:
+            self._fetch(buffer, missing, self._writer_host[buffer.plan.index])
         return not lacking
 
-    def missed(self) -> list[tuple[int, int]]:
-        """Channel and sequence number of visible messages that never came, each once."""
+    def new_losses(self) -> list[tuple[int, int]]:
+        """Returns channel and sequence number of visible messages that never came, each once."""
         found = []
-        for index, box in self._boxes.items():
-            if box.missed:
-                found += [(index, number) for number in box.missed]
-                box.missed = []
+        for index, buffer in self._buffers.items():
+            if buffer.missed:
+                found += [(index, number) for number in buffer.missed]
+                buffer.missed = []
         return found
 
-    def _ask(self, lacking: Sequence[ChannelBuffer], *, patient: bool) -> None:
-        for box in lacking:
-            missing = box.missing()
+    def _fetch_all(self, lacking: Sequence[ChannelBuffer], from_writer: bool) -> None:
+        for buffer in lacking:
+            missing = buffer.missing()
             if missing:
-                self._fetch(box, missing, self._writer_host[box.plan.index] if patient else self._ports.gateway)
+                host = self._writer_host[buffer.plan.index] if from_writer else self._ports.gateway
+                self._fetch(buffer, missing, host)
 
-    def _fetch(self, box: ChannelBuffer, missing: Sequence[int], host: int) -> None:
+    def _fetch(self, buffer: ChannelBuffer, missing: Sequence[int], host: int) -> None:
         fetch = fetch_t()
-        fetch.run, fetch.host, fetch.channel = self._run, self._host, box.plan.index
+        fetch.run, fetch.host, fetch.channel = self._run, self._host, buffer.plan.index
         fetch.first_sequence, fetch.last_sequence = missing[0], missing[-1]
         self._sender.send(b"fwk/fetch", fetch.encode(), self._ports.host(host))

@@ -1,10 +1,10 @@
-"""What a host sends: its components' messages, and again those that readers lost."""
+"""The channels that a host writes: sends messages and answers fetches."""
 
 from collections.abc import Callable, Mapping
 
 from fwk.bus.sender import Sender
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.engine.message_history import History, gaps
+from fwk.engine.message_history import MessageHistory, gaps
 from fwk.lcm.messages import tick_and_sequence_of
 from fwk.model.plan import ChannelPlan
 from fwk.model.ports import Ports
@@ -12,10 +12,11 @@ from lcmtypes.core import fetch_t, gone_t
 
 LARGE_BYTES = 64 << 10
 SHARED_US = 20_000
+"""A large message that was sent again serves all readers that fetch it within this time."""
 
 
 class Outputs:
-    """The channels that a host's components write."""
+    """Sends what the components of a host write, and keeps it for readers that lose it."""
 
     def __init__(
         self,
@@ -27,9 +28,11 @@ class Outputs:
         now_us: Callable[[], int],
     ) -> None:
         self._written = {
-            name: (plan.index, name.encode(), ports.channel(plan.index), History()) for name, plan in written.items()
+            name: (plan.index, name.encode(), ports.channel(plan.index), MessageHistory())
+            for name, plan in written.items()
         }
-        self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}  # sent by predecessors
+        # What earlier incarnations have sent, by channel.
+        self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
         self._repeated: dict[tuple[int, int], int] = {}  # channel, number: until when it is not sent again
         self._sender = sender
@@ -39,40 +42,40 @@ class Outputs:
 
     @property
     def sent(self) -> dict[int, int]:
-        """The newest number of each channel index that this process has sent."""
+        """Returns the newest sequence number that this host has sent of each channel, by index."""
         return {index: history.newest for index, (_, _, history) in self._by_index.items() if history.newest}
 
     def publish(self, written: list[tuple[str, bytes]]) -> dict[int, int]:
-        """Sends messages; returns the new mark of each channel index."""
+        """Sends messages; returns the new mark of each channel, by index."""
         marks = {}
         for channel, data in written:
             index, name, port, history = self._written[channel]
             tick, sequence = tick_and_sequence_of(data)
             history.add(tick, sequence, data)
-            box = self._local.get(channel)
-            if box is not None:
-                box.put(sequence, data)
+            buffer = self._local.get(channel)
+            if buffer is not None:
+                buffer.put(sequence, data)
             self._sender.publish(name, data, port)
             marks[index] = sequence
         return marks
 
     def open(self, index: int, channel: str) -> None:
-        """From now on this process writes a channel that was opened at run time."""
+        """Begins to write a dynamic channel."""
         if index not in self._by_index:
-            self._by_index[index] = (channel.encode(), self._ports.channel(index), History())
+            self._by_index[index] = (channel.encode(), self._ports.channel(index), MessageHistory())
         self._written[channel] = (index, *self._by_index[index])
 
     def answer(self, fetch: fetch_t) -> None:
-        """Sends again what a reader lacks, or tells it that this is no longer to be had.
+        """Sends fetched messages again, or answers that they are no longer kept.
 
-        What a predecessor had sent, before this process was started in its place, the gateway may still have.
+        A fetch of messages that an earlier incarnation sent goes on to the gateway, which may still have them.
         """
         if fetch.channel not in self._before:
-            self._answer_opened(fetch)
+            self._answer_dynamic(fetch)
             return
         before = self._before[fetch.channel]
         if fetch.first_sequence <= before:
-            self._pass_on(fetch, fetch.first_sequence, min(fetch.last_sequence, before))
+            self._forward(fetch, fetch.first_sequence, min(fetch.last_sequence, before))
             fetch.first_sequence = before + 1
         _, _, history = self._by_index[fetch.channel]
         kept = history.between(fetch.first_sequence, fetch.last_sequence)
@@ -85,20 +88,20 @@ class Outputs:
             gone.first_sequence, gone.last_sequence = fetch.first_sequence, oldest - 1
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
 
-    def _answer_opened(self, fetch: fetch_t) -> None:
-        """Of a channel that was opened at run time: here is what this process wrote, the gateway may have the rest.
+    def _answer_dynamic(self, fetch: fetch_t) -> None:
+        """Answers a fetch of a dynamic channel with what this host wrote; the gateway may have the rest.
 
-        Others may have written between, also a predecessor that this process has not opened it again after.
+        Other hosts may have written the channel meanwhile, and so may an earlier incarnation of this one.
         """
         own = self._by_index.get(fetch.channel)
         kept = own[2].between(fetch.first_sequence, fetch.last_sequence) if own else []
         for sequence, data in kept:
             self._repeat(fetch.channel, sequence, data)
         for first, last in gaps((sequence for sequence, _ in kept), fetch.first_sequence, fetch.last_sequence):
-            self._pass_on(fetch, first, last)
+            self._forward(fetch, first, last)
 
     def _repeat(self, channel: int, sequence: int, data: bytes) -> None:
-        """Sends a message again; a large one slowly, and once for all who ask at the same time."""
+        """Sends a message again; a large one once for all readers that fetch it at the same time."""
         name, port, _ = self._by_index[channel]
         now_us, this = self._now_us(), (channel, sequence)
         if now_us < self._repeated.get(this, 0):
@@ -108,8 +111,8 @@ class Outputs:
             self._repeated = {each: until_us for each, until_us in self._repeated.items() if until_us > now_us}
             self._repeated[this] = max(now_us, self._sender.paced_until_us) + SHARED_US
 
-    def _pass_on(self, fetch: fetch_t, first_sequence: int, last_sequence: int) -> None:
-        passed = fetch_t()
-        passed.run, passed.host, passed.channel = fetch.run, fetch.host, fetch.channel
-        passed.first_sequence, passed.last_sequence = first_sequence, last_sequence
-        self._sender.send(b"fwk/fetch", passed.encode(), self._ports.host(self._ports.gateway))
+    def _forward(self, fetch: fetch_t, first_sequence: int, last_sequence: int) -> None:
+        forwarded = fetch_t()
+        forwarded.run, forwarded.host, forwarded.channel = fetch.run, fetch.host, fetch.channel
+        forwarded.first_sequence, forwarded.last_sequence = first_sequence, last_sequence
+        self._sender.send(b"fwk/fetch", forwarded.encode(), self._ports.host(self._ports.gateway))

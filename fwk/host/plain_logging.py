@@ -9,21 +9,21 @@ from lcmtypes.core import log_t
 _LEVELS = ((logging.ERROR, log_t.ERROR), (logging.WARNING, log_t.WARNING), (logging.INFO, log_t.INFO))
 
 
-def forward_logging(log_of_now: Callable[[], Logger]) -> None:
+def forward_logging(current_log: Callable[[], Logger]) -> None:
     """From now on in this process: goes where the lines of the component go, if its `log_level` is such."""
     root = logging.getLogger()
-    root.addHandler(_Forward(log_of_now))
+    root.addHandler(_Forward(current_log))
     root.setLevel(logging.DEBUG)  # which of it is written is the component's setting
 
 
 class _Forward(logging.Handler):
-    def __init__(self, log_of_now: Callable[[], Logger]) -> None:
+    def __init__(self, current_log: Callable[[], Logger]) -> None:
         super().__init__()
-        self._log_of_now = log_of_now
+        self._current_log = current_log
 
     def emit(self, record: logging.LogRecord) -> None:
         try:
-            log = self._log_of_now()
+            log = self._current_log()
             level = next((ours for theirs, ours in _LEVELS if record.levelno >= theirs), log_t.DEBUG)
             if log.level <= level:
                 log.write(level, self.format(record), short_path(record.pathname), record.lineno)

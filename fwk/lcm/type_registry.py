@@ -1,7 +1,9 @@
 """Finds the LCM type of recorded bytes by their fingerprint, among all generated types."""
 
+import importlib
 import pkgutil
 import sys
+from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -13,6 +15,12 @@ from fwk.lcm import envelope, messages, typegen
 MessageType = type[messages.Message]
 
 
+def put_first(folders: Sequence[str]) -> None:
+    """Puts folders in front of the module search path, in this order: their modules win over installed ones."""
+    sys.path[:] = [*folders, *(entry for entry in sys.path if entry not in folders)]
+    importlib.invalidate_caches()
+
+
 def use_types_of(folder: Path) -> None:
     """Adds the types of `folder`/lcmtypes/*.lcm, generating their classes where needed; no such folder adds nothing.
 
@@ -21,8 +29,7 @@ def use_types_of(folder: Path) -> None:
     """
     if any((folder / "lcmtypes").glob("*.lcm")):
         typegen.generate((folder / "lcmtypes").resolve())
-        if str(folder.resolve()) not in sys.path:
-            sys.path.append(str(folder.resolve()))
+        put_first([str(folder.resolve())])
         by_fingerprint.cache_clear()
         _interfaces.cache_clear()
         _in_envelopes.cache_clear()

@@ -8,7 +8,7 @@ from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.images import Ring, VisionMaster
 from fwk.component.port import Port
-from fwk.engine.runner import Runner, Surroundings
+from fwk.engine.runner import Runner, RunSection
 from fwk.lcm import envelope
 from fwk.testing.opening import Opening
 from fwk.testing.plans import alone
@@ -65,8 +65,8 @@ class Bench:
             for channel in channels[port.attribute]
         }
         config = self.declaration.config(**settings)
-        surroundings = Surroundings(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
-        self.runner = Runner(self.declaration, name, config, channels, surroundings)
+        section = RunSection(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
+        self.runner = Runner(self.declaration, name, config, channels, section)
         self.component: Any = self.runner.component
         self._sent: dict[str, list[bytes]] = {}
         self._opening: Opening | None = None

@@ -1,30 +1,41 @@
-"""A whole system in one process and one thread: the iteration contract without buses, for tests of many components."""
+"""A whole system in one process and one thread, for tests of many components."""
 
-from collections import ChainMap
-from collections.abc import Mapping, MutableMapping, Sequence
-from typing import Any
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
 
+from fwk.bus.sync import place_of
 from fwk.clock import US_PER_S
 from fwk.component.component import DEFAULT_STAGES, Component
 from fwk.component.declaration import declaration
 from fwk.component.images import Ring
 from fwk.component.main_loop import Holding
-from fwk.engine.runner import Runner, Surroundings
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.channel_grants import Openings
+from fwk.engine.component_group import Written
+from fwk.engine.failures import ComponentFailedError
+from fwk.engine.runner import Runner
+from fwk.engine.visibility import Ledger
 from fwk.gateway.ingress import STAGE, WRITER
+from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
+from fwk.model.channel_table import change_message
 from fwk.model.names import LINES
-from fwk.plan.wiring.component_spec import Wish
-from fwk.plan.wiring.wiring import wire
-from fwk.testing.opening import Opening
+from fwk.model.plan import NOBODY, ComponentPlan, LogPlan
+from fwk.model.requests import channel_request_of
 from fwk.testing.plans import plan_of
-from lcmtypes.core import log_t
+from lcmtypes.core import done_t, log_t
+
+T = TypeVar("T")
 
 
 class MemorySystem:
-    """Components in lockstep: `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`.
+    """Components in lockstep, each in a host of its own: the same `Host` as in a process, told by a loop in memory.
 
-    Gives the same messages as the same components in processes of their own. The channels of `outside`, given with
-    their types, are the test's to write, with `come_in`.
+    `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those of
+    the same components in processes. A test writes the channels of `outside`, given with their types, with `come_in`.
+
+    Raises:
+        ValueError: the components do not fit together.
     """
 
     def __init__(
@@ -37,127 +48,175 @@ class MemorySystem:
         stages: tuple[str, ...] = DEFAULT_STAGES,
         outside: Mapping[str, type[messages.Message]] | None = None,
     ) -> None:
-        mistakes: list[str] = []
-        wishes = [
-            Wish(name, declaration(component), (channels or {}).get(name, {})) for name, component in components.items()
-        ]
-        wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
-        if mistakes:
-            raise ValueError("\n".join(mistakes))
+        for name, kind in components.items():
+            if "plugins" in declaration(kind).aspects.values():
+                raise ValueError(f"{name} asks for PluginControl, and here are no processes; take Bench, or a run")
+        plan = plan_of(
+            components,
+            settings,
+            channels,
+            period_s=period_s,
+            stages=stages,
+            seed=seed,
+            outside={name: messages.type_name(kind) for name, kind in (outside or {}).items()},
+            log=LogPlan(lines_per_s=0),
+        )
         self.now_us = 0
         self.ticks = 0
         self.logged: list[log_t] = []
-        self.sent: dict[str, list[bytes]] = {channel.name: [] for channel in wiring.channels}
+        self.sent: dict[str, list[bytes]] = {channel.name: [] for channel in plan.channels}
         """Every message so far, by channel."""
-        self._types: MutableMapping[str, type[messages.Message]] = {
-            channel.name: messages.type_named(channel.type_name) for channel in wiring.channels
-        }
-        self._period_us = round(period_s * US_PER_S)
-        self._stages = stages
-        self._time_source: Runner | None = None
-        rings = {channel.name: Ring.create(channel.name) for channel in wiring.channels if channel.images}
-        surroundings = Surroundings(seed, self._period_us, self.logged.append, rings, stages=stages)
-        self._holding = Holding({wish.name: wish.declaration.stages for wish in wishes})
-        self.runners: dict[str, Runner] = {}
-        self._seen: dict[str, dict[str, int]] = {}
-        self._continuous: list[tuple[Runner, int]] = []  # with the time from iteration to iteration
-        self._due_us: dict[str, int] = {}
-        self._by_stage: dict[str, list[Runner]] = {stage: [] for stage in stages}
-        for wish, ports in zip(wishes, wiring.ports, strict=True):
-            config_type = wish.declaration.config
-            config = config_type(**(settings or {}).get(wish.name, {}))
-            runner = Runner(wish.declaration, wish.name, config, ports, surroundings)
-            self.runners[wish.name] = runner
-            self._seen[wish.name] = dict.fromkeys(runner.readers, 0)
-            for stage in wish.declaration.stages:
-                self._by_stage[stage].append(runner)
-            if runner.has_plugins:
-                raise ValueError(f"{wish.name} asks for PluginControl, and here are no processes; take Bench, or a run")
-            if wish.declaration.rate_hz is not None:
-                rate_hz = wish.declaration.rate_hz
-                self._continuous.append((runner, round(US_PER_S / rate_hz) if rate_hz else 0))
-                self._due_us[wish.name] = 0
-            if "time_source" in wish.declaration.aspects.values():
-                self._time_source = runner
-        self._opening: Opening | None = None
-        if any(runner.has_blackboard for runner in self.runners.values()):
-            plan = plan_of(
-                components,
-                settings,
-                channels,
-                stages=stages,
-                outside={name: messages.type_name(kind) for name, kind in (outside or {}).items()},
+        self._plan = plan
+        self._types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
+        self._indices = {channel.name: channel.index for channel in plan.channels}
+        self._readers = {channel.index: set(channel.readers) for channel in plan.channels}
+        self._newest: dict[int, bytes] = {}
+        self._ledger = Ledger(plan)
+        self._holding = Holding({each.name: [stages[stage] for stage in each.stages] for each in plan.components})
+        self._openings = Openings(plan)
+        self._changes = 0
+        self._next_us = -1  # logical time of the next tick, as the time source set it last
+        self._time_source = [
+            each.index
+            for each in plan.components
+            if "time_source" in declaration(components[each.name]).aspects.values()
+        ]
+        self._due_us: dict[int, int] = {}  # of the continuous components
+        rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+        for component in plan.components:
+            self._openings.came(component.index, 1)
+        self._hosts = [
+            MemoryHost(
+                Assignment(plan, component.index, 0, Start(1, {}, {}), rings),
+                self._ledger,
+                self.logged.append,
+                lambda component: components[component.name],
             )
-            self._opening = Opening(plan, self.runners, self.sent)
-            self._types = ChainMap(self._types, self._opening.types)
-        for runner in self.runners.values():
-            runner.init()
+            for component in plan.components
+        ]
+        for host in self._hosts:
+            self._call(host.init)
+        self.runners: dict[str, Runner] = {
+            component.name: host.runners[component.name]
+            for component, host in zip(plan.components, self._hosts, strict=True)
+        }
 
     def tick(self, times: int = 1) -> None:
-        """Runs the main loop."""
+        """Runs the main loop.
+
+        Raises:
+            Exception: whatever a component raises.
+        """
         for _ in range(times):
             if LINES in self.sent:
                 for line in self.logged[len(self.sent[LINES]) :]:
                     self.come_in(LINES, line)
             self.ticks += 1
-            if self._time_source and self._time_source.time_source.next_us >= 0:
-                self.now_us = self._time_source.time_source.next_us
-            else:
-                self.now_us += self._period_us
+            self.now_us = self._next_us if self._next_us >= 0 else self.now_us + self._plan.period_us
             self._holding.decide()
-            if self._opening:
-                self._open(self._opening)
-            visible = {channel: len(sent) for channel, sent in self.sent.items()}
-            done = [made for runner in self._due() for made in self._run(runner, 1, "", visible)]
-            for number, stage in enumerate(self._holding.order or self._stages):
-                visible = {channel: len(sent) for channel, sent in self.sent.items()}
-                for runner in self._by_stage[stage]:
-                    self._publish(self._run(runner, number, stage, visible))
-            self._publish(done)
-
-    def _open(self, opening: Opening) -> None:
-        for name, channel, first in opening.decide():
-            if first < 0:
-                del self._seen[name][channel]
-            else:
-                self._seen[name][channel] = first
+            if self._openings.asked:
+                self._decide()
+            self._ledger.begin()
+            late = [self._iterate_on(component) for component in self._due()]
+            for step, stage in enumerate(self._holding.order or self._plan.stages):
+                self._ledger.begin()
+                number = self._plan.stages.index(stage)
+                ran = [
+                    self._iterate(component, step, number)
+                    for component in self._plan.components
+                    if number in component.stages
+                ]
+                for written in ran:
+                    self._publish(written)
+            for written in late:
+                self._publish(written)
 
     def come_in(self, channel: str, message: Any) -> None:
-        """Between two ticks: a program outside writes a message, visible from the next tick on."""
+        """Writes a message as a program outside does between two ticks; it is visible from the next tick on."""
         stamp = envelope.stamper(self._types[channel], channel)
-        sent = self.sent[channel]
-        sent.append(stamp(message, self.ticks + 1, len(sent) + 1, self.now_us, STAGE, WRITER))
+        number = len(self.sent[channel]) + 1
+        self._publish([(channel, stamp(message, self.ticks + 1, number, self.now_us, STAGE, WRITER))])
 
     def newest(self, channel: str) -> Any:
-        """The newest message of a channel, decoded; the type's zero before the first."""
+        """Returns the newest message of a channel, decoded; the type's zero before the first."""
         sent = self.sent[channel]
         return envelope.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
 
-    def _due(self) -> list[Runner]:
-        """Continuous components whose time has come: here it is logical time, and they are done at the tick's end."""
+    def _due(self) -> list[ComponentPlan]:
+        """Returns the continuous components whose time has come: here it is logical time, and a tick is long enough."""
         found = []
-        for runner, period_us in self._continuous:
-            if self.now_us >= self._due_us[runner.name]:
-                self._due_us[runner.name] = max(self.now_us, self._due_us[runner.name]) + period_us
-                found.append(runner)
+        for component in self._plan.components:
+            due_us = self._due_us.get(component.index, 0)
+            if component.rate_hz is not None and self.now_us >= due_us:
+                period_us = round(US_PER_S / component.rate_hz) if component.rate_hz else 0
+                self._due_us[component.index] = max(self.now_us, due_us) + period_us
+                found.append(component)
         return found
 
-    def _publish(self, written: Sequence[tuple[str, bytes]]) -> None:
-        for channel, data in written:
-            self.sent[channel].append(data)
+    def _iterate(self, component: ComponentPlan, step: int, stage: int) -> Written:
+        host = self._hosts[component.index]
+        tick = host.compose(self.ticks, step, self.now_us, self._holder)
+        return self._taken(component, *self._call(lambda: host.tick(tick, stage)))
 
-    def _run(self, runner: Runner, number: int, stage: str, visible: Mapping[str, int]) -> list[tuple[str, bytes]]:
-        seen = self._seen[runner.name]
-        fresh = {channel: self.sent[channel][seen[channel] : visible[channel]] for channel in seen}
-        if self._opening:
-            fresh = self._opening.of_their_types(runner, fresh)
-        for channel in seen:
-            seen[channel] = visible[channel]
-        runner.main_loop.holder = self._holding.holder
-        written = runner.iterate(self.ticks, number, stage, self.now_us, fresh)
-        if self._opening:
-            self._opening.ask(self.ticks, number, runner)
-        wish = runner.main_loop.take()
-        if wish is not None:
-            self._holding.ask(self.ticks, number, runner.name, wish)
+    def _iterate_on(self, component: ComponentPlan) -> Written:
+        host = self._hosts[component.index]
+        host.tell(host.compose(self.ticks, 0, self.now_us, self._holder))
+        return self._taken(component, *self._call(host.iterate))
+
+    @property
+    def _holder(self) -> int:
+        names = [component.name for component in self._plan.components]
+        return names.index(self._holding.holder) if self._holding.holder else NOBODY
+
+    def _taken(self, component: ComponentPlan, written: Written, done: done_t) -> Written:
+        """Takes a done: the time of the next tick, and what the component requested."""
+        if component.index in self._time_source:
+            self._next_us = done.next_time_us
+        for request in done.main_loop:
+            stages = [self._plan.stages[stage] for stage in request.schedule]
+            self._holding.ask(done.tick, place_of(done), component.name, stages)
+        if done.channels:
+            asked = [channel_request_of(request) for request in done.channels]
+            self._openings.ask(done.tick, place_of(done), component.name, asked)
         return written
+
+    def _publish(self, written: Written) -> None:
+        """Makes messages visible from the next step of the tick on."""
+        for channel, data in written:
+            index = self._indices[channel]
+            self.sent[channel].append(data)
+            self._newest[index] = data
+            self._ledger.publish(index, messages.sequence_of(data))
+            for reader in self._readers[index]:
+                self._hosts[reader].put(index, data)
+
+    def _decide(self) -> None:
+        """Decides at the boundary what components asked of the blackboard."""
+        facts, _ = self._openings.decide()
+        numbered = [
+            fact.numbered(self._ledger.latest(fact.opening.channel)) if fact.opening else fact for fact in facts
+        ]
+        self._changes += 1
+        change = change_message(self._changes, numbered)
+        self._ledger.opened(self._openings.instances)
+        for fact in numbered:
+            if fact.opening:
+                opening = fact.opening
+                self._types[opening.name] = messages.type_named(opening.type_name)
+                self.sent.setdefault(opening.name, [])
+                self._readers.setdefault(opening.channel, set())
+                if fact.kind == "write":
+                    self._indices[opening.name] = opening.channel
+                elif fact.kind == "read":
+                    self._readers[opening.channel].add(fact.component)
+        for component in self._plan.components:
+            if component.opens:
+                self._hosts[component.index].decide(change, self._newest)
+
+    @staticmethod
+    def _call(work: Callable[[], T]) -> T:
+        """Lets a host work; what a component raises comes out as it was raised."""
+        try:
+            return work()
+        except ComponentFailedError as failure:
+            raise failure.__cause__ or failure from None

@@ -10,9 +10,9 @@ import typer
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
+from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
-from fwk.host.failures import Failure
 from fwk.model.errors import hint
 from fwk.recording.difference import Difference
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -110,7 +110,7 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
         try:
             made.run(to_tick, begins)
         except RecordingError as error:
-            raise Failure(str(error)) from (error.__cause__ or error)
+            raise ComponentFailedError(str(error)) from (error.__cause__ or error)
 
     request = DebugRequest(components[name].host, components[name])
     if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from fwk.lcm.type_registry import put_first
 from fwk.lcm.typegen import TypeGenerationError, generate
 from fwk.model.errors import Problems
 from fwk.plan.files.launch_file import FOLDER, INSTALLED, shown
@@ -32,9 +33,7 @@ def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
 
 def join(folders: Sequence[str], problems: Problems) -> None:
     """Puts folders on the path of modules, before the installed ones, and generates their types."""
-    for folder in reversed(folders):
-        if folder not in sys.path:
-            sys.path.insert(0, folder)
+    put_first(folders)
     for folder in folders:
         types = Path(folder) / "lcmtypes"
         for source in sorted(types.glob("*.lcm")):

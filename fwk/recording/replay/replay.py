@@ -1,16 +1,20 @@
 """Replays a recording tick by tick and compares what the components write with what they wrote."""
 
+import json
 import traceback
 from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import Any
 
 from fwk.component.images import Ring
-from fwk.engine.runner import is_new
+from fwk.engine.assignment import Start
+from fwk.engine.component_group import Written
+from fwk.engine.failures import ComponentFailedError
+from fwk.engine.visibility import Ledger
 from fwk.lcm.envelope import fingerprint
 from fwk.lcm.messages import MessageError, sequence_of, type_named
-from fwk.model.channel_table import Fact, Instances, facts_in
+from fwk.model.channel_table import Instances, facts_in, text_of
 from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.tick_events import (
@@ -30,41 +34,47 @@ from fwk.model.tick_events import (
     TickEvent,
     TickTold,
 )
-from fwk.recording.difference import Difference, changed, missing
-from fwk.recording.replay.actors import Actor, ContinuousActor, Newest, Written
+from fwk.recording.difference import Difference
+from fwk.recording.replay.comparison import Comparison
 from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames
+from fwk.recording.replay.guard import Guard, ReachesOutsideError
+from fwk.recording.replay.life import Life, Owed, one_component_a_host
+from fwk.recording.replay.recorded_messages import RecordedMessages
 from fwk.recording.replay.recording import RecordedTick, Recording, RecordingError
-from fwk.recording.replay.selection import choose, unrepeatable
-from lcmtypes.core import header_t, settings_change_t
+from fwk.recording.replay.selection import choose, reaches_outside, unrepeatable
+from lcmtypes.core import channels_change_t, header_t, settings_change_t, tick_record_t
 
-Made = list[tuple[Actor, Written]]
-Iteration = Callable[[], Written | None]
-MESSAGES_MAX = 1_000_000
-"""Of a channel in one tick; a record that names more is damaged."""
+Made = list[tuple[Life, Written]]
+"""What the lives of a host wrote in one step of a tick."""
 
 
 class Replay:
-    """Real components on recorded inputs.
+    """Runs components again on recorded inputs: each in a `Host` that gets the ticks of the recorded run.
 
-    `only` are names or patterns; nothing means all components that can be run again. A camera whose frames a chosen
-    component reads is replayed with it, unless the frames are in the recording.
+    Every component has a host of its own, whatever hosts the run had: the iteration contract makes no difference
+    between them.
+
+    Args:
+        recording: the recording.
+        only: names or patterns of components; none means all components that can be run again. A camera whose frames
+            a chosen component reads is replayed with it, unless the recording has the frames.
 
     Raises:
-        RecordingError: no component has such a name, or none that can be run again. While it runs: the log is damaged,
-            or a component fails.
+        RecordingError: no component has such a name, or none of them can be run again. While it runs: the log is
+            damaged, or a component fails.
     """
 
     def __init__(self, recording: Recording, only: Sequence[str] = ()) -> None:
         plan = recording.plan
         self.recording = recording
         self.iterations = 0
-        self.compared = 0
-        self.differences: list[Difference] = []
-        self.lost: dict[str, set[int]] = {}
-        """Sequence numbers by channel that are not in the recording, and that no chosen component wrote again."""
-        self._plan = plan
+        self._comparison = Comparison()
+        self._messages = RecordedMessages(recording.path, self._comparison.lost)
+        self._run_plan = plan
+        self._plan = one_component_a_host(plan)
         choice = choose(recording, only)
         self._chosen = choice.components
+        self._guard = Guard()
         self.left_out = {plan.components[index].name: reason for index, reason in choice.left_out.items()}
         """Components that are not run, with the reason."""
         self._recorded = {channel: RecordedFrames(recording.path, channel) for channel in plan.record.frames}
@@ -74,22 +84,34 @@ class Replay:
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
-        self._instances = Instances(plan)
-        self._names = {channel.index: channel.name for channel in plan.channels}  # and of channels opened at run time
+        self._ledger = Ledger(self._plan)
+        self._table = Instances(plan)
+        self._names = {channel.index: channel.name for channel in plan.channels}  # with dynamic channels
+        self._indices = {channel.name: channel.index for channel in plan.channels}  # of what is written now
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
-        self._actors: dict[int, list[Actor]] = {}
-        self._holder = ""  # component that has the main loop
-        self._leaving: dict[int, list[Actor]] = {}  # were asked to stop and have not finalized yet
-        self._time_us: dict[int, int] = {}  # host to the time of its newest iteration
-        self._answered: dict[int, int] = {}  # host to the newest tick that its process has answered
-        self._changes: dict[int, list[tuple[int, Any]]] = {}  # component to the numbers and values of its new settings
-        self._newest: Newest = {}
-        self._marks: dict[int, int] = {}
-        self._sequences: dict[str, int] = {}
-        self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # written, not visible yet
-        self._revealed: list[tuple[str, list[bytes]]] = []  # visible from the next stage on
-        self._owed: dict[tuple[int, int, int], tuple[int, list[tuple[Actor, Iteration]]]] = {}
-        """By host, tick and place: what has not been answered yet, and its time."""
+        self._lives: dict[int, list[Life]] = {}  # by host of the run
+        self._leaving: dict[int, list[Life]] = {}  # lives that were asked to stop and have not finalized yet
+        self._owed: dict[StageDone, list[Owed]] = {}
+        self._holder = NOBODY  # component that has the main loop
+        self._settings: dict[int, list[settings_change_t]] = {}  # by component
+        self._decided: list[channels_change_t] = []
+        self._newest: dict[int, bytes] = {}
+        self._revealed: list[tuple[int, list[bytes]]] = []  # messages that the next step of the tick makes visible
+
+    @property
+    def compared(self) -> int:
+        """How many messages were compared."""
+        return self._comparison.compared
+
+    @property
+    def differences(self) -> list[Difference]:
+        """Where the replay differs from the recording."""
+        return self._comparison.differences
+
+    @property
+    def lost(self) -> dict[str, set[int]]:
+        """Sequence numbers by channel that are not in the recording, and that no chosen component wrote again."""
+        return self._comparison.lost
 
     def run(self, to_tick: int | None = None, begins: Callable[[int], None] = lambda _: None) -> None:
         """Replays all ticks, or until `to_tick`; calls `begins(tick)` before each."""
@@ -98,271 +120,277 @@ class Replay:
             self._tick(tick)
 
     def _types(self) -> dict[str, bytes]:
-        """What the messages begin with that the chosen components read and write."""
-        concerned = [
-            channel
-            for channel in self._plan.channels
-            if not self._chosen.isdisjoint((channel.writer, *channel.readers))
-        ]
+        """Returns the first bytes of messages, by channel, of all channels that the chosen components read or write."""
+        concerned = [each for each in self._plan.channels if not self._chosen.isdisjoint((each.writer, *each.readers))]
         try:
             return {channel.name: fingerprint(type_named(channel.type_name)) for channel in concerned}
         except MessageError as error:
-            raise RecordingError(
-                f"{self.recording.path}: {error}; the run directory keeps the types of the run"
-            ) from error
+            text = f"{self.recording.path}: {error}; the run directory keeps the types of the run"
+            raise RecordingError(text) from error
 
     def _tick(self, tick: RecordedTick) -> None:
-        self._hidden.update(tick.messages)
         for picture in tick.frames:
             if picture.camera in self._recorded:
                 self._recorded[picture.camera].add(picture)
-        record, stage, place = tick.record, -1, -1
-        decided = {each.number: facts_in(each) for each in record.channels}
-        for facts in decided.values():
-            self._names |= {fact.opening.channel: fact.opening.name for fact in facts if fact.opening}
-        self._lose(tick)
-        for change in record.settings:
-            self._change(change, record.tick)
+        record, stage, step = tick.record, -1, -1
+        changes = {change.number: change for change in record.channels}
+        for change in changes.values():
+            self._names |= {fact.opening.channel: fact.opening.name for fact in facts_in(change) if fact.opening}
+        self._messages.add(tick, self._names)
+        for settings in record.settings:
+            self._set(settings, record.tick)
         for event in tick.events:
             if isinstance(event, StageBegun):
-                stage, place = event
-                self._show()
-            elif isinstance(event, StageDone):
-                self._on_stage_done(event, stage, record.time_us)
-            elif isinstance(event, IterationDone):
-                self._done(event.host, event.tick, event.iteration, self._iterate_on(*event))
-            elif isinstance(event, FinalDone):
-                self._done(event.host, event.tick, header_t.FINAL, self._finalize(*event))
-            elif isinstance(event, HostLate):
-                for actor in self._actors.get(event.host, []):
-                    actor.hold_newest_frames()
-                self._begin(event.host, record.tick, place, stage, record.time_us)
+                stage, step = event
+                self._reveal()
             elif isinstance(event, TickTold):
-                self._show()
-                for actor in self._continuous():
-                    actor.tell_tick(record.tick, record.time_us, self._holder, self._newest)
+                self._reveal()
+                self._tell(record)
             elif isinstance(event, OutsideTaken):
-                self._come_in()
+                self._take_in()
             elif isinstance(event, ChannelsChanged):
-                self._open(decided[event.change])
-            elif isinstance(event, MainLoopGiven):
-                self._holder = self._plan.components[event.component].name if event.component != NOBODY else ""
+                self._decide(changes[event.change])
+            elif isinstance(event, StageDone):
+                if event not in self._owed:
+                    self._owe(event, stage, record.time_us)
+                self._compare(event.host, event.tick, event.step, self._iterate(event))
+            elif isinstance(event, IterationDone):
+                self._compare(*event, self._iterate_on(*event))
+            elif isinstance(event, FinalDone):
+                self._compare(event.host, event.tick, header_t.FINAL, self._finalize(event.host))
+            elif isinstance(event, HostLate):
+                for life in self._lives.get(event.host, []):
+                    life.hold_newest_frames(self._newest)
+                self._owe(StageDone(event.host, record.tick, step), stage, record.time_us)
             else:
-                self._on_host_event(event)
+                self._take_event(event)
+        for index, mark in zip(record.channel, record.sequence, strict=True):
+            self._ledger.publish(index, mark)  # includes messages that the recording lost
 
-    def _on_stage_done(self, event: StageDone, stage: int, time_us: int) -> None:
-        host, tick, step = event
-        if (host, tick, step) not in self._owed:
-            self._begin(host, tick, step, stage, time_us)
-        self._done(host, tick, step, self._run(host, tick, step))
-
-    def _on_host_event(self, event: TickEvent) -> None:
+    def _take_event(self, event: TickEvent) -> None:
+        """Handles an event that changes who takes part, or what is missing."""
         if isinstance(event, HostStarted):
             self._start(event.host, event.incarnation, event.change)
         elif isinstance(event, HostStopped):
-            self._leaving[event.host] = self._actors.pop(event.host, [])
-            for actor in self._leaving[event.host]:
-                actor.hold_last_frames()
+            self._leaving[event.host] = self._lives.pop(event.host, [])
+            for life in self._leaving[event.host]:
+                life.hold_last_frames()
         elif isinstance(event, HostLost):
             self._end(event.host)
+        elif isinstance(event, MainLoopGiven):
+            self._holder = event.component
         elif isinstance(event, MessageLost):
-            for actor in self._living(event.host):
-                actor.miss(self._names[event.channel], event.sequence)
+            for life in self._living(event.host):
+                life.host.lose(event.channel, event.sequence)
         elif isinstance(event, FrameLost):
-            component, channel = self._plan.components[event.component], self._plan.channels[event.channel]
-            self._miss_frame(component, channel.name, event.frame)
+            component = self._run_plan.components[event.component]
+            for life in self._living(component.host):
+                if life.plan.index == component.index:
+                    life.miss_frame(self._run_plan.channels[event.channel].name, event.frame)
 
-    def _lose(self, tick: RecordedTick) -> None:
-        """Finds out which messages became visible and are not there: the gateway never got them."""
-        here: dict[str, list[int]] = {}
-        for (channel, _, _), data in tick.messages.items():
-            here.setdefault(channel, []).extend(map(sequence_of, data))
-        for index, mark in zip(tick.record.channel, tick.record.sequence, strict=True):
-            channel = self._names[index]
-            before, self._marks[index] = self._marks.get(index, 0), mark
-            if mark - before > MESSAGES_MAX:
-                raise RecordingError(
-                    f"{self.recording.path}: damaged: {channel} cannot have {mark - before} messages in tick "
-                    f"{tick.record.tick}; replay what is before it with --to-tick {tick.record.tick - 1}"
-                )
-            if len(here.get(channel, ())) < mark - before:
-                self.lost.setdefault(channel, set()).update({*range(before + 1, mark + 1)} - {*here.get(channel, ())})
+    def _set(self, change: settings_change_t, tick: int) -> None:
+        """Takes new settings of a component."""
+        self._check_repeatable(change.component, value_of(change.values), tick)
+        self._settings.setdefault(change.component, []).append(change)
+        for life in self._lives.get(self._run_plan.components[change.component].host, []):
+            if life.plan.index == change.component:
+                life.host.set(change)
 
-    def _change(self, change: settings_change_t, tick: int) -> None:
-        settings = value_of(change.values)
-        self._check(change.component, settings, tick)
-        self._changes.setdefault(change.component, []).append((change.number, settings))
-        for actor in self._actors.get(self._plan.components[change.component].host, []):
-            if actor.plan.index == change.component:
-                actor.configure(settings)
-
-    def _open(self, facts: Sequence[Fact]) -> None:
-        """What components asked of the blackboard was decided."""
+    def _decide(self, change: channels_change_t) -> None:
+        """Takes decisions about channels."""
+        facts = facts_in(change)
+        self._decided.append(change)
+        self._table.apply(facts)
+        self._ledger.opened(self._table)
         for fact in facts:
-            self._instances.apply([fact])
             if fact.kind == "write" and fact.opening:
+                name = fact.opening.name
+                self._indices[name] = fact.opening.channel
                 for channels in self._host_channels:
-                    if fact.opening.name in channels:
-                        channels.remove(fact.opening.name)
-                self._host_channels[self._plan.components[fact.component].host].append(fact.opening.name)
-            for actors in self._actors.values():
-                for actor in actors:
-                    if actor.plan.opens:
-                        actor.open(fact)
+                    if name in channels:
+                        channels.remove(name)
+                self._host_channels[self._run_plan.components[fact.component].host].append(name)
+        for lives in self._lives.values():
+            for life in lives:
+                if life.plan.opens:
+                    life.host.decide(change, self._newest)
 
-    def _living(self, host: int) -> list[Actor]:
-        """Those of a host that run, and those that have not finalized yet."""
-        return [*self._actors.get(host, []), *self._leaving.get(host, [])]
+    def _living(self, host: int) -> list[Life]:
+        """Returns the lives of a host that run, and those that have not finalized yet."""
+        return [*self._lives.get(host, []), *self._leaving.get(host, [])]
 
-    def _miss_frame(self, component: ComponentPlan, channel: str, number: int) -> None:
-        for actor in self._living(component.host):
-            if actor.plan.index == component.index:
-                actor.miss_frame(channel, number)
-
-    def _check(self, component: int, settings: Any, tick: int) -> None:
-        """Whether a component can still be run again with its new settings."""
-        plan = self._plan.components[component]
+    def _check_repeatable(self, component: int, settings: Any, tick: int) -> None:
+        plan = self._run_plan.components[component]
         if component in self._chosen and (reason := unrepeatable(plan, settings)):
             raise RecordingError(
                 f"{self.recording.path}: {plan.name} cannot be replayed with the settings of tick {tick}: {reason}; "
                 f"replay what is before it with --to-tick {tick - 1}, or others with --only"
             )
 
-    def _start(self, host: int, incarnation: int, started_with: int) -> None:
-        """Starts a host's components with the settings after that change, then takes over what was changed since."""
+    def _start(self, host: int, incarnation: int, newest_change: int) -> None:
+        """Starts the chosen components of a host as they were started after that change."""
         self._end(host)
-        self._actors[host] = []
-        for index in self._plan.hosts[host].components:
-            if index not in self._chosen:
-                continue
-            component, changes = self._plan.components[index], self._changes.get(index, [])
-            before = [settings for number, settings in changes if number <= started_with]
-            with self._failing(component, "its start"):
-                kind = Actor if component.rate_hz is None else ContinuousActor
-                settings = [component.config, *before][-1]
-                actor = kind(self._plan, component, incarnation, self._rings, settings, self._frames)
-            for _, settings in changes[len(before) :]:
-                actor.configure(settings)
-            if component.opens:
-                actor.begin(self._instances)
-            for (channel, _), data in self._newest.items():
-                actor.see(channel, [data])
-            for channel, sequence in self._sequences.items():
-                actor.continue_at(channel, sequence)
-            self._actors[host].append(actor)
+        self._lives[host] = []
+        for index in self._run_plan.hosts[host].components:
+            if index in self._chosen:
+                self._begin_life(self._plan.components[index], host, incarnation, newest_change)
+
+    def _begin_life(self, component: ComponentPlan, host: int, incarnation: int, newest_change: int) -> None:
+        changed = [each for each in self._settings.get(component.index, []) if each.number <= newest_change]
+        start = Start(
+            incarnation,
+            self._ledger.sequences(component.index),
+            {component.name: json.dumps(value_of(changed[-1].values))} if changed else {},
+            self._snapshot(newest_change) if component.opens else "[]",
+            newest_change,
+        )
+        with self._failing(component, "its start"):
+            beside = self._run_plan.hosts[self._run_plan.components[component.index].host].components
+            stages = sorted({stage for index in beside for stage in self._run_plan.components[index].stages})
+            self._lives[host].append(
+                Life(self._plan, component, start, self._rings, self._frames, self._ledger, stages)
+            )
+        if component.index not in self._chosen:  # it reached outside
+            return
+        life = self._lives[host][-1]
+        for settings in self._settings.get(component.index, []):
+            if settings.number > newest_change:
+                life.host.set(settings)
+        for change in self._decided if component.opens else ():
+            if change.number > newest_change:
+                life.host.decide(change, self._newest)
+        for channel, data in self._newest.items():
+            life.see(channel, data)
+
+    def _snapshot(self, newest_change: int) -> str:
+        """Returns the blackboard as it was after a change."""
+        table = Instances(self._run_plan)
+        for change in self._decided:
+            if change.number <= newest_change:
+                table.apply(facts_in(change))
+        return text_of(table.snapshot())
 
     def _end(self, host: int) -> None:
-        """What it was late with it takes along."""
-        self._actors.pop(host, None)
+        """Ends the lives of a host and drops its unanswered ticks."""
+        for life in self._living(host):
+            life.host.close()
+        self._lives.pop(host, None)
         self._leaving.pop(host, None)
-        self._time_us.pop(host, None)
-        self._answered.pop(host, None)
-        self._owed = {key: owed for key, owed in self._owed.items() if key[0] != host}
+        self._owed = {done: owed for done, owed in self._owed.items() if done.host != host}
 
-    def _begin(self, host: int, tick: int, place: int, stage: int, time_us: int) -> None:
-        """Freezes what a host sees in a stage. Its iterations run when its done comes: one that was late may have died
-        over it, or have left without ever having run it.
+    def _owe(self, done: StageDone, stage: int, time_us: int) -> None:
+        """Sends a tick with the marks of now to a host.
+
+        Its components run when its done comes: a host that is late may die over its iteration, or leave without it.
         """
-        owed: list[tuple[Actor, Iteration]] = []
-        newest_only = is_new(tick, self._answered.get(host, 0))
-        for actor in self._actors.get(host, []):
-            actor.take_over(self._newest)
-            actor.tell(newest_only)
-            iteration = actor.iteration(tick, place, stage, time_us, self._holder)
-            owed.append((actor, iteration))
-        self._owed[host, tick, place] = time_us, owed
+        self._owed[done] = [
+            Owed(life, life.host.compose(done.tick, done.step, time_us, self._holder), stage)
+            for life in self._lives.get(done.host, [])
+            if life.hears(done.tick, stage)
+        ]
 
-    def _run(self, host: int, tick: int, place: int) -> Made:
+    def _iterate(self, done: StageDone) -> Made:
         made = []
-        self._time_us[host], owed = self._owed.pop((host, tick, place))
-        self._answered[host] = tick
-        for actor, iteration in owed:
-            with self._failing(actor.plan, f"tick {tick}"):
-                written = iteration()
-            if written is not None:
-                made.append((actor, written))
-                self.iterations += 1
+        for owed in self._owed.pop(done):
+            if owed.life.plan.index not in self._chosen:
+                continue
+            with self._failing(owed.life.plan, f"tick {done.tick}"):
+                made.append((owed.life, owed.life.iterate(owed.tick, owed.stage)))
+                self.iterations += owed.stage in owed.life.plan.stages
         return made
 
-    def _finalize(self, host: int, tick: int) -> Made:
-        made = []
-        for actor in reversed(self._leaving.pop(host, [])):
-            with self._failing(actor.plan, "finalize"):
-                made.append((actor, actor.finalize(tick, self._time_us.get(host, 0))))
-        return made
-
-    def _continuous(self) -> list[ContinuousActor]:
-        return [actor for actors in self._actors.values() for actor in actors if isinstance(actor, ContinuousActor)]
+    def _tell(self, record: tick_record_t) -> None:
+        """Tells the marks of a tick to the continuous components."""
+        for lives in self._lives.values():
+            for life in lives:
+                if life.plan.rate_hz is not None:
+                    life.tell(life.host.compose(record.tick, 0, record.time_us, self._holder))
 
     def _iterate_on(self, host: int, tick: int, number: int) -> Made:
-        """A continuous component has run on the marks of a tick, perhaps long ago."""
-        made: Made = []
-        for actor in self._actors.get(host) or self._leaving.get(host, []):
-            if isinstance(actor, ContinuousActor):
-                with self._failing(actor.plan, f"iteration {number} on tick {tick}"):
-                    made.append((actor, actor.iterate_on(tick, number)))
-                self._time_us[host] = actor.runner.stamp.time_us
+        """Runs an iteration of a continuous component on the marks of a tick, perhaps one of long ago."""
+        made = []
+        for life in [*(self._lives.get(host) or self._leaving.get(host, []))]:
+            with self._failing(life.plan, f"iteration {number} on tick {tick}"):
+                made.append((life, life.iterate_on(tick)))
                 self.iterations += 1
+        return made
+
+    def _finalize(self, host: int) -> Made:
+        made = []
+        for life in reversed(self._leaving.pop(host, [])):
+            with self._failing(life.plan, "finalize"):
+                made.append((life, life.finalize()))
         return made
 
     @contextmanager
     def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
+        """Reports a failure of a component; leaves a component out that reaches outside.
+
+        Raises:
+            RecordingError: the component failed, unless its exception left the debugger.
+        """
+        watching = nullcontext() if reaches_outside(component) is False else self._guard.watching()
         try:
-            yield
-        except (BdbQuit, RecordingError):  # somebody left the debugger; a frame is not in the recording
+            with watching:
+                yield
+        except (BdbQuit, RecordingError):
             raise
+        except ReachesOutsideError as error:
+            self._leave_out(component, str(error))
         except Exception as error:
-            trace = "".join(traceback.format_exception(error)).rstrip()
+            if isinstance(error.__cause__, ReachesOutsideError):
+                self._leave_out(component, str(error.__cause__))
+                return
+            cause = error.__cause__ if isinstance(error, ComponentFailedError) and error.__cause__ else error
+            if isinstance(cause, RecordingError):  # a frame is not in the recording
+                raise cause from error
+            trace = "".join(traceback.format_exception(cause)).rstrip()
             raise RecordingError(
                 f"{self.recording.path}: {component.name} fails in {moment} as it did not in the run: the recording is "
                 f"damaged, or the component was changed or depends on something else\n{trace}"
-            ) from error
+            ) from cause
 
-    def _done(self, host: int, tick: int, place: int, made: Made) -> None:
+    def _leave_out(self, component: ComponentPlan, reason: str) -> None:
+        """Ends a component that a replay must not run; its recorded messages stand for it."""
+        said = f"{reason}, which would reach the real world; declare 'reaches_outside' in its class"
+        self.left_out[component.name] = said
+        self._chosen.discard(component.index)
+        for lives in (*self._lives.values(), *self._leaving.values()):
+            for life in [life for life in lives if life.plan.index == component.index]:
+                life.host.close()
+                lives.remove(life)
+
+    def _compare(self, host: int, tick: int, step: int, made: Made) -> None:
+        """Compares what a host's done published, and makes it visible from the next step on."""
         recorded: dict[str, list[bytes]] = {}
         for channel in self._host_channels[host]:
-            data = self._hidden.pop((channel, tick, place), [])
-            if channel in self.lost:
-                data = self._with_lost(channel, data, made)
+            data = self._messages.take(channel, tick, step)
+            data = self._comparison.with_lost(channel, data, [written for _, written in made])
             if data:
                 recorded[channel] = data
-                self._sequences[channel] = sequence_of(data[-1])  # a successor counts on from here
-                self._revealed.append((channel, data))
-        for actor, written in made:
-            for channel in actor.runner.writers:
+                self._publish(channel, data)
+        for life, written in made:
+            for channel in life.writes:
                 ours = [data for name, data in written if name == channel]
-                self._compare(channel, recorded.get(channel, []), ours)
+                self._comparison.compare(channel, recorded.get(channel, []), ours)
 
-    def _with_lost(self, channel: str, recorded: list[bytes], made: Made) -> list[bytes]:
-        """A message that is not in the recording is there again if its writer is replayed."""
-        lost = self.lost[channel]
-        again = [data for _, written in made for name, data in written if name == channel and sequence_of(data) in lost]
-        lost.difference_update(map(sequence_of, again))
-        self.compared -= len(again)
-        return sorted([*recorded, *again], key=sequence_of)
+    def _publish(self, channel: str, data: list[bytes]) -> None:
+        index = self._indices[channel]
+        self._ledger.publish(index, sequence_of(data[-1]))
+        self._revealed.append((index, data))
 
-    def _come_in(self) -> None:
-        """What came from outside is visible from the beginning of its tick on."""
-        for key in [key for key in self._hidden if key[0] in self._outside]:
-            self._revealed.append((key[0], self._hidden.pop(key)))
+    def _take_in(self) -> None:
+        """Makes messages from outside visible, from the beginning of their tick on."""
+        for channel, data in self._messages.take_all(self._outside):
+            self._publish(channel, data)
 
-    def _compare(self, channel: str, recorded: list[bytes], ours: list[bytes]) -> None:
-        for place in range(max(len(recorded), len(ours))):
-            self.compared += 1
-            if place >= len(ours):
-                self._differ(missing(channel, recorded[place], place + 1, 1))
-            elif place >= len(recorded):
-                self._differ(missing(channel, ours[place], place + 1, 0))
-            elif recorded[place] != ours[place]:
-                self._differ(changed(channel, recorded[place], ours[place], place + 1))
-
-    def _differ(self, difference: Difference) -> None:
-        self.differences.append(difference)
-
-    def _show(self) -> None:
+    def _reveal(self) -> None:
+        """Begins a step of the tick: what was published so far is visible from here on."""
+        self._ledger.begin()
         for channel, data in self._revealed:
-            self._newest[channel, data[-1][:8]] = data[-1]
-            for actors in self._actors.values():
-                for actor in actors:
-                    actor.see(channel, data)
+            self._newest[channel] = data[-1]
+            for lives in self._lives.values():
+                for life in lives:
+                    for each in data:
+                        life.see(channel, each)
         self._revealed = []

@@ -48,6 +48,12 @@ def unrepeatable(component: ComponentPlan, settings: Any) -> str:
         return ""
 
 
+def reaches_outside(component: ComponentPlan) -> bool | None:
+    """Returns what the class of a component declares about reaching devices and other programs."""
+    found: bool | None = _declaration(component).component.reaches_outside
+    return found
+
+
 class _Choosing:
     def __init__(self, recording: Recording) -> None:
         self.made = Choice()

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from fwk.component.images import Ring
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.supervisor.core import Core
 from fwk.supervisor.processes.external_process import ExternalProcess
 from fwk.supervisor.processes.hosts import Hosts

@@ -5,7 +5,7 @@ import os
 import signal
 from collections.abc import Callable
 
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.supervisor.event_loop import EventLoop
 
 

@@ -11,12 +11,12 @@ import sys
 from collections.abc import Mapping
 
 from fwk.component.images import Ring
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.failures import ComponentFailedError
 from fwk.engine.runner import Runner
-from fwk.host.assignment import Assignment, Start
-from fwk.host.crash_marker import Progress
+from fwk.host.crash_marker import CrashMarker
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
-from fwk.host.failures import Failure
 from fwk.host.hot_reload import forget_modules
 from fwk.host.memory import limit_memory
 from fwk.host.plain_logging import forward_logging
@@ -40,7 +40,7 @@ class Forker:
         run: int,
         rings: Mapping[str, Ring],
         sockets: Mapping[int, socket.socket],
-        progress: Progress,
+        progress: CrashMarker,
         connection: ZygoteEnd,
         debug: DebugRequest | None,
         profile: ProfileRequest | None,
@@ -160,12 +160,12 @@ def _serve_host(
     profile = Profile(profiled, assignment.start.incarnation) if profiled else None
     driver = HostDriver(assignment, stop, profile.runner if profile else Runner, sockets)
     log_uncaught(driver.host.log)
-    forward_logging(driver.host.log_of_now)
+    forward_logging(driver.host.current_log)
     try:
         if debugged:
             return debug(debugged, driver.serve)
         driver.serve()
-    except Failure:
+    except ComponentFailedError:
         return 1  # logged and reported already
     finally:
         if profile:

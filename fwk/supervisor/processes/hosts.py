@@ -4,7 +4,7 @@ import signal
 
 from fwk.bus.network import Steps
 from fwk.clock import US_PER_S
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.host.debugger import LEFT
 from fwk.model.plan import NOBODY
 from fwk.supervisor.changes import Changes

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Protocol
 
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 
 
 @dataclass(frozen=True)

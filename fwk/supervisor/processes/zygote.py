@@ -7,8 +7,8 @@ import socket
 from collections.abc import Mapping
 
 from fwk.component.images import Ring
-from fwk.host.assignment import Start
-from fwk.host.crash_marker import Progress
+from fwk.engine.assignment import Start
+from fwk.host.crash_marker import CrashMarker
 from fwk.host.debugger import DebugRequest
 from fwk.host.process import die_with_parent, end_child, run_forked, wait_for_end
 from fwk.host.process_title import name_process
@@ -41,7 +41,7 @@ class Zygote:
         profile: ProfileRequest | None = None,
     ) -> None:
         own, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
-        self._progress = Progress(len(plan.hosts))
+        self._progress = CrashMarker(len(plan.hosts))
         parent = os.getpid()
         gc.collect()
         gc.freeze()  # hosts share the memory of what is here now as long as no process writes to it

@@ -7,7 +7,7 @@ import socket
 from dataclasses import dataclass
 from typing import Any
 
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.supervisor.processes.starter import Ended, Started
 
 _PACKET_MAX = 1 << 20

@@ -105,7 +105,7 @@ def test_when_the_newest_cannot_be_had_nothing_waits_for_it(wired: Wired) -> Non
 def test_a_late_joiner_takes_the_newest_only(wired: Wired) -> None:
     wired.send(56, 57)
     wired.inbox.mark = 57
-    wired.inbox.skip_to(56)
+    wired.inbox.keep_newest()
     assert wired.inbox.collect()
     assert wired.taken() == [57]
 

@@ -19,8 +19,8 @@ class Director(Component):
 def test_what_was_asked_in_an_iteration_is_taken_once() -> None:
     bench = Bench(Director)
     bench.iterate()
-    assert bench.runner.wishes() == {"plugins": [("stop", ("r/one", "r/two")), ("load", ("r/three",))]}
-    assert bench.runner.wishes() == {}
+    assert bench.runner.requests() == {"plugins": [("stop", ("r/one", "r/two")), ("load", ("r/three",))]}
+    assert bench.runner.requests() == {}
 
 
 def test_names_that_do_not_exist_are_refused_at_once() -> None:

@@ -2,36 +2,36 @@
 
 import pytest
 
-from fwk.engine.message_history import BYTES_MAX, MESSAGES_MAX, TICKS, History, gaps
+from fwk.engine.message_history import BYTES_MAX, MESSAGES_MAX, TICKS, MessageHistory, gaps
 
 
-def numbers(history: History) -> list[int]:
+def numbers(history: MessageHistory) -> list[int]:
     return [sequence for sequence, _ in history.between(0, 1_000_000)]
 
 
 def test_old_messages_go_the_newest_stay() -> None:
-    history = History()
+    history = MessageHistory()
     for sequence in range(1, MESSAGES_MAX + 11):
         history.add(sequence, sequence, b"x")
     assert numbers(history) == list(range(11, MESSAGES_MAX + 11))
 
 
 def test_however_many_nothing_goes_that_a_reader_in_lockstep_or_the_recorder_may_lack() -> None:
-    history = History()
+    history = MessageHistory()
     for sequence in range(10_000):
         history.add(1 + sequence // 500, sequence, b"x")  # 20 ticks
     assert numbers(history) == list(range(9_500 - TICKS * 500, 10_000))
 
 
 def test_large_messages_stay_until_the_tick_after_the_next() -> None:
-    history = History()
+    history = MessageHistory()
     for sequence in range(6):
         history.add(1 + sequence // 2, sequence, bytes(BYTES_MAX // 2 + 1))
     assert numbers(history) == [2, 3, 4, 5]
 
 
 def test_only_what_is_asked_for_is_given() -> None:
-    history = History()
+    history = MessageHistory()
     for sequence in range(1, 6):
         history.add(1, sequence, b"%d" % sequence)
     assert history.between(2, 3) == [(2, b"2"), (3, b"3")]

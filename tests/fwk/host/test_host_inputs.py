@@ -165,7 +165,7 @@ def test_a_newcomer_takes_the_newest_of_what_is_visible(make: Make) -> None:
     pair = make()
     pair.outputs.publish([(IMU, imu(number)) for number in (1, 2, 3)])
     moved = pair.inputs.advance([0], [3], [])
-    pair.inputs.newest_only()
+    pair.inputs.keep_newest()
     assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [3]
 
@@ -186,7 +186,7 @@ def test_messages_of_the_predecessor_are_asked_of_the_gateway_and_only_those(mak
 def test_a_restarted_process_hears_what_it_said_before_from_the_gateway_until_it_has_it(make: Make) -> None:
     pair = make(together=True, before=5, restarted=True)
     moved = pair.inputs.advance([0], [5], [])
-    pair.inputs.newest_only()
+    pair.inputs.keep_newest()
     pair.gateway_socket.publish(IMU.encode(), imu(5), pair.ports.channel(0))
     assert pair.wait(moved, pair.serve)
     assert [sequence_of(data) for data in moved[0].take()] == [5]

@@ -11,7 +11,7 @@ from fwk.bus import sync
 from fwk.bus.network import Steps
 from fwk.bus.sockets import LOOPBACK, Address
 from fwk.bus.waiting import Source
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.lcm import wire
 from fwk.model.plan import NOBODY
 from fwk.model.ports import Ports

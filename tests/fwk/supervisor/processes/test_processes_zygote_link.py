@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from fwk.host.assignment import Start
+from fwk.engine.assignment import Start
 from fwk.supervisor.processes.starter import Ended, Started
 from fwk.supervisor.processes.zygote_link import (
     SignalRequest,

@@ -5,7 +5,7 @@ import pytest
 from fwk.bus.complaints import Complaints
 from fwk.clock import Clock
 from fwk.component.log import Logger
-from fwk.host.metrics import Figures, told
+from fwk.engine.metrics import ComponentMetrics, told
 from lcmtypes.core import log_t
 
 
@@ -48,7 +48,7 @@ def test_a_stranger_with_endless_kinds_does_not_fill_memory_or_log() -> None:
 
 
 def test_figures_sum_up_iterations() -> None:
-    figures = Figures("r/base", iter((100, 175)).__next__, state="running")
+    figures = ComponentMetrics("r/base", iter((100, 175)).__next__, state="running")
     for duration_us in (10, 30, 20):
         figures.ran(duration_us)
     message = figures.message()

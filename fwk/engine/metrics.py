@@ -1,4 +1,4 @@
-"""What a host tells of its components: their states and figures, and what was refused on their channels."""
+"""State and figures of the components of a host."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -6,11 +6,12 @@ from dataclasses import dataclass, field
 from fwk.model.histogram import Histogram
 from lcmtypes.core import component_state_t, histogram_t
 
-TEXT_CHARACTERS = 1000  # of an exception in a reason; all of it is in the log
+TEXT_CHARACTERS = 1000
+"""Longest text of an exception in a reason; the log has all of it."""
 
 
 @dataclass
-class Figures:
+class ComponentMetrics:
     """State and figures of one component."""
 
     name: str
@@ -19,7 +20,7 @@ class Figures:
     state: str = "loaded"
     reason: str = ""
     times: Histogram = field(default_factory=Histogram)
-    """Of its iterations."""
+    """Durations of its iterations."""
 
     def __post_init__(self) -> None:
         self._since_us = self.now_us()
@@ -29,7 +30,7 @@ class Figures:
         self.times.add(duration_us)
 
     def message(self) -> component_state_t:
-        """As it is reported."""
+        """Returns state and figures as the host reports them."""
         made = component_state_t()
         made.name, made.state, made.reason = self.name, self.state, self.reason
         made.iterations, made.busy_us, made.worst_us = self.times.count, self.times.total_us, self.times.worst_us
@@ -37,7 +38,7 @@ class Figures:
         return made
 
     def histogram(self) -> histogram_t:
-        """How long its iterations took, as it is reported."""
+        """Returns the durations of the iterations as the host reports them."""
         made = histogram_t()
         made.n, made.bucket, made.count = (
             len(self.times.counts),
@@ -48,7 +49,7 @@ class Figures:
 
 
 def told(error: BaseException) -> str:
-    """An exception in a line, whatever its text is and whether it can be made at all."""
+    """Returns an exception as one line of text that can be sent, even if making its own text raises."""
     try:
         text = str(error)
     except Exception as worse:

@@ -1,0 +1,27 @@
+"""The catch-up rule: who joins a run that goes on sees of each channel the newest message only."""
+
+import sys
+
+AWAY_TICKS = 16
+"""Writers keep what readers need of so many ticks; who took no part for longer joins anew."""
+
+
+class CatchUp:
+    """Decides whether the next iteration of a component, or of a host, is one that joins or was away.
+
+    The first life of a component joins before tick 1 and sees everything. Every later life catches up, and so does who
+    took no part for more than `AWAY_TICKS` ticks. A continuous component is never away: its host takes in what comes
+    between its iterations.
+    """
+
+    def __init__(self, incarnation: int = 1, continuous: bool = False) -> None:
+        self._last = 1 if incarnation == 1 else 0  # the last tick that sees everything
+        self._away_ticks = sys.maxsize if continuous else AWAY_TICKS
+
+    def applies(self, tick: int) -> bool:
+        """Returns whether an iteration of this tick sees the newest messages only."""
+        return tick > self._last
+
+    def took_part(self, tick: int) -> None:
+        """Notes an iteration."""
+        self._last = tick + self._away_ticks

@@ -1,0 +1,128 @@
+"""One life of a replayed component: its host participant, the ticks that it owes answers to, and its view of frames."""
+
+from collections import deque
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from fwk.component.images import Ring
+from fwk.engine.assignment import Assignment, Start
+from fwk.engine.catch_up import CatchUp
+from fwk.engine.component_group import Written
+from fwk.engine.visibility import Ledger
+from fwk.host.memory_host import MemoryHost
+from fwk.lcm.messages import decode
+from fwk.model.plan import ComponentPlan, HostPlan, Plan
+from fwk.recording.replay.frames import FrameSource, View
+from lcmtypes.core import tick_t
+from lcmtypes.robot import frame_t
+
+Newest = Mapping[int, bytes]
+"""The newest visible message of each channel, by index."""
+
+
+class Life:
+    """A component from a start to its end, as the same `Host` that ran in the recorded run.
+
+    Args:
+        plan: the plan with a host for each component, of the same index.
+        component: the component.
+        start: what this incarnation was started with.
+        rings: where replayed cameras put their frames.
+        frames: where the frames of each camera are.
+        ledger: the marks of the run.
+        further_stages: stages in which other components of its host in the run took part.
+    """
+
+    def __init__(
+        self,
+        plan: Plan,
+        component: ComponentPlan,
+        start: Start,
+        rings: Mapping[str, Ring],
+        frames: Mapping[str, FrameSource],
+        ledger: Ledger,
+        further_stages: Sequence[int] = (),
+    ) -> None:
+        self.plan = component
+        self._views = {channel: View(source) for channel, source in frames.items()}
+        self._channels = {channel.name: channel.index for channel in plan.channels}
+        self._told: deque[tick_t] = deque()  # ticks that a continuous component has not iterated on
+        self._catch_up = CatchUp(start.incarnation)
+        self.host = MemoryHost(
+            Assignment(plan, component.index, 0, start, rings, frames=self._views, further_stages=further_stages),
+            ledger,
+        )
+        self.host.init()
+
+    @property
+    def writes(self) -> list[str]:
+        """Names of the channels that the component writes now."""
+        return list(self.host.runners[self.plan.name].writers)
+
+    def see(self, channel: int, data: bytes) -> None:
+        """Takes a message that became visible."""
+        self.host.put(channel, data)
+
+    def miss_frame(self, channel: str, number: int) -> None:
+        """Keeps a frame from the component that was overwritten before the component read it."""
+        self._views[channel].miss(number)
+
+    def hold_newest_frames(self, newest: Newest) -> None:
+        """Holds the frames of now: the next iteration is late and looks at them later."""
+        for channel in self.host.runners[self.plan.name].images:
+            data = newest.get(self._channels[channel])
+            if data:
+                self._hold(channel, decode(frame_t, data, channel))
+
+    def hold_last_frames(self) -> None:
+        """Holds the frames of the last iteration: `finalize` may look at them."""
+        for channel, image in self.host.runners[self.plan.name].images.items():
+            self._hold(channel, image.announcement.value)
+
+    def _hold(self, channel: str, frame: frame_t) -> None:
+        if frame.frame:
+            self._views[channel].hold(frame.frame, frame.height_px * frame.width_px * frame.channels)
+
+    def hears(self, tick: int, stage: int) -> bool:
+        """Returns whether a tick that the component's host in the run answered in a stage concerns the component.
+
+        A tick of a stage in which only other components took part does so before an iteration that catches up: what
+        the host had then may have been the newest message that it ever got.
+        """
+        return stage in self.plan.stages or self._catch_up.applies(tick) or self.host.has_changes
+
+    def iterate(self, tick: tick_t, stage: int) -> Written:
+        """Runs the component's iteration of a tick, if it takes part in the stage; returns what it wrote."""
+        if stage in self.plan.stages:
+            self._catch_up.took_part(tick.tick)
+        return self.host.tick(tick, stage)[0]
+
+    def tell(self, tick: tick_t) -> None:
+        """Tells a continuous component the marks of a tick."""
+        self._told.append(tick)
+
+    def iterate_on(self, tick: int) -> Written:
+        """Runs the next iteration of a continuous component, on the marks of a tick; returns what it wrote."""
+        while self._told and self._told[0].tick <= tick:
+            self.host.tell(self._told.popleft())
+        return self.host.iterate()[0]
+
+    def finalize(self) -> Written:
+        """Finalizes the component; returns what it wrote."""
+        return self.host.finalize()[0]
+
+
+@dataclass(frozen=True)
+class Owed:
+    """A tick that a component has not answered yet."""
+
+    life: Life
+    tick: tick_t
+    stage: int
+
+
+def one_component_a_host(plan: Plan) -> Plan:
+    """Returns the plan with a host for each component, both with the same index."""
+    components = tuple(replace(component, host=component.index) for component in plan.components)
+    hosts = tuple(HostPlan(each.index, each.name, (each.index,)) for each in components)
+    return replace(plan, components=components, hosts=hosts)
