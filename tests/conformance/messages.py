@@ -6,14 +6,14 @@ from fwk.lcm.messages import Message, type_named
 
 _INTEGER_BITS = {"byte": 8, "int8_t": 8, "int16_t": 16, "int32_t": 32, "int64_t": 64}
 _PACKAGE = "lcmtypes."
+_EXACT = 2**53
 _HEADER = "core.header_t"
 
 
 class Filling:
     """Values for the fields of a message: every number, every list's length, and texts that differ from each other."""
 
-    def __init__(self, name: str, number: float, text: str = "", length: int = 0, truth: bool = False) -> None:
-        self.name = name
+    def __init__(self, number: float, text: str = "", length: int = 0, truth: bool = False) -> None:
         self._number = number
         self._text = text
         self._length = length
@@ -51,17 +51,27 @@ class Filling:
         if kind in _INTEGER_BITS:
             bits = _INTEGER_BITS[kind]
             least, most = (0, 2**bits - 1) if kind == "byte" else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
+            least, most = max(least, -_EXACT), min(most, _EXACT)
             return least if self._number <= least else most if self._number >= most else round(self._number)
         return self.message(type_named(kind))
 
 
-# Beyond 1e150 the square of a number is no number of Python any more.
-EXTREMES = [
-    Filling("zeros", 0.0),
-    Filling("ones", 1.0, "cyan1", 3, truth=True),
-    Filling("large", 1e9, "x" * 300, 12, truth=True),
-    Filling("large negative", -1e9, "-", 12),
-    Filling("huge", 1e100, "\N{GREEK SMALL LETTER ALPHA}", 1, truth=True),
-    Filling("huge negative", -1e100, " ", 1),
-    Filling("tiny", 1e-300, "0", 2, truth=True),
-]
+def usual() -> Filling:
+    """Returns plausible values."""
+    return Filling(0.5, "usual", 1, truth=True)
+
+
+def extremes() -> list[Filling]:
+    """Returns values at the limits of what a computation can be fed with.
+
+    Numbers stay below 1e150, the square root of the largest float, and integers within those that a float can hold.
+    """
+    return [
+        Filling(0.0),
+        Filling(1.0, "cyan1", 3, truth=True),
+        Filling(1e9, "x" * 300, 12, truth=True),
+        Filling(-1e9, "-", 12),
+        Filling(1e100, "\N{GREEK SMALL LETTER ALPHA}", 1, truth=True),
+        Filling(-1e100, " ", 1),
+        Filling(1e-300, "0", 2, truth=True),
+    ]

@@ -12,11 +12,10 @@ from fwk import Component
 from fwk.testing import Bench
 from procs.vision.calibration import MirrorConfig
 from tests.conformance.discovery import discovered, label, usage
-from tests.conformance.messages import EXTREMES, Filling
+from tests.conformance.messages import Filling, extremes, usual
 from tests.procs.vision.picture_parts import shades, write_folder
 
 NAMESPACES = ("cyan1", "cyan2", "magenta1")
-USUAL = Filling("usual", 0.5, "cyan1", 1, truth=True)
 SILENT_TICKS = 40
 SIZE_PX = MirrorConfig().size_px
 
@@ -100,9 +99,10 @@ def test_a_component_survives_silence(component: type[Component]) -> None:
 def test_a_component_survives_old_data(component: type[Component]) -> None:
     """Inputs fall silent after one message; later a message arrives that was stamped before all others."""
     bench = bench_of(component)
-    put(bench, USUAL)
+    filling = usual()
+    put(bench, filling)
     bench.iterate(SILENT_TICKS)
-    put(bench, USUAL)
+    put(bench, filling)
     bench.iterate(2)
     bench.finalize()
     assert not_finite(bench) == set()
@@ -111,9 +111,9 @@ def test_a_component_survives_old_data(component: type[Component]) -> None:
 @COMPONENTS
 def test_a_component_survives_extreme_values(component: type[Component]) -> None:
     bench = bench_of(component)
-    for filling in EXTREMES:
+    for filling in extremes():
         put(bench, filling)
         bench.iterate(2)
-    put(bench, USUAL)
+    put(bench, usual())
     bench.iterate(2)
     bench.finalize()

@@ -36,7 +36,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
         folder = tmp_path_factory.mktemp("run")
         write_folder(folder / "pictures", shades(TICKS, SIZE_PX, SIZE_PX))
         write_files(folder, {file: text} if text else {})
-        with PortBlock() as ports:
+        with PortBlock(blocks=3) as ports:
             options = ("--ticks", str(TICKS), "--speed", "max", "--record", "log.lcm", "--hosting", "single")
             where = ("--set", f"public_url={ports.public_url}")
             launched = Launched(folder, ports, (file, *options, *where), {})

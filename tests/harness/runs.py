@@ -25,33 +25,43 @@ _BASES = range(21_120, 32_000, _BLOCK)  # where lock blocks of ports begin
 
 
 class PortBlock:
-    """A block of ports that no other test on this machine uses at the same time.
+    """Ports that no other test on this machine uses at the same time: consecutive blocks of 128 ports.
 
-    Its lock is a name in the network's namespace, as far as ports reach, and goes with the process that took it.
+    The lock of a block is a name in the network namespace, as far as ports reach; it ends with its process.
     """
 
-    def __init__(self) -> None:
-        for base in _BASES:
-            self._lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-            try:
-                self._lock.bind(f"\0fwk-system-test-{base}")
-            except OSError:
-                self._lock.close()
-                continue
-            self.bus = base
-            self.public_url = f"udpm://239.255.76.67:{base + _BLOCK - 1}?ttl=0&recv_buf_size=4194304"
-            return
+    def __init__(self, blocks: int = 1) -> None:
+        for base in _BASES[: len(_BASES) - blocks + 1]:
+            self._locks = [_locked(base + number * _BLOCK) for number in range(blocks)]
+            if all(self._locks):
+                self.bus = base
+                self.public_url = f"udpm://239.255.76.67:{base + blocks * _BLOCK - 1}?ttl=0&recv_buf_size=4194304"
+                return
+            self.release()
         raise AssertionError("no free ports")
 
     def release(self) -> None:
-        """Gives them to the next test."""
-        self._lock.close()
+        """Gives the ports to the next test."""
+        for lock in self._locks:
+            if lock:
+                lock.close()
 
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_: object) -> None:
         self.release()
+
+
+def _locked(base: int) -> socket.socket | None:
+    """Returns the lock of a block of ports; None if another test has it."""
+    lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        lock.bind(f"\0fwk-system-test-{base}")
+    except OSError:
+        lock.close()
+        return None
+    return lock
 
 
 class Launched:
