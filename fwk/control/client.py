@@ -153,8 +153,9 @@ def find_run(chosen: str | int | None) -> int:
         ControlError: no run exists.
     """
     wanted = str(chosen if chosen is not None else os.environ.get(RUN_VARIABLE, ""))
-    if wanted.isascii() and wanted.isdecimal() and int(wanted) in address.running():
-        return int(wanted)
+    by_port = {str(port): port for port in address.running()}
+    if wanted in by_port:
+        return by_port[wanted]
     if not wanted and len(ports := address.running()) == 1:
         return ports[0]
     runs = look()
