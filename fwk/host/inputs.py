@@ -149,6 +149,9 @@ class Inputs:
             if not serve():
                 break
             lacking = self.collect(lacking)
+            for box in [each for each in watched if each not in lacking]:  # what comes later would end every wait
+                network.unwatch(box)
+                watched.remove(box)
             if lacking and network.now_us() >= ask_us:
                 asked = max(asked, sum(len(box.missing()) for box in lacking))
                 ask_us = network.now_us() + next_us
