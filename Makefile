@@ -11,7 +11,7 @@ WORKERS ?= $(shell expr $$(nproc) + 1)
 PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: help soccer test test-fast lint types docs clean
+.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs clean
 
 help:  ## Lists what can be made
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -24,7 +24,7 @@ $(READY): pyproject.toml fwk/packaging/build_backend.py
 	@touch $@
 
 types: $(READY)  ## Generates Python classes from lcmtypes/*.lcm
-	@$(BIN)/python -P fwk/lcm/typegen.py lcmtypes tests/components/lcmtypes
+	@$(BIN)/python -P fwk/lcm/typegen.py lcmtypes tests/components/lcmtypes tests/simulation/messages/lcmtypes
 
 soccer: types  ## Plays five against five; Ctrl-C ends the match
 	@$(BIN)/fwk-launch soccer.yaml
@@ -41,6 +41,14 @@ test: lint  ## Everything that has to hold before a commit
 test-fast: types  ## The tests of parts, and of the whole what breaks first
 	$(BIN)/pytest $(PARALLEL) -m '(not system or core) and not slow'
 
+# SEED shows one history step by step; HISTORIES, SECONDS, FIRST and PROCESSES choose how many, which, and how parallel.
+SIMULATE = PYTHONPATH=.:tests/simulation/messages $(BIN)/python -m tests.simulation
+simulate: types  ## Simulates 1,000 systems with faults; SEED=N shows one, HISTORIES=N, SECONDS=N
+	@$(SIMULATE) $(foreach word,seed histories seconds first processes,$(if $($(shell echo $(word) | tr a-z A-Z)),--$(word) $($(shell echo $(word) | tr a-z A-Z))))
+
+simulate-mutations: types  ## Breaks the contract on purpose; shows that the simulation finds it
+	@$(SIMULATE).find_mutations $(if $(HISTORIES),--histories $(HISTORIES))
+
 # The generator of the site is installed by the first `make docs`; tests need none of it.
 $(DOCS_READY): $(READY)
 	$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[docs]'
@@ -51,6 +59,6 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
 
 clean:  ## Removes what was made, the environment too
-	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ tests/simulation/messages/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
 
 -include tools/bench/bench.mk

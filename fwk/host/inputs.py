@@ -151,6 +151,9 @@ class Inputs:
             if not serve():
                 break
             lacking = self.collect(lacking)
+            for buffer in [each for each in watched if each not in lacking]:  # a later message would end every wait
+                network.unwatch(buffer)
+                watched.remove(buffer)
             now_us = network.now_us()
             if lacking and now_us >= fetches.due_us:
                 fetched = max(fetched, sum(len(buffer.missing()) for buffer in lacking))

@@ -287,7 +287,7 @@ class Hosts:
         self._core.ledger.void(host.index, host.incarnation + 1, self._core.clock.tick)
         if not asked:
             self._core.events.emit(HostLost(host))
-        if not host.expected and not self._stopping:
+        if not self._stopping:  # its next process may be far off: the loop may wait for the gateway before it starts
             self._forward_fetches(host)
         if not self._stopping and not asked:
             self._log_end(host, code, culprit)

@@ -1,0 +1,206 @@
+"""A scenario: everything that decides one history; drawn from a seed, small enough to be shrunk, printed and kept."""
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from random import Random
+from typing import Any, Literal
+
+from fwk.model.plan import NOBODY, Plan, RestartPolicy
+from fwk.testing.plans import plan_of
+from tests.simulation.components import CALLS, KINDS, STAGES
+from tests.simulation.faults import OUTSIDE, Action, Weather, weather_of
+
+Hosting = Literal["process", "robot", "single", "mixed"]
+Settings = dict[str, str | int | float | bool]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A component of a scenario."""
+
+    name: str
+    kind: str
+    stages: tuple[str, ...] = ("think",)
+    """Nothing: a continuous component."""
+    settings: Settings = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """What happens in one history."""
+
+    seed: int
+    ticks: int
+    parts: tuple[Part, ...]
+    stages: tuple[str, ...] = STAGES
+    hosting: Hosting = "process"
+    wall: bool = False
+    """Real time instead of lockstep."""
+    period_us: int = 50_000
+    stage_time_us: int = 0
+    weather: Weather = field(default_factory=Weather)
+    actions: tuple[Action, ...] = ()
+
+    @property
+    def exact(self) -> bool:
+        """Whether the contract promises the same bytes as without faults: a run in lockstep that nobody disturbs."""
+        continuous = any(not part.stages for part in self.parts)
+        return not (self.wall or continuous or any(action.kind in OUTSIDE for action in self.actions))
+
+    @property
+    def regroupable(self) -> bool:
+        """Whether the contract promises the same bytes however components share processes."""
+        apart = any(part.kind == "Director" or part.settings.get("crash_tick") for part in self.parts)
+        return self.exact and not apart
+
+    @property
+    def may_fail(self) -> bool:
+        """Whether a component may fail for good: one that fails by itself, or is killed again and again."""
+        crashes = any(part.settings.get("crash_tick") for part in self.parts)
+        return crashes or any(action.kind in ("kill", "kill_at_send") for action in self.actions)
+
+    def calm(self) -> "Scenario":
+        """Returns the same scenario without faults."""
+        return dataclasses.replace(self, weather=Weather(), actions=())
+
+    def plan(self) -> Plan:
+        """Returns the plan that runs."""
+        names = [part.name for part in self.parts]
+        plan = plan_of(
+            {part.name: KINDS[part.kind] for part in self.parts},
+            {part.name: part.settings for part in self.parts},
+            groups=groups_of(names, self.hosting, self.seed),
+            period_s=self.period_us / 1e6,
+            stages=self.stages,
+            restart=RestartPolicy(backoff_s=0.05, limit=3),
+            clock="wall" if self.wall else "simulated",
+            seed=self.seed,
+            speed=1.0 if self.wall else 0.0,
+            stage_time_us=self.stage_time_us,
+            outside={CALLS: "simulation.call_t"} if any(part.kind == "Listener" for part in self.parts) else {},
+        )
+        components = [
+            dataclasses.replace(
+                component,
+                stages=tuple(self.stages.index(stage) for stage in part.stages),
+                module="tests.simulation.components",
+            )
+            for component, part in zip(plan.components, self.parts, strict=True)
+        ]
+        return dataclasses.replace(plan, components=tuple(components))
+
+
+def groups_of(names: list[str], hosting: Hosting, seed: int) -> list[list[str]]:
+    """Returns which components share a process; continuous ones never do."""
+    together = [name for name in names if not name.startswith("drift")]
+    if hosting == "single":
+        return [together] if len(together) > 1 else []
+    if hosting == "process":
+        return []
+    groups: dict[str, list[str]] = {}
+    random = Random(seed)
+    for name in together:
+        groups.setdefault(name[0] if hosting == "robot" else str(random.randrange(3)), []).append(name)
+    return [group for group in groups.values() if len(group) > 1]
+
+
+def scenario_of(seed: int) -> Scenario:
+    """Draws a scenario."""
+    random = Random(seed)
+    exact = random.random() < 0.45
+    wall = not exact and random.random() < 0.4
+    inner = [stage for stage in STAGES if stage == "think" or random.random() < 0.5]
+    parts = _parts(random, tuple(inner), exact)
+    ticks = random.choice([3, 6, 6, 10, 10, 16, 30])
+    hosting = random.choice(["process", "process", "process", "robot", "single", "mixed"])
+    weather = weather_of(random) if random.random() < 0.9 else Weather()
+    actions = _actions(random, parts, ticks, exact)
+    return Scenario(
+        seed=seed,
+        ticks=ticks,
+        parts=parts,
+        stages=tuple(inner),
+        hosting=hosting,  # type: ignore[arg-type]  # one of these
+        wall=wall,
+        period_us=random.choice([10_000, 50_000]),
+        stage_time_us=random.choice([0, 5_000]) if wall else 0,
+        weather=weather,
+        actions=actions,
+    )
+
+
+def _parts(random: Random, stages: tuple[str, ...], exact: bool) -> tuple[Part, ...]:
+    kinds = ["Player"] * random.randint(1, 2)
+    if random.random() < 0.4:
+        kinds += ["Boss"] * random.randint(1, 2) + ["Worker"]
+    for kind, rate, most in (("Conductor", 0.3, 1), ("Usurper", 0.3, 2), ("Director", 0.25, 1), ("Opener", 0.35, 3)):
+        if random.random() < rate:
+            kinds += [kind] * random.randint(1, most)
+    if not exact:
+        kinds += ["Drifter"] * (random.random() < 0.35) + ["Listener"] * (random.random() < 0.3)
+    random.shuffle(kinds)
+    crashes = random.random() < 0.25
+    parts = []
+    for number, kind in enumerate(kinds):
+        continuous = kind == "Drifter"
+        namespace = f"drift{number}" if continuous else f"{'abc'[random.randrange(3)]}{number}"
+        name = f"{namespace}/{kind.lower()}"
+        chosen = sorted(random.sample(range(len(stages)), random.choice([1, 1, 1, 2]) if len(stages) > 1 else 1))
+        parts.append(
+            Part(
+                name=name,
+                kind=kind,
+                stages=() if continuous else tuple(stages[place] for place in chosen),
+                settings=_settings(random, crashes and random.random() < 0.3),
+            )
+        )
+    return tuple(parts)
+
+
+def _settings(random: Random, crashes: bool) -> Settings:
+    made: Settings = {
+        "bursts": random.choice([0, 1, 3]),
+        "ballast": random.choice([0, 20, 20, 20, 200_000 if random.random() < 0.2 else 20]),
+        "work_us": random.choice([0, 0, 500, 20_000 if random.random() < 0.3 else 0]),
+        "eager": random.choice([0.1, 0.3, 0.8]),
+        "early": random.random() < 0.2,
+    }
+    if crashes:
+        made["crash_tick"] = random.randint(1, 8)
+        made["crash_in"] = random.choice(["loop", "loop", "init", "finalize"])
+    return made
+
+
+def _actions(random: Random, parts: tuple[Part, ...], ticks: int, exact: bool) -> tuple[Action, ...]:
+    kinds = ["stop", "stop_at_send", "jump"]
+    if not exact:
+        kinds += ["kill", "kill_at_send", "kill_at_send", "set", "set", "steer", "steer", "pause"]
+        kinds += ["call"] * any(part.kind == "Listener" for part in parts)
+    kinds = [kind for kind in kinds if random.random() < 0.6]
+    names = [part.name for part in parts]
+    made = []
+    for _ in range(random.choice([0, 1, 2, 4, 8]) if kinds else 0):
+        kind: Any = random.choice(kinds)
+        amounts: Mapping[str, int] = {
+            "kill_at_send": random.randint(1, 12),
+            "set": random.randint(1, 1_000_000),
+            "stop": int(3_000_000 * random.random() ** 3),
+            "stop_at_send": int(3_000_000 * random.random() ** 3),
+            "jump": int(5_000_000 * random.random() ** 2),
+            "pause": random.randint(1_000, 500_000),
+            "call": random.randint(1, 1_000_000),
+        }
+        target = random.choice(names)
+        if kind in ("stop", "stop_at_send") and random.random() < 0.3:
+            target = random.choice(["supervisor", "gateway"])
+        word = random.choice(["start", "stop", "restart", "restart", "load", "unload"]) if kind == "steer" else ""
+        delay_us = int(20_000 * random.random() ** 2)
+        amount = amounts.get(kind, 0)
+        made.append(Action(kind, random.randint(0, max(0, ticks - 1)), delay_us, target, amount, word))
+    return tuple(sorted(made, key=lambda action: (action.after_tick, action.delay_us)))
+
+
+def writers_of(plan: Plan) -> dict[str, str]:
+    """Returns the writer of each channel of a plan."""
+    return {channel.name: plan.components[channel.writer].name for channel in plan.channels if channel.writer != NOBODY}
