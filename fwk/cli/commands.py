@@ -8,7 +8,7 @@ import typer
 from typer.core import TyperGroup
 
 from fwk.cli.arguments import SeveralNames
-from fwk.cli.main import version
+from fwk.cli.version import version
 
 MODULES = {
     "check": "check.check",
