@@ -27,8 +27,8 @@ def listed(folder: Path, *command: str) -> list[dict[str, object]]:
 
 @pytest.fixture
 def detached(folder: Path, ports: PortBlock) -> Iterator[subprocess.CompletedProcess[str]]:
-    command = ["fwk-launch", "cards.yaml", "--run", "garden", "--bus-port", str(ports.bus), "--seed", "7", "--detach"]
-    started = run(folder, *command)
+    command = ["fwk-launch", "cards.yaml", "--run", "garden", "--bus-port", str(ports.bus), "--seed", "7"]
+    started = run(folder, *command, "--detach", "--time", "300")  # it ends by itself if the test is killed
     yield started
     run(folder, "fwk", "stop", "--all", "--run", "garden")
 
