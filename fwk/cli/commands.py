@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, MutableMapping
 from importlib import import_module
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
 from fwk.cli.arguments import SeveralNames
+from fwk.cli.version import version
 
 MODULES = {
     "check": "check.check",
@@ -84,8 +85,19 @@ def _command(name: str) -> Any:
 app = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False)
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(version())
+        raise typer.Exit
+
+
+VersionFlag = Annotated[
+    bool, typer.Option("--version", callback=_print_version, is_eager=True, help="print the version and exit")
+]
+
+
 @app.callback()
-def fwk() -> None:
+def fwk(_version: VersionFlag = False) -> None:
     """Tools for runs, launch files and recordings; `fwk-launch` starts a run.
 
     Exit codes: 0 success; 1 a negative result, such as a difference or a failed component; 2 bad input.

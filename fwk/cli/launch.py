@@ -12,7 +12,7 @@ def main() -> None:
 
 def _run() -> None:
     if sys.argv[1:] == ["--version"]:
-        from fwk.cli.main import version
+        from fwk.cli.version import version
 
         say(version())
         return

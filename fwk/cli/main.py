@@ -39,6 +39,8 @@ def run(words: list[str]) -> int | None:
         say(help_text())
         return 0 if words else 2
     if words[0] == "--version":
+        from fwk.cli.version import version
+
         say(version())
         return 0
     thin = _thin(words)
@@ -60,17 +62,6 @@ def help_text() -> str:
     for name, summary in subcommands(read(), ("fwk",)).items():
         table.add(f"  {name}", summary)
     return _HELP + "\n".join(table.lines(terminal_width())) + "\n" + _EXIT_CODES.rstrip()
-
-
-def version() -> str:
-    """Returns name and version of the framework."""
-    from importlib.metadata import PackageNotFoundError
-    from importlib.metadata import version as installed
-
-    try:
-        return f"fwk {installed('fwk')}"
-    except PackageNotFoundError:
-        return "fwk (not installed as a package)"
 
 
 def _thin(words: list[str]) -> Callable[[], int] | None:

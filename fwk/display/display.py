@@ -12,7 +12,7 @@ from typing import TextIO
 from rich.console import Console
 from rich.live import Live
 
-from fwk.clock import SPEED_MAX, SPEED_MIN, US_PER_S, monotonic_us, wall_us
+from fwk.clock import SPEED_MAX, SPEED_MIN, US_PER_S, monotonic_us
 from fwk.display.floods import FloodGate
 from fwk.display.keys import Keyboard
 from fwk.display.lines import held_back_line, log_line, progress_of, status_line
@@ -58,9 +58,9 @@ def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Ste
     for packet in _packets(connection, _LOOK_S):
         with contextlib.suppress(MessageError):
             line = view.take(packet) if packet else None
-            if line and gate.passes(line):
+            if line and gate.passes(line, monotonic_us()):
                 print(log_line(line), file=out, flush=True)
-        for line, count in gate.held_back(wall_us()):
+        for line, count in gate.held_back(monotonic_us()):
             print(held_back_line(line, count), file=out, flush=True)
         if view.status and monotonic_us() >= due_us:
             due_us = monotonic_us() + round(_STATUS_LINE_S * US_PER_S)

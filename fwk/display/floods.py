@@ -26,7 +26,8 @@ class LineGroup:
         self.line = line
         """The newest of them."""
         self.count = 1
-        self.since_us: int = line.wall_us
+        self.since_us = 0
+        """When the group began, in monotonic wall time."""
         self.printed = 1
 
     @property
@@ -65,12 +66,13 @@ class FloodGate:
     def __init__(self) -> None:
         self._groups: dict[tuple[int, str], LineGroup] = {}
 
-    def passes(self, line: log_t) -> bool:
-        """Whether a line is to be printed."""
+    def passes(self, line: log_t, now_us: int) -> bool:
+        """Whether a line that came at `now_us` of monotonic wall time is to be printed."""
         key = meaning(line)
         group = self._groups.get(key)
         if group is None:
             self._groups[key] = LineGroup(line)
+            self._groups[key].since_us = now_us
             return True
         group.line, group.count = line, group.count + 1
         if group.printed < PRINTED_MAX:
@@ -80,6 +82,6 @@ class FloodGate:
 
     def held_back(self, now_us: int) -> list[tuple[log_t, int]]:
         """Returns, once for each group that has ended, its last line and how many lines were not printed."""
-        ended = [key for key, group in self._groups.items() if abs(now_us - group.since_us) > WINDOW_US]
+        ended = [key for key, group in self._groups.items() if now_us - group.since_us > WINDOW_US]
         groups = [self._groups.pop(key) for key in ended]
         return [(group.line, group.count - group.printed) for group in groups if group.count > group.printed]

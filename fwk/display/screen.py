@@ -22,7 +22,7 @@ _LEAST_LOG_ROWS = 3
 _DRAWING_LEAST = (26, 9)  # columns and rows
 _DRAWING_MOST = (96, 34)
 _DRAWING_SHARE = 0.44  # of the width
-KEYS = "space pause   s step   +/- speed   m max   tab component   l level   esc all   q quit"
+KEYS = "space pause  s step  +/- speed  m max  tab component  l level  esc all  q quit"
 
 
 def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> RenderableType:
@@ -193,8 +193,8 @@ def _foot(view: View) -> str:
     filters = [f"lines of {view.selected}"] if view.selected else []
     if view.level:
         filters.append(f"level {LEVEL_NAMES[LEVELS[view.level]]}")
-    chosen = f" [{', '.join(filters)}]" if filters else ""
-    return f" {view.message}" if view.message else f" {KEYS}{chosen}"
+    chosen = f"[{', '.join(filters)}]  " if filters else ""
+    return f" {view.message}" if view.message else f" {chosen}{KEYS}"
 
 
 def _line(text: str, style: str, columns: int) -> Text:

@@ -13,6 +13,7 @@ import typer
 from fwk.bus.port_lock import PortLock
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
+from fwk.cli.commands import VersionFlag
 from fwk.cli.output import BAD_INPUT
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
@@ -104,6 +105,7 @@ def launch(
     ] = None,
     watch: Annotated[bool, typer.Option("--watch", help="reload components when their source files change")] = False,
     plain: Annotated[bool, typer.Option("--plain", help="lines of text instead of the live display")] = False,
+    _version: VersionFlag = False,
 ) -> None:
     """Runs a launch file, in the foreground unless --detach is given; Ctrl-C stops everything.
 

@@ -124,7 +124,7 @@ def said(*arguments: str, code: int = 0) -> str:
 
 def test_the_commands(home: Path) -> None:
     names = make(home, 1, 2, 3, size=3_000_000)
-    assert "together" in said("list")
+    assert f"3 runs, 9.0 MB, in {home}" in said("list")
     said("keep", names[0])
     rows = json.loads(said("list", "--json"))
     assert [(row["kept"], row["in_use"], row["size_bytes"]) for row in rows] == [

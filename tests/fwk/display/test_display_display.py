@@ -206,7 +206,8 @@ def test_a_run_that_stands_still_names_whom_it_waits_for(monkeypatch: pytest.Mon
             now_us[0] += 500_000
 
     monkeypatch.setattr(display_module, "_packets", arriving)
-    display_module.show_lines(view, socket.socket(), out, Answers())
+    with socket.socket() as nothing:
+        display_module.show_lines(view, nothing, out, Answers())
     said = [line for line in out.getvalue().splitlines() if "waits for" in line]
     assert said == [f"tick 77   waits for cyan1/tracker, cyan1/camera, {seconds} s" for seconds in (1, 11)]
 
@@ -226,7 +227,7 @@ def test_a_flood_of_lines_is_counted(start: Callable[..., Display]) -> None:
 def test_lines_that_differ_are_no_flood() -> None:
     gate, groups = FloodGate(), LineGroups(10)
     texts = ["found the ball", "lost the ball", "found the goal", "lost the goal", "kicked", "stopped", "turned"]
-    assert all(gate.passes(log(text)) for text in texts)
+    assert all(gate.passes(log(text), 0) for text in texts)
     for text in texts:
         groups.add(log(text))
     assert [group.text for group in groups] == texts

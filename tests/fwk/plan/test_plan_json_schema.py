@@ -147,7 +147,7 @@ def test_settings_of_a_file_are_searched(load: Callable[..., Plan]) -> None:
     assert (by_value[0], "a/wheels.mode" in by_value[1]) == (0, True)
     assert said("search", "no such words", "--file", "it.yaml") == (
         1,
-        "error: 'no such words' is found in no setting\n",
+        "error: no setting matches 'no such words'\n",
     )
     assert "is no regular expression" in said("search", "a(", "--file", "it.yaml")[1]
     assert said("get", "a/wheels.count", "--file", "it.yaml") == (0, "2\n")

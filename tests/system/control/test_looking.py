@@ -120,7 +120,7 @@ def test_watch_reports_settings_and_save_keeps_them(run: Steered) -> None:
         assert file.read_text() == "# this machine\nconfig:\n  r/counter:\n    step: 2  # as ever\n"
         run.ask("set", changes=["r/counter.step=3"])
         assert "r/counter.step = 2.0 since tick" in run.fwk("config", "reload")
-        assert "nothing else" in run.fwk("config", "reload", "r/counter")
+        assert "no setting in the files has changed" in run.fwk("config", "reload", "r/counter")
         run.end()
     assert "r/counter.step = 2.0 (small.host.yaml:4)" in fwk(run.launched.folder, "check", "small.yaml")
 
@@ -131,7 +131,7 @@ def test_unset_erases_a_kept_setting_and_restores_the_files(run: Steered) -> Non
     run.fwk("config", "set", "r/counter.step=7", "--save")
     assert "no setting 'r/counter.nonsense'" in run.fwk("config", "unset", "r/counter.nonsense", code=2)
     assert f"r/counter.step = {before['value']} since tick" in run.fwk("config", "unset", "r/counter.step")
-    assert file.read_text() == ""
+    assert not file.exists()
     after = run.ask("settings", names=["r/counter.step"])["settings"][0]
     assert (after["value"], after["origin"].partition(",")[0]) == (before["value"], "fwk config unset")
     refused = run.fwk("config", "unset", "r/counter.step", code=1)
