@@ -2,7 +2,7 @@
 
 import struct
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, Protocol
+from typing import Any
 
 from fwk.bus import sync
 from fwk.bus.complaints import Complaints
@@ -15,6 +15,7 @@ from fwk.component.log import Logger
 from fwk.engine.catch_up import AWAY_TICKS
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import gaps
+from fwk.gateway.connections import Outsiders, Sink, SupervisorConnection
 from fwk.gateway.ingress import Outside
 from fwk.gateway.ingress_filter import Strangers
 from fwk.gateway.pacing import PacedPublisher
@@ -43,51 +44,6 @@ from lcmtypes.core import (
 HEARD_AT_ONCE = 256  # messages of other programs, before the run's own have their turn again
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost what it was told."""
-
-
-class Sink(Protocol):
-    """Takes everything that the gateway sees."""
-
-    def message(self, channel: str, data: bytes, time_us: int) -> None:
-        """A message of a component, of the main loop, a line of text or a status."""
-
-    def tick(self) -> None:
-        """A tick is complete."""
-
-    def close(self) -> None:
-        """The run is over."""
-
-
-class SupervisorConnection(Protocol):
-    """The connection that the supervisor closes when the run is over."""
-
-    def fileno(self) -> int:
-        """Returns the descriptor that is readable when the connection is closed."""
-        ...
-
-    def recv(self, size: int, /) -> bytes:
-        """Returns what the supervisor sent; nothing when the connection is closed.
-
-        Raises:
-            BlockingIOError: nothing waits.
-        """
-        ...
-
-
-class Outsiders(Protocol):
-    """The programs outside, on the public bus."""
-
-    def fileno(self) -> int:
-        """Returns the descriptor that is readable when a message waits."""
-        ...
-
-    def receive(self) -> tuple[str, bytes, int] | None:
-        """Returns the next message as (channel, data, port of its sender); None when none waits."""
-        ...
-
-    def send(self, datagram: bytes) -> None:
-        """Sends one datagram to them."""
-        ...
 
 
 class Gateway:

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Set
 from functools import cache
 
-from fwk.gateway.gateway import Sink
+from fwk.gateway.connections import Sink
 from fwk.lcm import envelope, messages
 from fwk.lcm.envelope import STAMP
 from fwk.lcm.messages import Header

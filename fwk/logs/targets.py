@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from fwk.component.log import LEVELS, Logger
-from fwk.gateway.gateway import Sink
+from fwk.gateway.connections import Sink
 from fwk.logs import json_lines as json_log
 from fwk.logs import text_file as text_log
 from fwk.logs.component_target import LogTarget
