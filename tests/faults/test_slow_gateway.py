@@ -18,7 +18,9 @@ def slow(traced: Path) -> Path:
     """The orchestra's folder with a slow gateway."""
     write_files(traced, sources("slow_gateway.py"))
     player = traced / "player.py"
-    player.write_text(player.read_text().replace("import weather ", "import slow_gateway "))
+    text = player.read_text()
+    assert "import weather " in text
+    player.write_text(text.replace("import weather ", "import slow_gateway "))
     return traced
 
 

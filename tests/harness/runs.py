@@ -15,7 +15,9 @@ from typing import Self
 
 import psutil
 
+from fwk.bus.port_lock import PortLock, PortsInUse
 from fwk.host.process import die_with_parent
+from fwk.model.ports import Ports
 
 BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
@@ -54,11 +56,13 @@ class PortBlock:
 
 
 def _locked(base: int) -> socket.socket | None:
-    """Returns the lock of a block of ports; None if another test has it."""
+    """Returns the lock of a block of ports; None if another test has it, or a run that a killed test left behind."""
     lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         lock.bind(f"\0fwk-system-test-{base}")
-    except OSError:
+        overhead = Ports(base, 0, 0).end - base
+        PortLock(Ports(base, 0, _BLOCK - overhead), "test").release()
+    except (OSError, PortsInUse):
         lock.close()
         return None
     return lock
