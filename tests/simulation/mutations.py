@@ -1,12 +1,13 @@
 """The contract, broken on purpose: each mutation replaces one method of the engine, and histories have to find it."""
 
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any
 from unittest.mock import patch
 
 from fwk.component import commands
+from fwk.component.main_loop import Holding
 from fwk.engine.boundary import BoundaryRequest, BoundaryRequests
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
@@ -30,12 +31,17 @@ class Mutation:
     attribute: str
     replacement: Callable[[Any], Any]
     """Makes the broken method from the right one."""
+    also: "Mutation | None" = None
+    """What has to be broken besides: two places sort, and one alone repairs the other."""
 
     @contextmanager
     def applied(self) -> Iterator[None]:
         """Breaks the contract meanwhile."""
         right = getattr(self.owner, self.attribute)
-        with patch.object(self.owner, self.attribute, self.replacement(right)):
+        with ExitStack() as broken:
+            broken.enter_context(patch.object(self.owner, self.attribute, self.replacement(right)))
+            if self.also:
+                broken.enter_context(self.also.applied())
             yield
 
 
@@ -73,8 +79,8 @@ def _nothing(_right: Any) -> Any:
 
 def _runs_again(right: Any) -> Any:
     def answer(self: Any, tick: Any, stage: int) -> Iterator[Any]:
-        if (tick.tick, tick.stage) == self._answered:
-            self._answered = (tick.tick, tick.stage - 1)
+        if (tick.tick, tick.step) == self._answered:
+            self._answered = (tick.tick, tick.step - 1)
         yield from right(self, tick, stage)
 
     return answer
@@ -82,7 +88,7 @@ def _runs_again(right: Any) -> Any:
 
 def _answers_once(right: Any) -> Any:
     def answer(self: Any, tick: Any, stage: int) -> Iterator[Any]:
-        if (tick.tick, tick.stage) != self._answered:
+        if (tick.tick, tick.step) != self._answered:
             yield from right(self, tick, stage)
 
     return answer
@@ -106,6 +112,13 @@ def _as_they_arrive(_right: Any) -> Any:
         return taken
 
     return take
+
+
+def _first_come(right: Any) -> Any:
+    def ask(self: Holding, _tick: int, _step: int, name: str, order: Sequence[str]) -> None:
+        right(self, 0, len(self._wishes), name, order)
+
+    return ask
 
 
 def _in_the_middle(right: Any) -> Any:
@@ -162,7 +175,14 @@ MUTATIONS = (
     Mutation("repeated tick runs", "a repeated tick runs an iteration again", Host, "_answer", _runs_again),
     Mutation("done not repeated", "a lost done is not sent again", Host, "_answer", _answers_once),
     Mutation("command order", "commands come by sender, not by time", commands, "Header", _timeless),
-    Mutation("request order", "requests are granted as dones arrive", BoundaryRequests, "take", _as_they_arrive),
+    Mutation(
+        "request order",
+        "the main loop goes to the first done that arrives",
+        BoundaryRequests,
+        "take",
+        _as_they_arrive,
+        Mutation("", "", Holding, "ask", _first_come),
+    ),
     Mutation("fetch unanswered", "a writer does not answer a fetch", Outputs, "answer", _nothing),
     Mutation(
         "setting in a tick", "a setting changes in the middle of a tick", Boundary, "ask_settings", _in_the_middle

@@ -8,7 +8,7 @@ from tests.simulation.mutations import MUTATIONS
 from tests.simulation.regressions import REGRESSIONS
 from tests.simulation.scenario import Scenario, scenario_of
 
-HISTORIES = 25
+HISTORIES = 15
 """In one test."""
 
 
