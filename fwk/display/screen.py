@@ -180,10 +180,11 @@ def _folded(text: str, columns: int) -> list[str]:
     """Breaks a text of one or several lines; what continues is indented."""
     indent = " " * 18
     first, *others = text.split("\n")
-    parts = wrapped(first, columns)
-    if len(parts) > 1:
-        rest = first[len(parts[0]) :].lstrip()
-        parts = [parts[0], *(indent + part for part in wrapped(rest, columns - len(indent)))]
+    words = first.lstrip()
+    margin = " " * (len(first) - len(words))
+    start = wrapped(words, columns - len(margin))[:1]
+    rest = words[len(start[0]) :].lstrip() if start else ""
+    parts = [margin + each for each in start] + [indent + part for part in wrapped(rest, columns - len(indent))]
     for other in others:
         parts += [indent + part for part in wrapped(other.rstrip(), columns - len(indent))]
     return parts
