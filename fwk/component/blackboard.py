@@ -6,7 +6,7 @@ from typing import Any, Generic, Literal, TypeVar, cast
 
 from fwk.component.channels import Reads, ReadsHistory, Stamp, Writes, WritesPlain
 from fwk.lcm import envelope, messages
-from fwk.model.channel_table import BlackboardEvent, Fact, Instance, Instances, InstanceView
+from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, Instance, InstanceView
 from fwk.model.names import mistake_in
 
 T = TypeVar("T")
@@ -104,7 +104,7 @@ class Blackboard:
         self._readers = readers
         self._writers = writers
         self._declared = frozenset({*readers, *writers})
-        self._instances: Instances | None = None
+        self._instances: ChannelTable | None = None
         self._handles: dict[int, Handle] = {}
         self._numbers: dict[int, int] = {}  # id of what is open, or was asked for, to its number
         self._newest = 0
@@ -214,7 +214,7 @@ class Blackboard:
         return taken
 
     def take_over(
-        self, instances: Instances, component: int, fact: Fact, events: Sequence[BlackboardEvent]
+        self, instances: ChannelTable, component: int, fact: Fact, events: Sequence[BlackboardEvent]
     ) -> Literal["opened", "closed", ""]:
         """For the framework, between two iterations: what was decided, and what happened by that.
 
@@ -232,7 +232,7 @@ class Blackboard:
         after = len(self._readers)
         return "opened" if after > before else "closed" if after < before else ""
 
-    def first(self, instances: Instances) -> None:
+    def first(self, instances: ChannelTable) -> None:
         """For the framework, before the first iteration: the table as it is."""
         self._instances = instances
 
@@ -313,7 +313,7 @@ class Blackboard:
         namespace = self._name.rpartition("/")[0]
         return channel if "/" in channel or not namespace else f"{namespace}/{channel}"
 
-    def _asked_of(self, channel: str, question: Callable[[Instances, Instance], T], nothing: T) -> T:
+    def _asked_of(self, channel: str, question: Callable[[ChannelTable, Instance], T], nothing: T) -> T:
         instance = self._instances.find(self._full(channel)) if self._instances else None
         return question(self._instances, instance) if self._instances and instance else nothing
 

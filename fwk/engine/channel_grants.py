@@ -6,7 +6,7 @@ from fnmatch import fnmatchcase
 from typing import Any, Literal
 
 from fwk.lcm import messages
-from fwk.model.channel_table import BlackboardEvent, Fact, Instance, Instances, Opening
+from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, Instance, Opening
 from fwk.model.plan import NOBODY, Plan
 
 
@@ -22,11 +22,11 @@ class _Wish:
     fingerprint: str = ""
 
 
-class Openings:
+class ChannelGrants:
     """Decides; whoever applies the facts that `decide` gives has the same table as this one."""
 
     def __init__(self, plan: Plan) -> None:
-        self.instances = Instances(plan)
+        self.instances = ChannelTable(plan)
         self._plan = plan
         self._last = len(plan.channels) + plan.spare_channels
         self._index = {component.name: component.index for component in plan.components}

@@ -15,7 +15,7 @@ from fwk.engine.input_view import InputView
 from fwk.engine.metrics import ComponentMetrics
 from fwk.engine.plan_match import check_ports, check_unchanged, config_of
 from fwk.engine.runner import LOST_FRAMES, Runner, RunSection
-from fwk.model.channel_table import Fact, Instances, Opening, facts_in, facts_of
+from fwk.model.channel_table import ChannelTable, Fact, Opening, facts_in, facts_of
 from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.requests import channel_request, lost_frame, main_loop_request, plugin_request
@@ -57,7 +57,7 @@ class ComponentGroup:
         self.plans = [plan.components[index] for index in plan.hosts[assignment.host].components]
         self.metrics = {component.name: ComponentMetrics(component.name, now_us) for component in self.plans}
         self.runners: dict[str, Runner] = {}
-        self.table = Instances(plan) if any(each.opens for each in self.plans) else None
+        self.table = ChannelTable(plan) if any(each.opens for each in self.plans) else None
         """All channels of the run; None if no component of the group can open channels."""
         self._assignment = assignment
         self._plan = plan

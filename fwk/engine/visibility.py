@@ -3,7 +3,7 @@
 from bisect import bisect_left, insort
 from dataclasses import dataclass
 
-from fwk.model.channel_table import Instances
+from fwk.model.channel_table import ChannelTable
 from fwk.model.plan import Plan
 
 
@@ -18,7 +18,7 @@ class Void:
     since: int
 
 
-class Ledger:
+class Visibility:
     """Marks of all channels.
 
     `step` counts stages begun. Messages that dones publish while a stage runs become visible when the next stage
@@ -87,7 +87,7 @@ class Ledger:
         channels = [channel for channel in self._read[host] if self._changed[channel] > since]
         return channels, [self.marks[channel] for channel in channels]
 
-    def opened(self, instances: Instances) -> None:
+    def opened(self, instances: ChannelTable) -> None:
         """Takes over the readers and writers of dynamic channels; stages are told from the next step on."""
         for lists, before in ((self._interest, self._declared_interest), (self._read, self._declared_read)):
             for place, channels in enumerate(before):

@@ -11,17 +11,17 @@ from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.lcm import envelope, messages
 from fwk.lcm.messages import Header, MessageError
-from fwk.model.channel_table import Instance, Instances
+from fwk.model.channel_table import ChannelTable, Instance
 from fwk.model.errors import hint
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 
 _BYTES_SHOWN = 64
 
 
-class Board:
+class ChannelServer:
     """A sink of the gateway that answers questions."""
 
-    def __init__(self, plan: Plan, instances: Instances, call: Callable[[requests.Call, Connection], None]) -> None:
+    def __init__(self, plan: Plan, instances: ChannelTable, call: Callable[[requests.Call, Connection], None]) -> None:
         self._plan = plan
         self._instances = instances
         self._call = call

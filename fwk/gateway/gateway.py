@@ -17,12 +17,12 @@ from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import gaps
 from fwk.gateway.connections import Outsiders, Sink, SupervisorConnection
 from fwk.gateway.ingress import Outside
-from fwk.gateway.ingress_filter import Strangers
+from fwk.gateway.ingress_filter import IngressFilter
 from fwk.gateway.pacing import PacedPublisher
 from fwk.host.inputs import Inputs
 from fwk.lcm import envelope, wire
 from fwk.lcm.messages import Header, MessageError
-from fwk.model.channel_table import Fact, Instances, facts_in
+from fwk.model.channel_table import ChannelTable, Fact, facts_in
 from fwk.model.names import LINES
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from fwk.model.ports import Ports
@@ -53,7 +53,7 @@ class Gateway:
         self, plan: Plan, run: int, network: Network, control: SupervisorConnection, public: Outsiders | None
     ) -> None:
         self.sinks: list[Sink] = []
-        self.instances = Instances(plan)
+        self.instances = ChannelTable(plan)
         """Which channels there are, those too that were opened while the run goes on."""
         self.opened_plain: set[str] = set()
         """Channels that were opened with a type without our header."""
@@ -72,7 +72,7 @@ class Gateway:
         )
         opened = [each for each in plan.channels if each.of_tools or each.name in plan.outside or each.name == LINES]
         self._outside = Outside(opened, self._ports, self._sender, self._inputs, self.clock)
-        self._strangers = Strangers(plan, self.take_in, self._complaints)
+        self._strangers = IngressFilter(plan, self.take_in, self._complaints)
         self._records = network.group_socket(self._ports.record)
         self._lines = network.group_socket(self._ports.log)
         self._status = network.group_socket(self._ports.status)

@@ -12,7 +12,7 @@ BYTES_MAX = 1 << 20
 """Of a message from outside: 64 may wait for a tick, and the gateway keeps them for readers that lose them."""
 
 
-class Strangers:
+class IngressFilter:
     """Checks what others publish; `take_in` makes a message one of the run, `complain` says what is not taken."""
 
     def __init__(self, plan: Plan, take_in: Callable[[str, Any], int], complain: Callable[[str, str], None]) -> None:

@@ -14,7 +14,7 @@ from lcmtypes.core import stamp_t
 _FINGERPRINT = messages.fingerprint(stamp_t)
 
 
-class Apart:
+class Unwrap:
     """A sink that gets, in place of each envelope on one of these channels, a stamp and the plain message.
 
     Those of `opened` come and go.

@@ -6,7 +6,7 @@ from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.component_group import ComponentGroup
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
-from fwk.model.channel_table import Instances, Opening
+from fwk.model.channel_table import ChannelTable, Opening
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 from lcmtypes.core import channels_change_t
 
@@ -15,7 +15,7 @@ class DynamicChannels:
     """Adapts inputs and outputs of a host to the blackboard's decisions; `table` is the table as the host starts."""
 
     def __init__(
-        self, plan: Plan, host: int, group: ComponentGroup, table: Instances, inputs: Inputs, outputs: Outputs
+        self, plan: Plan, host: int, group: ComponentGroup, table: ChannelTable, inputs: Inputs, outputs: Outputs
     ) -> None:
         self._plan = plan
         self._own = set(plan.hosts[host].components)

@@ -9,7 +9,7 @@ from fwk.component.component import Component
 from fwk.engine.assignment import Assignment
 from fwk.engine.component_group import Written
 from fwk.engine.runner import Runner
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.host.continuous import host_of
 from fwk.host.hooks import ProcessHooks, imported_class
 from fwk.lcm import wire
@@ -50,7 +50,7 @@ class MemoryHost:
     def __init__(
         self,
         assignment: Assignment,
-        ledger: Ledger,
+        ledger: Visibility,
         on_log: Callable[[log_t], None] | None = None,
         find_class: Callable[[ComponentPlan], type[Component]] = imported_class,
     ) -> None:

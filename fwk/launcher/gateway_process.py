@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
 from fwk.component.images import Ring
-from fwk.gateway.channel_server import Board
+from fwk.gateway.channel_server import ChannelServer
 from fwk.gateway.command_bridge import Calls
 from fwk.gateway.gateway import Gateway
-from fwk.gateway.unwrap import Apart, plain_channels
+from fwk.gateway.unwrap import Unwrap, plain_channels
 from fwk.lcm.event_log import LogError
 from fwk.logs import targets
 from fwk.model.plan import Plan
@@ -36,12 +36,12 @@ def run_gateway(
     network = UdpNetwork()
     gateway = Gateway(plan, run, network, control, public)
     calls = Calls(plan, gateway.take_in, gateway.clock)
-    board = Board(plan, gateway.instances, calls.call)
+    board = ChannelServer(plan, gateway.instances, calls.call)
     gateway.watch(board.fileno(), board.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already
     if public:
-        mirror = Apart(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.opened_plain)
+        mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.opened_plain)
         gateway.sinks.append(targets.above(mirror, plan.log.bus))
     gateway.sinks += [
         *targets.files(plan.log, options.run_dir, gateway.log.error),
@@ -60,7 +60,7 @@ def run_gateway(
                 if recorded
                 else sinks.Recorder(plan, options.record, gateway.log.error)
             )
-            gateway.sinks.insert(0, targets.above(Apart(recorder, plain, gateway.opened_plain), plan.log.recording))
+            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.opened_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     network.run(gateway.serve())

@@ -115,7 +115,7 @@ class Instance:
     """Component and handle of everybody who opened it for reading at run time, in order."""
 
 
-class Instances:
+class ChannelTable:
     """All instances of a run. Equal facts in equal order make equal tables, in whichever process."""
 
     def __init__(self, plan: Plan) -> None:

@@ -1,6 +1,6 @@
 """Requests for dynamic channels: decided at boundaries, told to the hosts, recorded."""
 
-from fwk.engine.channel_grants import Openings
+from fwk.engine.channel_grants import ChannelGrants
 from fwk.model.channel_table import Fact, text_of
 from fwk.model.requests import channel_request_of
 from fwk.model.tick_events import ChannelsChanged
@@ -19,7 +19,7 @@ class ChannelRequests:
         self._changes = changes
         self._tick_log = tick_log
         self._exist = any(component.opens for component in core.plan.components)
-        self._grants = Openings(core.plan)
+        self._grants = ChannelGrants(core.plan)
         self._written = {channel.index for channel in core.plan.channels}  # all channels that had a writer
 
     @property

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from fwk.bus.sender import Sender
 from fwk.component.log import Logger
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.supervisor.event_loop import EventLoop
@@ -23,7 +23,7 @@ class Core:
     events: EventLoop
     sender: Sender
     clock: RunClock
-    ledger: Ledger
+    ledger: Visibility
     hosts: list[HostProcess]
     """All host processes, by index."""
     log: Logger

@@ -14,7 +14,7 @@ from fwk.clock import US_PER_S
 from fwk.component.images import Ring
 from fwk.component.log import Logger
 from fwk.engine.boundary import BoundaryRequests
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.host.debugger import DebugRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -96,7 +96,7 @@ class Supervisor:
         self.log = Logger("supervisor", clock.clock, lambda line: sender.publish(b"fwk/log", line.encode(), ports.log))
         events, table = EventLoop(network), host_processes(plan)
         self._core = core = Core(
-            plan, number, ports, events, sender, clock, Ledger(plan), table, self.log, self._interrupted
+            plan, number, ports, events, sender, clock, Visibility(plan), table, self.log, self._interrupted
         )
         self._starter = machine.starter
         self._signals = machine.signals

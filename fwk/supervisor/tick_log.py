@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Steps
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.lcm.messages import MessageError
 from fwk.model.channel_table import change_message
 from fwk.model.plain_values import value_messages
@@ -137,7 +137,7 @@ def _settings_message(change: Change) -> settings_change_t:
     return made
 
 
-def void_messages(ledger: Ledger, since: int) -> list[void_t]:
+def void_messages(ledger: Visibility, since: int) -> list[void_t]:
     """Returns the voids for a receiver whose last tick was of step `since` of the ledger."""
     made = []
     for void in ledger.voids_since(since):

@@ -10,11 +10,11 @@ from fwk.component.declaration import declaration
 from fwk.component.images import Ring
 from fwk.component.main_loop import Holding
 from fwk.engine.assignment import Assignment, Start
-from fwk.engine.channel_grants import Openings
+from fwk.engine.channel_grants import ChannelGrants
 from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
 from fwk.engine.runner import Runner
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.gateway.ingress import STAGE, WRITER
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
@@ -71,9 +71,9 @@ class MemorySystem:
         self._indices = {channel.name: channel.index for channel in plan.channels}
         self._readers = {channel.index: set(channel.readers) for channel in plan.channels}
         self._newest: dict[int, bytes] = {}
-        self._ledger = Ledger(plan)
+        self._ledger = Visibility(plan)
         self._holding = Holding({each.name: [stages[stage] for stage in each.stages] for each in plan.components})
-        self._openings = Openings(plan)
+        self._openings = ChannelGrants(plan)
         self._changes = 0
         self._next_us = -1  # logical time of the next tick, as the time source set it last
         self._time_source = [

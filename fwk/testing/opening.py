@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from fwk.engine.channel_grants import Openings
+from fwk.engine.channel_grants import ChannelGrants
 from fwk.engine.runner import Runner
 from fwk.lcm import envelope, messages
-from fwk.model.channel_table import Fact, Instances
+from fwk.model.channel_table import ChannelTable, Fact
 from fwk.model.plan import Plan
 
 
@@ -15,8 +15,8 @@ class Opening:
     def __init__(self, plan: Plan, runners: Mapping[str, Runner], sent: dict[str, list[bytes]]) -> None:
         self._runners = {each.index: runners[each.name] for each in plan.components if each.opens}
         self._sent = sent
-        self._openings = Openings(plan)
-        self._table = Instances(plan)
+        self._openings = ChannelGrants(plan)
+        self._table = ChannelTable(plan)
         self.types: dict[str, type[messages.Message]] = {}
         """Of the channels that were opened."""
         for component in plan.components:

@@ -11,7 +11,7 @@ from fwk.component.main_loop import Holding
 from fwk.engine.boundary import BoundaryRequest, BoundaryRequests
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.host.host import Host
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
@@ -46,7 +46,7 @@ class Mutation:
 
 
 def _visible_at_once(right: Any) -> Any:
-    def publish(self: Ledger, channel: int, sequence: int) -> bool:
+    def publish(self: Visibility, channel: int, sequence: int) -> bool:
         moved: bool = right(self, channel, sequence)
         if moved:
             self.marks[channel] = sequence
@@ -64,7 +64,7 @@ def _never_new(_right: Any) -> Any:
 
 
 def _no_sequences(_right: Any) -> Any:
-    def sequences(_self: Ledger, _host: int) -> Mapping[str, int]:
+    def sequences(_self: Visibility, _host: int) -> Mapping[str, int]:
         return {}
 
     return sequences
@@ -167,10 +167,10 @@ def _leaves_unseen(_right: Any) -> Any:
 
 
 MUTATIONS = (
-    Mutation("early marks", "marks are visible one stage early", Ledger, "publish", _visible_at_once),
+    Mutation("early marks", "marks are visible one stage early", Visibility, "publish", _visible_at_once),
     Mutation("greedy newcomer", "a newcomer sees every message", CatchUp, "applies", _never_new),
     Mutation("newest alone", "an iteration sees only the newest message", ChannelBuffer, "take", _delivers_nothing_new),
-    Mutation("sequence restarts", "a restarted writer counts from 1", Ledger, "sequences", _no_sequences),
+    Mutation("sequence restarts", "a restarted writer counts from 1", Visibility, "sequences", _no_sequences),
     Mutation("void ignored", "messages of the dead stay", ChannelBuffer, "void", _nothing),
     Mutation("repeated tick runs", "a repeated tick runs an iteration again", Host, "_answer", _runs_again),
     Mutation("done not repeated", "a lost done is not sent again", Host, "_answer", _answers_once),

@@ -15,7 +15,7 @@ from fwk.bus.network import Steps
 from fwk.bus.sockets import Address
 from fwk.control.server import Answer
 from fwk.gateway.gateway import Gateway
-from fwk.gateway.unwrap import Apart, plain_channels
+from fwk.gateway.unwrap import Unwrap, plain_channels
 from fwk.model.ports import Ports
 from fwk.recording import sinks
 from fwk.supervisor.options import RunOptions
@@ -232,7 +232,7 @@ class System:
         gateway = Gateway(self.plan, RUN, process, self._closed, self._public)
         recorder = self._recorder = sinks.Recorder(self.plan, outcome.path, gateway.log.error)
         gateway.sinks += [
-            Apart(recorder, plain_channels(self.plan), gateway.opened_plain),
+            Unwrap(recorder, plain_channels(self.plan), gateway.opened_plain),
             _SlowDisk(process, self.world),
         ]
         yield from gateway.serve()

@@ -8,7 +8,7 @@ from fwk.component.images import Ring
 from fwk.engine.assignment import Assignment, Start
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.component_group import Written
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import decode
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
@@ -40,7 +40,7 @@ class Life:
         start: Start,
         rings: Mapping[str, Ring],
         frames: Mapping[str, FrameSource],
-        ledger: Ledger,
+        ledger: Visibility,
         further_stages: Sequence[int] = (),
     ) -> None:
         self.plan = component

@@ -11,10 +11,10 @@ from fwk.component.images import Ring
 from fwk.engine.assignment import Start
 from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.lcm.envelope import fingerprint
 from fwk.lcm.messages import MessageError, sequence_of, type_named
-from fwk.model.channel_table import Instances, facts_in, text_of
+from fwk.model.channel_table import ChannelTable, facts_in, text_of
 from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.tick_events import (
@@ -84,8 +84,8 @@ class Replay:
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
-        self._ledger = Ledger(self._plan)
-        self._table = Instances(plan)
+        self._ledger = Visibility(self._plan)
+        self._table = ChannelTable(plan)
         self._names = {channel.index: channel.name for channel in plan.channels}  # with dynamic channels
         self._indices = {channel.name: channel.index for channel in plan.channels}  # of what is written now
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
@@ -264,7 +264,7 @@ class Replay:
 
     def _snapshot(self, newest_change: int) -> str:
         """Returns the blackboard as it was after a change."""
-        table = Instances(self._run_plan)
+        table = ChannelTable(self._run_plan)
         for change in self._decided:
             if change.number <= newest_change:
                 table.apply(facts_in(change))

@@ -5,9 +5,9 @@ from typing import Any
 import pytest
 
 from fwk import Blackboard, Component, Reads, VisionMaster, Writes
-from fwk.engine.channel_grants import Openings
+from fwk.engine.channel_grants import ChannelGrants
 from fwk.lcm.messages import fingerprint, type_name
-from fwk.model.channel_table import BlackboardEvent, Fact, Instances, facts_of, text_of
+from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, facts_of, text_of
 from fwk.model.plan import Plan
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import frame_t, imu_t, odometry_t
@@ -38,28 +38,28 @@ def plan(spare_channels: int = 8) -> Plan:
     return plan_of({"a/opener": Opener, "b/opener": Opener, "a/reader": Reader}, spare_channels=spare_channels)
 
 
-def begun(spare_channels: int = 8) -> Openings:
+def begun(spare_channels: int = 8) -> ChannelGrants:
     """With everybody there."""
-    made = Openings(plan(spare_channels))
+    made = ChannelGrants(plan(spare_channels))
     for component in (A, B, READER):
         made.came(component, 1)
     made.decide()
     return made
 
 
-def decided(openings: Openings) -> list[tuple[str, int, str]]:
+def decided(openings: ChannelGrants) -> list[tuple[str, int, str]]:
     """Kind, component, and channel or reason."""
     facts, _ = openings.decide()
     return [(fact.kind, fact.component, fact.opening.name if fact.opening else fact.reason) for fact in facts]
 
 
-def happened(openings: Openings) -> list[tuple[str, str, str]]:
+def happened(openings: ChannelGrants) -> list[tuple[str, str, str]]:
     _, events = openings.decide()
     return [(event.kind, event.channel, event.component) for event in events]
 
 
 def test_who_comes_is_the_writer_and_reader_of_what_it_declares() -> None:
-    openings = Openings(plan())
+    openings = ChannelGrants(plan())
     openings.came(READER, 1)
     openings.came(A, 1)
     assert openings.asked
@@ -132,7 +132,7 @@ def test_wishes_are_granted_in_the_order_of_tick_place_component_and_asking() ->
 )
 def test_what_is_refused_names_both_sides(wish: list[Any], reason: str) -> None:
     components: dict[str, type[Component]] = {"a/opener": Opener, "b/opener": Opener, "c/camera": Camera}
-    openings = Openings(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
+    openings = ChannelGrants(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
     for component in range(len(components)):
         openings.came(component, 1)
     openings.ask(1, 0, "b/opener", [["write", 1, "b/spot", *IMU], ["read", 2, "x/read", *IMU]])
@@ -194,7 +194,7 @@ def test_facts_travel_and_a_snapshot_makes_the_same_table() -> None:
     assert facts_of(text_of(facts)) == facts
     refused = [Fact("refuse", 1, 2, reason="because")]
     assert facts_of(text_of(refused)) == refused
-    copy = Instances(plan())
+    copy = ChannelTable(plan())
     copy.apply(facts_of(text_of(openings.instances.snapshot())))
     views = [[table.view(each) for each in table.matching("*")] for table in (copy, openings.instances)]
     assert views[0] == views[1]

@@ -3,7 +3,7 @@
 import pytest
 
 from fwk import Component, Reads, Writes
-from fwk.engine.visibility import Ledger, Void
+from fwk.engine.visibility import Visibility, Void
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 from lcmtypes.soccer import pose_t
@@ -31,11 +31,11 @@ IMU, POSE = 0, 1
 
 
 @pytest.fixture
-def ledger() -> Ledger:
-    return Ledger(plan_of({"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}))
+def ledger() -> Visibility:
+    return Visibility(plan_of({"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}))
 
 
-def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledger: Ledger) -> None:
+def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledger: Visibility) -> None:
     ledger.begin()
     ledger.publish(POSE, 1)
     ledger.begin()
@@ -43,7 +43,9 @@ def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledg
     assert ledger.news(WORLDSTATE, 0) == ([], [])
 
 
-def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_tick_is_repeated(ledger: Ledger) -> None:
+def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_tick_is_repeated(
+    ledger: Visibility,
+) -> None:
     ledger.begin()
     ledger.publish(POSE, 1)
     assert ledger.news(THINK, 0) == ([], [])
@@ -54,7 +56,7 @@ def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_ti
 
 def test_a_host_that_is_told_in_one_stage_knows_what_its_components_of_later_stages_read() -> None:
     parts = {"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}
-    ledger = Ledger(plan_of(parts, groups=[["r/senses", "r/thinks"]]))
+    ledger = Visibility(plan_of(parts, groups=[["r/senses", "r/thinks"]]))
     ledger.begin()
     ledger.publish(POSE, 1)
     seen = ledger.begin()
@@ -63,7 +65,7 @@ def test_a_host_that_is_told_in_one_stage_knows_what_its_components_of_later_sta
     assert ledger.news(THINK, seen) == ([], [])
 
 
-def test_only_what_changed_since_the_last_time_is_told_again(ledger: Ledger) -> None:
+def test_only_what_changed_since_the_last_time_is_told_again(ledger: Visibility) -> None:
     ledger.publish(IMU, 1)
     seen = ledger.begin()
     assert ledger.news(THINK, 0) == ([IMU], [1])
@@ -72,14 +74,14 @@ def test_only_what_changed_since_the_last_time_is_told_again(ledger: Ledger) -> 
     assert ledger.news(THINK, seen) == ([POSE], [1])
 
 
-def test_what_a_stage_publishes_itself_is_told_to_it_the_next_time(ledger: Ledger) -> None:
+def test_what_a_stage_publishes_itself_is_told_to_it_the_next_time(ledger: Visibility) -> None:
     seen = ledger.begin()
     ledger.publish(IMU, 5)
     ledger.begin()
     assert ledger.news(WORLDSTATE, seen) == ([IMU], [5])
 
 
-def test_a_newcomer_is_told_everything(ledger: Ledger) -> None:
+def test_a_newcomer_is_told_everything(ledger: Visibility) -> None:
     ledger.publish(IMU, 7)
     for _ in range(100):
         ledger.begin()
@@ -88,14 +90,14 @@ def test_a_newcomer_is_told_everything(ledger: Ledger) -> None:
     assert ledger.news(THINK, 0) == ([IMU, POSE], [7, 3])
 
 
-def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Ledger) -> None:
+def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Visibility) -> None:
     ledger.publish(IMU, 7)
     ledger.publish(IMU, 6)
     ledger.begin()
     assert ledger.marks[IMU] == 7
 
 
-def test_a_dead_writers_channels_are_void_above_what_it_published_and_go_on_there(ledger: Ledger) -> None:
+def test_a_dead_writers_channels_are_void_above_what_it_published_and_go_on_there(ledger: Visibility) -> None:
     step = ledger.begin()
     ledger.publish(IMU, 9)
     ledger.void(host=0, incarnation=2, tick=3)

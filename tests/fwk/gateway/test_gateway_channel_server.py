@@ -12,12 +12,12 @@ import pytest
 
 from fwk import Component, Reads, Writes
 from fwk.control.address import gateway_address
-from fwk.gateway.channel_server import Board, plain
+from fwk.gateway.channel_server import ChannelServer, plain
 from fwk.lcm import messages
 from fwk.logs.json_lines import JsonLog
 from fwk.logs.reader import Filter, from_plain, read_lines
 from fwk.logs.rotating import RotatingFile
-from fwk.model.channel_table import Instances
+from fwk.model.channel_table import ChannelTable
 from fwk.testing.plans import plan_of
 from lcmtypes.core import log_t
 from lcmtypes.robot import imu_t
@@ -39,15 +39,15 @@ PORT = 100_000 + os.getpid()  # names a socket, is none
 
 
 @pytest.fixture
-def board() -> Iterator[Board]:
+def board() -> Iterator[ChannelServer]:
     plan = plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT)
-    made = Board(plan, Instances(plan), lambda request, connection: None)
+    made = ChannelServer(plan, ChannelTable(plan), lambda request, connection: None)
     yield made
     made.close()
 
 
 @pytest.fixture
-def connection(board: Board) -> Iterator[socket.socket]:
+def connection(board: ChannelServer) -> Iterator[socket.socket]:
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as made:
         made.connect(gateway_address(PORT))
         made.settimeout(5)
@@ -61,7 +61,7 @@ def imu(heading_rad: float, sequence: int) -> bytes:
     return messages.encode(made, "a/imu")
 
 
-def ask(board: Board, connection: socket.socket, **request: Any) -> dict[str, Any]:
+def ask(board: ChannelServer, connection: socket.socket, **request: Any) -> dict[str, Any]:
     connection.sendall(json.dumps(request).encode() + b"\n")
     for _ in range(4):
         board.handle()
@@ -72,7 +72,7 @@ def heard(connection: socket.socket) -> list[dict[str, Any]]:
     return [json.loads(line) for line in connection.recv(1 << 20).splitlines()]
 
 
-def test_channels_are_listed_with_what_came_last(board: Board, connection: socket.socket) -> None:
+def test_channels_are_listed_with_what_came_last(board: ChannelServer, connection: socket.socket) -> None:
     board.message("a/imu", imu(1.5, 7), 0)
     first, second = ask(board, connection, verb="channels")["channels"]
     assert (first["channel"], first["type"], first["writer"], first["readers"]) == (
@@ -85,7 +85,7 @@ def test_channels_are_listed_with_what_came_last(board: Board, connection: socke
     assert (second["channel"], second["messages"], second["age_s"]) == ("a/pose", 0, None)
 
 
-def test_the_newest_message_is_shown_by_fields(board: Board, connection: socket.socket) -> None:
+def test_the_newest_message_is_shown_by_fields(board: ChannelServer, connection: socket.socket) -> None:
     assert ask(board, connection, verb="show", channel="a/imu")["value"] is None
     board.message("a/imu", imu(1.5, 1), 0)
     board.message("a/imu", imu(2.5, 2), 0)
@@ -93,7 +93,7 @@ def test_the_newest_message_is_shown_by_fields(board: Board, connection: socket.
     assert (answer["value"]["heading_rad"], answer["sequence"]) == (2.5, 2)
 
 
-def test_who_watches_gets_each_new_message_of_that_channel(board: Board, connection: socket.socket) -> None:
+def test_who_watches_gets_each_new_message_of_that_channel(board: ChannelServer, connection: socket.socket) -> None:
     ask(board, connection, verb="watch", channel="a/imu")
     for sequence in (1, 2):
         board.message("a/imu", imu(0.5 * sequence, sequence), 0)
@@ -101,12 +101,12 @@ def test_who_watches_gets_each_new_message_of_that_channel(board: Board, connect
     assert [each["value"]["heading_rad"] for each in heard(connection)] == [0.5, 1.0]
 
 
-def test_an_unknown_channel_is_refused_with_the_nearest(board: Board, connection: socket.socket) -> None:
+def test_an_unknown_channel_is_refused_with_the_nearest(board: ChannelServer, connection: socket.socket) -> None:
     answer = ask(board, connection, verb="show", channel="a/imi")
     assert answer == {"ok": False, "error": "no channel 'a/imi'; did you mean 'a/imu'?"}
 
 
-def test_bytes_that_do_not_decode_are_an_answer_too(board: Board, connection: socket.socket) -> None:
+def test_bytes_that_do_not_decode_are_an_answer_too(board: ChannelServer, connection: socket.socket) -> None:
     board.message("a/imu", imu(1.0, 1)[:-3], 0)
     assert "do not decode" in ask(board, connection, verb="watch", channel="a/imu")["error"]
     board.message("a/imu", imu(1.0, 2), 0)

@@ -7,10 +7,10 @@ import pytest
 from fwk import Blackboard, Component, Reads, Writes
 from fwk.engine.assignment import Assignment, Start
 from fwk.engine.failures import ComponentFailedError
-from fwk.engine.visibility import Ledger
+from fwk.engine.visibility import Visibility
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import fingerprint
-from fwk.model.channel_table import Fact, Instances, Opening, change_message
+from fwk.model.channel_table import ChannelTable, Fact, Opening, change_message
 from fwk.model.plan import Plan
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t
@@ -78,12 +78,12 @@ class Told:
 
     def __init__(self, component: type[Component], incarnation: int = 1) -> None:
         self.plan: Plan = plan_of({"r/sensor": Sensor, "r/reader": component})
-        self.ledger = Ledger(self.plan)
+        self.ledger = Visibility(self.plan)
         self.channels = {channel.name: channel.index for channel in self.plan.channels}
         start = Start(incarnation, {"r/pose": 40} if incarnation > 1 else {}, {})
         self.host = MemoryHost(Assignment(self.plan, READER, 7, start, {}), self.ledger)
         self.host.init()
-        self.table = Instances(self.plan)
+        self.table = ChannelTable(self.plan)
         self.newest: dict[int, bytes] = {}
 
     def sense(self, *headings_rad: float) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from fwk import Component, Reads, ReadsEach, Writes, WritesEach, channel
-from fwk.gateway.unwrap import Apart
+from fwk.gateway.unwrap import Unwrap
 from fwk.lcm import envelope
 from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import LogReader, LogWriter
@@ -120,7 +120,7 @@ def stamped(x_m: float, sequence: int, tick: int = 3, writer: str = "r/drivér#2
 
 def test_outside_a_stamp_goes_before_the_plain_message() -> None:
     kept = Kept()
-    sink = Apart(kept, {MOTORS})
+    sink = Unwrap(kept, {MOTORS})
     imu = imu_t().encode()
     sink.message("r/imu", imu, 1)
     sink.message(MOTORS, stamped(0.5, 7), 1)
@@ -137,7 +137,7 @@ def test_outside_a_stamp_goes_before_the_plain_message() -> None:
 def written(path: Path, made: list[bytes], without: int = -1) -> Path:
     """A log of messages on MOTORS, a stranger between stamp and message; one stamp may be left out."""
     kept = Kept()
-    sink = Apart(kept, {MOTORS})
+    sink = Unwrap(kept, {MOTORS})
     for data in made:
         sink.message(MOTORS, data, 0)
     with LogWriter(path, pytest.fail) as log:
