@@ -43,7 +43,7 @@ def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledg
     assert ledger.news(WORLDSTATE, 0) == ([], [])
 
 
-def test_what_is_published_during_a_stage_is_not_told_to_it_however_often_its_tick_is_repeated(
+def test_messages_of_a_running_stage_stay_hidden_when_repeated(
     ledger: Visibility,
 ) -> None:
     ledger.begin()
