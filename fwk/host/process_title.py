@@ -9,7 +9,7 @@ _KEEP_ENVIRONMENT = "SPT_NOENV"
 
 
 def name_process(plan: str, role: str) -> None:
-    """Names this process: `fwk: soccer cyan1/world_model` in full, the end of the role in short."""
+    """Names this process: `fwk: PLAN ROLE` in full, the end of the role in short."""
     os.environ[_KEEP_ENVIRONMENT] = "1"
     from setproctitle import setproctitle, setthreadtitle
 

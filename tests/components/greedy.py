@@ -1,5 +1,6 @@
 """Asks for more channels than there are, all at once, and writes down what it got."""
 
+import weather  # noqa: F401 - loses datagrams if asked to
 from fwk import Blackboard, Component, Config, Writes
 from lcmtypes.robot import imu_t
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+import weather  # noqa: F401 - loses datagrams if asked to
 from fwk import Calls, Clock, Commands, Component, Config, Future, Sends, Serves, Writes, channel
 from lcmtypes.lift import lift_t, lifted_t, sum_request_t, sum_t, tally_t
 

@@ -3,6 +3,7 @@
 import os
 from pathlib import Path
 
+import weather  # noqa: F401 - loses datagrams if asked to
 from fwk import Clock, Component, Reads, Writes, channel
 from lcmtypes.robot import imu_t, motor_command_t
 

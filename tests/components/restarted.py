@@ -2,6 +2,7 @@
 
 import zlib
 
+import weather  # noqa: F401 - loses datagrams if asked to
 from fwk import Clock, Component, PluginControl, Reads, Writes
 from lcmtypes.robot import imu_t
 

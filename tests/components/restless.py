@@ -3,6 +3,7 @@
 import os
 from pathlib import Path
 
+import weather  # noqa: F401 - loses datagrams if asked to
 from fwk import Clock, Component, Config, MainLoop, Reads, Writes, channel
 from fwk.clock import monotonic_us, sleep_s
 from lcmtypes.robot import imu_t

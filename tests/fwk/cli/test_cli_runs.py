@@ -136,7 +136,7 @@ def test_the_commands(home: Path) -> None:
     said("release", names[0])
     said("prune", "--size-gb", "0.004")
     assert there(home) == names[2:]
-    assert "'nan' is no size; say gigabytes" in said("prune", "--size-gb", "nan", code=2)
+    assert "'nan' is not a size; give gigabytes" in said("prune", "--size-gb", "nan", code=2)
     assert f"did you mean '{names[2]}'?" in said("keep", names[2] + "1", code=2)
 
 

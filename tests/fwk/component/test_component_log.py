@@ -32,7 +32,7 @@ def test_a_line_says_where_it_was_written() -> None:
     log.warning("hot")
     (line,) = lines
     assert (line.level, line.component, line.text) == (log_t.WARNING, "a/b", "hot")
-    assert line.file == os.path.basename(__file__)
+    assert os.path.basename(line.file) == os.path.basename(__file__)
     assert line.line == test_a_line_says_where_it_was_written.__code__.co_firstlineno + 3
 
 
@@ -110,7 +110,7 @@ def test_an_exception_has_its_traceback_and_the_place_where_it_was_raised() -> N
     except AttributeError as error:
         log.exception("cannot count", error)
     (line,) = lines
-    assert line.file == "fwk/component/rate_limit.py"
+    assert line.file.endswith("test_component_log.py")  # the author's line, not the framework's
     assert line.text.startswith("cannot count\nTraceback (most recent call last):")
     assert line.text.endswith("AttributeError: 'str' object has no attribute '_dropped_now'")
 

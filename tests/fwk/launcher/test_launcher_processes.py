@@ -73,7 +73,7 @@ def test_used_port_is_named_before_anything_starts(launch: Launch, traced: Path,
         other.bind(("127.0.0.1", port))
         run = launch(FILE)
         assert run.wait() == 2, run.text
-    assert f"port {port} of" in run.text
+    assert f"another program uses UDP port {port}" in run.text
     assert "Traceback" not in run.text
     assert not [process for process in run.processes() if process.status() != psutil.STATUS_ZOMBIE]
 
