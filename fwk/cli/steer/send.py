@@ -53,6 +53,9 @@ def send(
     typer.echo(f"{channel}: {len(data)} bytes sent")
 
 
+_BRACKETS_MAX = 300
+
+
 def made(type_name: str, fields: list[str]) -> Any:
     """A message with these fields set.
 
@@ -63,6 +66,8 @@ def made(type_name: str, fields: list[str]) -> Any:
     for text in fields:
         path, equals, typed = text.partition("=")
         problems = Problems()
+        if typed.count("[") + typed.count("{") > _BRACKETS_MAX:  # the YAML reader takes quadratic time for them
+            raise MessageError(f"{path}: a value has at most {_BRACKETS_MAX} brackets; this one has more")
         node = read_value(typed, "", problems)
         if not equals or problems or node is None:
             raise MessageError(f"'{text}' is no FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")

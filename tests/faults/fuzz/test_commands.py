@@ -152,7 +152,15 @@ def test_every_field_and_value_of_fwk_send_is_answered(name: str, value: Any, da
         sent = messages.encode(made(name, [f"{field}={text}"]), "a/b")
     except MessageError:
         return
-    shown = {"channel": "a/b", "type": name, "sequence": 1, "tick": 1, "time_us": 1, "value": plain(kind.decode(sent))}
+    shown = {
+        "channel": "a/b",
+        "type": name,
+        "by": "a/c",
+        "sequence": 1,
+        "tick": 1,
+        "time_us": 1,
+        "value": plain(kind.decode(sent)),
+    }
     assert json.dumps(shown)
     if messages.has_header(kind):
         assert list(islice(_message(shown), 1000))
