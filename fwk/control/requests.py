@@ -58,7 +58,7 @@ class TakePlace(_Request):
     """Whether a debugger holds the process, so that no time-out applies."""
 
 
-def _flat(change: str) -> str:
+def refuse_deep_nesting(change: str) -> str:
     """Refuses deeply nested values before the YAML reader, which takes quadratic time, sees them."""
     depth = 0
     for letter in change:
@@ -95,7 +95,7 @@ class SetSettings(_Request):
     """Sets values, `NAME.SETTING=VALUE` each; answered when the components have them. `check` only checks them."""
 
     verb: Literal["set"]
-    changes: Annotated[list[Annotated[str, AfterValidator(_flat)]], Field(max_length=1000)]
+    changes: Annotated[list[Annotated[str, AfterValidator(refuse_deep_nesting)]], Field(max_length=1000)]
     check: bool = False
     origin: str = Field("fwk config set", max_length=500)
 

@@ -1,15 +1,13 @@
 """Folders of a recorded run, in which its own modules and message types lie."""
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from fwk.lcm.type_registry import use_types_of
+from fwk.lcm.type_registry import put_first, use_types_of
 
 
 def use_folders(folders: Sequence[str]) -> None:
     """Makes the modules and message types of these folders available, before installed ones of the same name."""
     for folder in folders:
         use_types_of(Path(folder))
-    own = [str(Path(folder).resolve()) for folder in folders]
-    sys.path[:] = [*own, *(entry for entry in sys.path if entry not in own)]
+    put_first([str(Path(folder).resolve()) for folder in folders])

@@ -8,6 +8,7 @@ import typer
 from fwk.bus.public import PublicBus
 from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, asking
 from fwk.control import client
+from fwk.control.requests import refuse_deep_nesting
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
@@ -53,9 +54,6 @@ def send(
     typer.echo(f"{channel}: {len(data)} bytes sent")
 
 
-_BRACKETS_MAX = 300
-
-
 def made(type_name: str, fields: list[str]) -> Any:
     """A message with these fields set.
 
@@ -66,8 +64,10 @@ def made(type_name: str, fields: list[str]) -> Any:
     for text in fields:
         path, equals, typed = text.partition("=")
         problems = Problems()
-        if typed.count("[") + typed.count("{") > _BRACKETS_MAX:  # the YAML reader takes quadratic time for them
-            raise MessageError(f"{path}: a value has at most {_BRACKETS_MAX} brackets; this one has more")
+        try:
+            refuse_deep_nesting(typed)
+        except ValueError as error:
+            raise MessageError(f"{path}: {error}") from error
         node = read_value(typed, "", problems)
         if not equals or problems or node is None:
             raise MessageError(f"'{text}' is no FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")
