@@ -18,7 +18,7 @@ def test_no_port_has_two_uses() -> None:
     assert max(used) < ports.end
 
 
-def test_a_second_run_on_overlapping_ports_is_told_who_has_them_and_what_to_type(ports: PortBlock) -> None:
+def test_second_run_on_the_same_ports_says_what_to_type(ports: PortBlock) -> None:
     lock, overlapping = PortLock(Ports(ports.bus, 5, 5), "soccer.yaml"), Ports(ports.bus + 10, 5, 5)
     told = rf"second.yaml: ports {overlapping.base} .*another run \(pid \d+: .*--bus-port \d+"
     with pytest.raises(PortsInUse, match=told):

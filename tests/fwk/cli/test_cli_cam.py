@@ -58,7 +58,7 @@ def test_it_saves_the_newest_as_of_a_tick(log: Path, arguments: tuple[str, ...],
     assert np.array_equal(np.asarray(cv2.imread(str(file)), np.uint8), NOISE // tick)
 
 
-def test_it_saves_all_into_a_folder_that_the_camera_driver_can_read(log: Path) -> None:
+def test_saved_frames_can_be_read_by_the_camera_driver(log: Path) -> None:
     assert cam("cyan1/image", "--log", log, "--save", log.parent / "all").endswith("all: 3 pictures\n")
     names = sorted(file.name for file in (log.parent / "all").iterdir())
     assert names == ["frame000001.png", "frame000002.png", "frame000004.png"]

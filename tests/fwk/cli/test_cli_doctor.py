@@ -86,7 +86,7 @@ def test_only_what_stops_runs_is_a_failure(monkeypatch: pytest.MonkeyPatch, leve
 
 
 @pytest.mark.system
-def test_a_machine_without_multicast_is_found_and_the_advice_helps(
+def test_missing_multicast_is_found_and_the_advice_helps(
     needs: Callable[..., None], leave_out: Callable[[str], None]
 ) -> None:
     needs("unshare", "ip")

@@ -98,7 +98,7 @@ def test_names_in_a_row_choose_components(folder: Path) -> None:
 
 
 @pytest.mark.system
-def test_a_component_that_fails_for_good_makes_the_exit_code_1_and_is_named(folder: Path) -> None:
+def test_permanent_failure_is_named_and_exits_with_1(folder: Path) -> None:
     result = launch(folder, *FAST, "--ticks", "50", "--set", "right/counter.last=10")
     assert result.returncode == 1, result.stdout
     assert "right/counter" in result.stdout

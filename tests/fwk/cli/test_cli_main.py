@@ -28,7 +28,7 @@ def test_a_command_is_imported_only_when_it_is_needed() -> None:
     assert subprocess.check_output([sys.executable, "-c", asked], text=True).strip() == "False"
 
 
-def test_names_in_a_row_are_understood_by_every_command_that_chooses_components() -> None:
+def test_choosing_commands_accept_several_names() -> None:
     result = CliRunner().invoke(app, ["check", "--only", "world/simulator", "world/referee", "one-robot.yaml"])
     assert result.exit_code == 0, result.output
     assert result.output.startswith("one-robot: 2 components")

@@ -51,7 +51,7 @@ class Helm(Component):
         self.odometry.write()
 
 
-def test_who_asks_gets_what_the_provider_writes_with_its_behaviour() -> None:
+def test_asker_gets_the_providers_messages_and_behaviour() -> None:
     system = MemorySystem({"r/helm": Helm, "r/gyro": Gyro})
     system.tick(3)
     told = system.newest("r/odometry")

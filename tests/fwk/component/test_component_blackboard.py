@@ -100,7 +100,7 @@ def test_an_iteration_that_asks_for_too_much_is_refused() -> None:
         board.open_for_reading(imu_t, "a/more")
 
 
-def test_what_is_closed_is_not_written_in_the_next_iteration_though_it_is_granted_later() -> None:
+def test_closed_channel_is_not_written_before_the_grant() -> None:
     class Twice(Component):
         stage = ("think", "act")
         blackboard: Blackboard
@@ -134,7 +134,7 @@ def test_what_was_closed_before_it_was_open_never_opens() -> None:
     assert again.is_open
 
 
-def test_a_channel_is_opened_again_with_another_type_and_each_reader_sees_its_own() -> None:
+def test_channel_reopened_with_another_type_suits_each_reader() -> None:
     system = MemorySystem({"a/opener": Opener, "b/opener": Opener})
     system.tick()
     a, b = (system.runners[f"{name}/opener"].component.blackboard for name in "ab")  # type: ignore[attr-defined]
@@ -152,7 +152,7 @@ def test_a_channel_is_opened_again_with_another_type_and_each_reader_sees_its_ow
     ]
 
 
-def test_a_reader_opened_at_run_time_keeps_as_many_as_who_wants_most_of_it_says() -> None:
+def test_reader_opened_at_run_time_keeps_the_longest_history() -> None:
     system = MemorySystem({"a/opener": Opener, "b/reader": Watcher})
     system.tick(3)
     board = system.runners["b/reader"].component.blackboard  # type: ignore[attr-defined]
@@ -187,7 +187,7 @@ def test_a_continuous_component_opens_channels_too() -> None:
     assert [(each.header.tick, each.x_m) for each in seen] == [(3, 1.0), (5, 2.0), (7, 2.0)]
 
 
-def test_who_opens_late_has_the_newest_value_at_once_and_hears_of_others() -> None:
+def test_late_opener_has_the_newest_value_at_once() -> None:
     system = MemorySystem({"a/opener": Opener, "a/reader": Reader, "b/opener": Opener})
     system.tick(5)
     a, b = (system.runners[f"{name}/opener"].component.blackboard for name in "ab")  # type: ignore[attr-defined]

@@ -101,7 +101,7 @@ def test_a_flood_is_rejected_and_nothing_grows(parts: Any) -> None:
     assert answers(bench).count((3000, answer_t.REJECTED, full)) == 1
 
 
-def test_one_that_was_started_later_does_not_begin_what_was_sent_before(parts: Any) -> None:
+def test_receiver_started_later_ignores_earlier_commands(parts: Any) -> None:
     bench = Bench(parts.Lifter)
     bench.tick = 10
     for _ in range(3):
@@ -209,7 +209,7 @@ def test_a_future_ends_in_time(parts: Any) -> None:
     assert future.state == "timed out"
 
 
-def test_when_the_owner_was_started_again_everything_before_has_failed(parts: Any) -> None:
+def test_restart_of_the_owner_fails_all_earlier_commands(parts: Any) -> None:
     bench, first = sender(parts)
     bench.owner_of("lift").answer(answer_t.ACCEPTED)
     bench.iterate()

@@ -35,7 +35,7 @@ def test_on_the_bench_it_iterates_as_others_do() -> None:
     assert bench.port("slow").sent[-1].heading_rad == 2
 
 
-def test_in_memory_its_rate_counts_logical_time_and_its_outputs_come_a_tick_later() -> None:
+def test_continuous_rate_counts_logical_time_in_memory() -> None:
     system = MemorySystem({"r/counts": Counts, "r/slow": Slow})
     system.tick(7)
     slow = [imu_t.decode(data) for data in system.sent["r/slow"]]

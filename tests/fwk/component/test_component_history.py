@@ -74,7 +74,7 @@ def test_each_message_is_decoded_once_and_when_it_is_looked_at(bench: Bench, mon
     assert len(decoded) == 3
 
 
-def test_without_a_length_there_is_the_newest_and_many_instances_have_one_each(bench: Bench) -> None:
+def test_history_without_length_keeps_the_newest_of_each(bench: Bench) -> None:
     for number in range(4):
         bench.port("plain").put(heading_rad=float(number))
         bench.port("others", "b").put(heading_rad=10.0 + number)

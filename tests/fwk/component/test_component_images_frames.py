@@ -34,7 +34,7 @@ def test_what_is_no_frame_is_refused(pixels: Any, shape: str) -> None:
     assert bench.port("image").sent == []
 
 
-def test_a_ring_holds_no_more_of_one_iteration_than_its_readers_could_see() -> None:
+def test_ring_holds_no_more_frames_than_readers_could_see() -> None:
     bench = Bench(Camera)
     for _ in range(SLOTS - 1):
         bench.component.image.publish(np.zeros((2, 2), np.uint8))

@@ -9,7 +9,7 @@ from fwk.component.log import Logger
 from lcmtypes.robot import frame_t
 
 
-def test_the_first_frame_of_a_restarted_camera_is_not_taken_for_its_predecessors_first() -> None:
+def test_first_frame_of_a_restarted_camera_is_new() -> None:
     ring = Ring.create("camera")
     announcements = Reads("r/image", frame_t)
     image = Image(announcements, ring, Logger("r/finder", Clock(), print))

@@ -62,7 +62,7 @@ def test_a_flood_is_cut_off_and_counted_when_its_second_is_over() -> None:
     assert calm.text == "calm"
 
 
-def test_a_flood_that_goes_on_is_told_in_each_second_and_at_the_end() -> None:
+def test_lasting_flood_is_reported_each_second_and_at_the_end() -> None:
     lines, wall = list[log_t](), Wall()
     log = logger(lines, wall)
     for number in range(15):
@@ -102,7 +102,7 @@ def test_whatever_is_logged_can_travel(text: str) -> None:
     assert log_t.decode(lines[0].encode()).text == lines[0].text
 
 
-def test_an_exception_has_its_traceback_and_the_place_where_it_was_raised() -> None:
+def test_exception_has_its_traceback_and_place() -> None:
     lines: list[log_t] = []
     log = logger(lines, Wall())
     try:
@@ -152,7 +152,7 @@ def _looped(log_level: str = "info") -> list[log_t]:
     return bench.logged
 
 
-def test_a_changed_level_counts_from_the_next_iteration_and_is_not_the_components_business() -> None:
+def test_changed_log_level_counts_from_the_next_iteration() -> None:
     bench = Bench(Chatty)
     bench.iterate()
     bench.runner.configure({"gain": 1.0, "log_level": "debug"})

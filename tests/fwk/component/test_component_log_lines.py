@@ -43,7 +43,7 @@ def line(level: int, text: str, component: str = "b/other") -> log_t:
     return made
 
 
-def test_lines_of_others_come_from_the_level_that_is_asked_for_on() -> None:
+def test_log_lines_arrive_from_the_requested_level_on() -> None:
     bench = Bench(Alarm, name="a/alarm")
     port = bench.port("lines")
     port.put(line(log_t.INFO, "nothing"))
@@ -63,7 +63,7 @@ def test_a_level_that_does_not_exist_is_refused() -> None:
         bench.component.lines.of("loud")
 
 
-def test_a_system_in_memory_gives_lines_from_the_next_tick_on_and_nobody_hears_of_itself() -> None:
+def test_memory_system_delivers_log_lines_from_the_next_tick() -> None:
     system = MemorySystem({"a/worrier": Worrier, "a/alarm": Alarm})
     system.tick(5)
     assert system.newest("a/heard").heading_rad == 4.0  # an alarm at each alarm would never end

@@ -42,7 +42,7 @@ def test_the_earlier_place_in_a_tick_wins_whoever_answers_first() -> None:
     assert holding.holder == "r/b"
 
 
-def test_who_has_it_changes_the_order_and_gives_it_back_to_the_next() -> None:
+def test_main_loop_holder_changes_order_and_hands_over() -> None:
     holding = Holding(STAGES)
     holding.ask(1, 5, "r/a", ["think"])
     holding.decide()

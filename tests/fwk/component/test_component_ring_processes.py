@@ -96,7 +96,7 @@ def result(reader: subprocess.Popen[str]) -> tuple[int, int]:
     return whole, lost
 
 
-def test_several_readers_see_whole_frames_however_fast_they_are_overwritten(start: Start) -> None:
+def test_readers_see_whole_frames_under_fast_overwriting(start: Start) -> None:
     start(WRITER)
     for whole, lost in [result(reader) for reader in [start(READER) for _ in range(4)]]:
         assert whole >= 300
@@ -113,7 +113,7 @@ def test_a_reader_killed_while_it_reads_stops_nobody(start: Start) -> None:
     assert writer.poll() is None
 
 
-def test_a_writer_killed_while_it_writes_leaves_no_torn_frame_and_its_successor_goes_on(start: Start) -> None:
+def test_killed_writer_leaves_no_torn_frame(start: Start) -> None:
     readers = [start(READER) for _ in range(2)]
     for _ in range(3):
         writer = start(WRITER)
@@ -135,7 +135,7 @@ print(seen, Ring.of_process(os.getppid(), "none"), flush=True)
 """
 
 
-def test_somebody_outside_finds_the_ring_by_its_name_and_sees_its_newest_frame(start: Start) -> None:
+def test_outside_viewer_finds_the_ring_and_its_newest_frame(start: Start) -> None:
     neighbour, _ = start(NEIGHBOUR), start(WRITER)
     out, errors = neighbour.communicate(timeout=TIMEOUT_S)
     assert out == "200 None\n", errors

@@ -101,7 +101,7 @@ def _ended(started: list[Display]) -> Iterator[list[Display]]:
             display.process.wait()
 
 
-def test_on_a_terminal_it_draws_and_gives_the_cursor_back_when_the_run_ends(start: Callable[..., Display]) -> None:
+def test_display_restores_the_cursor_when_the_run_ends(start: Callable[..., Display]) -> None:
     display = start()
     display.send("fwk/status", status(TRACKER, 77))
     display.read_until("tick 77")
@@ -125,7 +125,7 @@ def test_on_a_pipe_it_writes_lines_without_escape_codes(start: Callable[..., Dis
     assert "\x1b" not in display.shown
 
 
-def test_while_a_run_stands_still_nothing_is_written_into_a_debuggers_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_halted_run_writes_nothing_into_a_debugger_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(display_module, "_STATUS_LINE_S", 1e-6)
     view, out = View(plan("tests.fwk.cli.cli_runs:headline")), io.StringIO()
     supervisor, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)

@@ -56,7 +56,7 @@ def test_a_broken_scoreboard_is_named_and_stops_nothing() -> None:
     assert "running" in row(picture, "cyan1/tracker")
 
 
-def test_a_failed_component_is_named_with_its_reason_however_many_run_well() -> None:
+def test_failed_component_among_many_is_named_with_its_reason() -> None:
     broken = status(MATCH, 100)
     failed = component(broken, "cyan3/skiller")
     failed.state, failed.reason = "failed", "ZeroDivisionError: division by zero (skiller.py:40)"

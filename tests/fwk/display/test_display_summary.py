@@ -69,7 +69,7 @@ def test_a_run_that_never_ticked_has_a_summary_too() -> None:
     assert made[0] == "match: cyan1/base is not ready after 20 s: no battery"
 
 
-def test_a_run_directory_carries_the_name_in_letters_a_file_may_have(tmp_path: Path) -> None:
+def test_run_directory_carries_the_name_in_safe_letters(tmp_path: Path) -> None:
     made = make_run_dir("5 v 5/final", tmp_path)
     assert made.is_dir()
     assert made.parent == tmp_path

@@ -73,7 +73,7 @@ def test_who_comes_is_the_writer_and_reader_of_what_it_declares() -> None:
     assert openings.instances.writer(imu) == ""
 
 
-def test_the_first_to_open_creates_an_instance_and_the_last_to_close_destroys_it() -> None:
+def test_first_open_creates_and_last_close_destroys_an_instance() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["read", 1, "x/spot", *IMU]])
     assert happened(openings) == [
@@ -91,7 +91,7 @@ def test_the_first_to_open_creates_an_instance_and_the_last_to_close_destroys_it
     ]
 
 
-def test_wishes_are_granted_in_the_order_of_tick_place_component_and_asking() -> None:
+def test_requests_are_granted_by_tick_step_sender_and_number() -> None:
     openings = begun()
     openings.ask(2, 0, "a/opener", [["write", 2, "x/late", *IMU]])
     openings.ask(1, 1, "a/opener", [["write", 1, "x/spot", *IMU]])
@@ -154,7 +154,7 @@ def test_there_are_as_many_channels_as_the_plan_has_spare() -> None:
     assert facts[0].opening.channel == len(plan().channels)
 
 
-def test_a_pattern_follows_instances_of_its_type_and_keeps_none_alive() -> None:
+def test_pattern_follows_instances_of_its_type_without_owning() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["each", 1, "*/imu", *IMU], ["each", 2, "x/*", *IMU]])
     assert decided(openings) == [("read", A, "a/imu"), ("read", A, "b/imu")]
@@ -165,7 +165,7 @@ def test_a_pattern_follows_instances_of_its_type_and_keeps_none_alive() -> None:
     assert openings.instances.find("x/spot") is None
 
 
-def test_who_goes_has_closed_everything_and_what_it_asked_is_void() -> None:
+def test_leaving_component_closes_channels_and_voids_requests() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU]])
     openings.decide()

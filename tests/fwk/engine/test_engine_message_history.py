@@ -16,7 +16,7 @@ def test_old_messages_go_the_newest_stay() -> None:
     assert numbers(history) == list(range(11, MESSAGES_MAX + 11))
 
 
-def test_however_many_nothing_goes_that_a_reader_in_lockstep_or_the_recorder_may_lack() -> None:
+def test_history_keeps_messages_that_readers_may_still_lack() -> None:
     history = MessageHistory()
     for sequence in range(10_000):
         history.add(1 + sequence // 500, sequence, b"x")  # 20 ticks

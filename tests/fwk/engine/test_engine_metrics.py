@@ -19,7 +19,7 @@ class Lines:
         return [line.text for line in self.lines]
 
 
-def test_the_same_complaint_is_named_at_powers_of_ten_and_always_counted() -> None:
+def test_repeated_complaint_is_named_at_powers_of_ten() -> None:
     said = Lines()
     for _ in range(1234):
         said.complaints("r/pose", "datagram from port 4711; refused")
@@ -39,7 +39,7 @@ def test_each_channel_and_each_kind_is_named() -> None:
     assert len(said.texts) == 4
 
 
-def test_a_stranger_with_endless_kinds_does_not_fill_memory_or_log() -> None:
+def test_foreign_sender_with_endless_kinds_fills_no_memory() -> None:
     said = Lines()
     for number in range(100_000):
         said.complaints("r/pose", f"datagram from port {number}; refused")

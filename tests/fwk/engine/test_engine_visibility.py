@@ -35,7 +35,7 @@ def ledger() -> Visibility:
     return Visibility(plan_of({"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}))
 
 
-def test_a_mark_is_told_to_the_stages_that_read_the_channel_and_to_no_other(ledger: Visibility) -> None:
+def test_mark_goes_only_to_stages_that_read_the_channel(ledger: Visibility) -> None:
     ledger.begin()
     ledger.publish(POSE, 1)
     ledger.begin()
@@ -54,7 +54,7 @@ def test_messages_of_a_running_stage_stay_hidden_when_repeated(
     assert ledger.news(THINK, 0) == ([POSE], [1])
 
 
-def test_a_host_that_is_told_in_one_stage_knows_what_its_components_of_later_stages_read() -> None:
+def test_host_keeps_marks_for_its_components_of_later_stages() -> None:
     parts = {"r/senses": Senses, "r/locates": Locates, "r/thinks": Thinks}
     ledger = Visibility(plan_of(parts, groups=[["r/senses", "r/thinks"]]))
     ledger.begin()
@@ -74,7 +74,7 @@ def test_only_what_changed_since_the_last_time_is_told_again(ledger: Visibility)
     assert ledger.news(THINK, seen) == ([POSE], [1])
 
 
-def test_what_a_stage_publishes_itself_is_told_to_it_the_next_time(ledger: Visibility) -> None:
+def test_stage_sees_its_own_messages_the_next_time(ledger: Visibility) -> None:
     seen = ledger.begin()
     ledger.publish(IMU, 5)
     ledger.begin()
@@ -97,7 +97,7 @@ def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Visibility) -> None
     assert ledger.marks[IMU] == 7
 
 
-def test_a_dead_writers_channels_are_void_above_what_it_published_and_go_on_there(ledger: Visibility) -> None:
+def test_channels_of_a_dead_writer_are_void_beyond_its_marks(ledger: Visibility) -> None:
     step = ledger.begin()
     ledger.publish(IMU, 9)
     ledger.void(host=0, incarnation=2, tick=3)

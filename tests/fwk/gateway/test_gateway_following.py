@@ -114,7 +114,7 @@ def gone_of(message: tuple[bytes, bytes] | None) -> tuple[int, int]:
     return gone.first_sequence, gone.last_sequence
 
 
-def test_what_the_marks_name_is_recorded_with_its_tick_and_no_more(followed: Followed) -> None:
+def test_recording_holds_exactly_what_the_marks_name(followed: Followed) -> None:
     followed.publish(1, 2, 3)
     followed.record(1, mark=2)
     followed.record(2)
@@ -150,7 +150,7 @@ def test_another_runs_records_are_not_taken(followed: Followed) -> None:
     assert followed.kept.ticks == []
 
 
-def test_what_a_dead_writer_had_sent_beyond_the_marks_is_not_recorded(followed: Followed) -> None:
+def test_messages_beyond_a_dead_writers_marks_go_unrecorded(followed: Followed) -> None:
     followed.publish(1, 2)
     followed.publish(2, writer="r/senses#2")
     followed.record(1, mark=2, void_above=1)
@@ -159,7 +159,7 @@ def test_what_a_dead_writer_had_sent_beyond_the_marks_is_not_recorded(followed: 
     assert writers == [imu(1), imu(2, "r/senses#2")]
 
 
-def test_it_answers_for_a_writer_that_is_gone_with_all_of_two_ticks_and_all_since(followed: Followed) -> None:
+def test_gateway_answers_for_a_dead_writer_with_two_ticks(followed: Followed) -> None:
     followed.publish(1, 2, 3, 4)  # in the ticks of these numbers
     for tick in range(1, 5):
         followed.record(tick, mark=tick)

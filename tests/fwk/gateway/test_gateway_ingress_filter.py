@@ -129,7 +129,7 @@ def test_a_message_is_stamped_and_recorded_when_a_mark_names_it(opened: Opened) 
         (b"", "not a robot.motor_command_t"),
     ],
 )
-def test_what_is_none_of_the_type_is_refused_and_says_who_sent_it(opened: Opened, data: bytes, reason: str) -> None:
+def test_message_of_another_type_is_refused_with_its_sender(opened: Opened, data: bytes, reason: str) -> None:
     opened.say(data)
     opened.hear()
     assert opened.gateway._outside.marks == {}
@@ -140,7 +140,7 @@ def test_what_is_none_of_the_type_is_refused_and_says_who_sent_it(opened: Opened
     assert line.endswith("; not taken")
 
 
-def test_a_flood_is_bounded_and_said_and_the_next_tick_makes_room(opened: Opened) -> None:
+def test_flood_is_bounded_and_reported_until_the_next_tick(opened: Opened) -> None:
     for number in range(WAITING_MAX + 30):
         opened.say(wish(float(number)))
         opened.hear()
@@ -161,7 +161,7 @@ def test_one_look_at_the_public_bus_ends_however_much_comes(opened: Opened) -> N
     assert opened.gateway._hear_strangers()
 
 
-def test_channels_that_are_not_opened_and_the_frameworks_own_are_not_taken(opened: Opened) -> None:
+def test_closed_channels_and_framework_channels_are_refused(opened: Opened) -> None:
     opened.say(wish(), "fwk/record")
     opened.say(wish(), "somebody/else")
     opened.hear()
@@ -169,7 +169,7 @@ def test_channels_that_are_not_opened_and_the_frameworks_own_are_not_taken(opene
     assert line.startswith("fwk/record: somebody else (port ")
 
 
-def test_what_came_from_the_public_bus_is_not_published_there_again(opened: Opened) -> None:
+def test_messages_from_the_public_bus_are_not_echoed(opened: Opened) -> None:
     opened.say(wish(1.0))
     opened.hear()
     opened.record(1, 1)

@@ -15,7 +15,7 @@ class Senses(Component):
     imu: Writes[imu_t]
 
 
-def test_a_debugger_that_is_not_installed_is_named_with_what_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_debugger_is_named_with_what_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "debugpy", None)
     component = plan_of({"r/senses": Senses}).components[0]
     with pytest.raises(DebuggerMissing, match="pip install debugpy"):

@@ -125,9 +125,7 @@ def test_what_the_writer_no_longer_has_is_counted_as_lost(make: Make, monkeypatc
     assert pair.inputs.lost == 10
 
 
-def test_a_large_message_comes_through_where_there_is_room_for_a_fragment_only(
-    make: Make, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_large_message_passes_a_buffer_of_one_fragment(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sockets.multicast_receiver, "__defaults__", (1,))
     pair = make()
     large = imu(1) + bytes(1_000_000)
@@ -170,7 +168,7 @@ def test_a_newcomer_takes_the_newest_of_what_is_visible(make: Make) -> None:
     assert [sequence_of(data) for data in moved[0].take()] == [3]
 
 
-def test_messages_of_the_predecessor_are_asked_of_the_gateway_and_only_those(make: Make) -> None:
+def test_only_messages_of_a_predecessor_come_from_the_gateway(make: Make) -> None:
     pair = make(before=5)
     pair.outputs.publish([(IMU, imu(6)), (IMU, imu(7))])
     fetch = fetch_t()
@@ -183,7 +181,7 @@ def test_messages_of_the_predecessor_are_asked_of_the_gateway_and_only_those(mak
     assert pair.gateway_socket.receive(pair.ports.members) is None
 
 
-def test_a_restarted_process_hears_what_it_said_before_from_the_gateway_until_it_has_it(make: Make) -> None:
+def test_restarted_process_fetches_its_own_past_from_the_gateway(make: Make) -> None:
     pair = make(together=True, before=5, restarted=True)
     moved = pair.inputs.advance([0], [5], [])
     pair.inputs.keep_newest()
@@ -195,7 +193,7 @@ def test_a_restarted_process_hears_what_it_said_before_from_the_gateway_until_it
     assert pair.take(6) == [6]
 
 
-def test_the_dead_writers_unfinished_messages_are_dropped_for_its_successors(make: Make) -> None:
+def test_unfinished_messages_of_a_dead_writer_are_dropped(make: Make) -> None:
     pair = make()
     pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])  # of 2 the done never came
     void = void_t()

@@ -50,7 +50,7 @@ def passed_on(sent: Sent, ports: Ports) -> list[tuple[int, int]]:
     return [(each.first_sequence, each.last_sequence) for each in asked]
 
 
-def test_what_others_wrote_between_is_asked_of_the_gateway_and_the_rest_sent_again(ports: Ports) -> None:
+def test_messages_of_other_writers_come_from_the_gateway(ports: Ports) -> None:
     sent = Sent()
     outputs = Outputs({}, ports, sent, {}, {}, lambda: 0)
     outputs.open(INDEX, CHANNEL)
@@ -64,7 +64,7 @@ def test_what_others_wrote_between_is_asked_of_the_gateway_and_the_rest_sent_aga
     assert passed_on(sent, ports) == [(1, 2), (5, 6), (8, 8)]
 
 
-def test_a_channel_that_only_a_predecessor_wrote_is_asked_of_the_gateway(ports: Ports) -> None:
+def test_gateway_answers_for_the_channels_of_a_predecessor(ports: Ports) -> None:
     sent = Sent()
     Outputs({}, ports, sent, {}, {}, lambda: 0).answer(fetch(2, 3))
     assert passed_on(sent, ports) == [(2, 3)]

@@ -58,7 +58,7 @@ def system() -> MemorySystem:
     return MemorySystem({"r/driver": Driver, "s/listener": Listener}, outside={STICK: obstacle_t})
 
 
-def test_a_device_is_heard_and_told_and_its_messages_stay_as_they_are(system: MemorySystem) -> None:
+def test_device_messages_pass_unchanged_in_both_directions(system: MemorySystem) -> None:
     system.come_in(STICK, obstacle(0.5))
     system.tick()
     assert system.newest(MOTORS).x_m == 1.0

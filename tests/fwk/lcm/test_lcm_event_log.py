@@ -148,7 +148,7 @@ def test_a_killed_writer_leaves_a_readable_log(tmp_path: Path) -> None:
     assert len(read) >= 48
 
 
-def test_a_full_disk_is_reported_once_and_what_fits_later_is_written(tmp_path: Path) -> None:
+def test_full_disk_is_reported_once_and_writing_resumes(tmp_path: Path) -> None:
     said: list[str] = []
     writer = LogWriter(tmp_path / "log", said.append, buffer_bytes=1)
     before = resource.getrlimit(resource.RLIMIT_FSIZE)

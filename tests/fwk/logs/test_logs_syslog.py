@@ -80,7 +80,7 @@ def test_a_daemon_that_was_started_again_is_found(tmp_path: Path) -> None:
     assert heard == [True, True]
 
 
-def test_a_daemon_that_does_not_read_holds_up_nobody_and_long_lines_are_cut(daemon: socket.socket) -> None:
+def test_silent_syslog_daemon_holds_nothing_up(daemon: socket.socket) -> None:
     said: list[str] = []
     sink = Syslog(daemon.getsockname(), "soccer", said.append)
     for _ in range(2000):

@@ -79,9 +79,7 @@ PORTS = [(None, 7667), (17_700, 7667), (18_700, 8667), (11_057, 1024), (11_056, 
 
 
 @pytest.mark.parametrize(("bus_port", "port"), PORTS)
-def test_the_public_bus_moves_with_the_bus_port_unless_the_file_names_it(
-    load: Load, bus_port: int | None, port: int
-) -> None:
+def test_public_bus_moves_with_the_bus_port_unless_named(load: Load, bus_port: int | None, port: int) -> None:
     assert load(DRIVING, bus_port=bus_port).public_url.startswith(f"udpm://239.255.76.67:{port}?")
     named = load(DRIVING + "public_url: udpm://239.255.76.67:7000\n", bus_port=bus_port)
     assert named.public_url == "udpm://239.255.76.67:7000?recv_buf_size=4194304"
@@ -227,7 +225,7 @@ def test_programs_outside_write_channels(load: Load) -> None:
     assert (plan.channels[0].name, plan.channels[0].writer, plan.channels[0].readers) == ("a/odometry", NOBODY, (0,))
 
 
-def test_components_and_types_of_ones_own_lie_beside_or_above_the_launch_file(folder: Path) -> None:
+def test_own_components_lie_beside_or_above_the_launch_file(folder: Path) -> None:
     for part in ("launch", "procs", "lcmtypes"):
         (folder / part).mkdir()
     (folder / "lcmtypes" / "planted.lcm").write_text(
@@ -295,7 +293,7 @@ class Calm(Component):
 
 
 @pytest.mark.parametrize("hosting", ["process", "robot", "single"])
-def test_a_continuous_component_has_a_rate_and_a_process_of_its_own(load: Load, folder: Path, hosting: str) -> None:
+def test_continuous_component_has_its_own_rate_and_process(load: Load, folder: Path, hosting: str) -> None:
     (folder / "restless.py").write_text(RESTLESS_PARTS)
     plan = load(RESTLESS, hosting=hosting)
     assert [(each.rate_hz, each.stages) for each in plan.components] == [(20, ()), (0.5, ()), (None, (5,))]

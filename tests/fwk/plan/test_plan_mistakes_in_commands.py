@@ -245,9 +245,7 @@ def test_one_may_carry_out_for_all_who_are_asked(folder: Path, load: Callable[..
     )
 
 
-def test_a_sender_may_be_left_without_its_owner_and_the_owner_without_its_senders(
-    folder: Path, load: Callable[..., Plan]
-) -> None:
+def test_sender_and_owner_of_a_command_run_without_each_other(folder: Path, load: Callable[..., Plan]) -> None:
     written(folder)
     plan = load(GARDEN, without=["*/digger"])
     assert {channel.name: channel.writer >= 0 for channel in plan.channels} == {

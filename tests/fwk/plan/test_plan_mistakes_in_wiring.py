@@ -176,7 +176,7 @@ def test_a_file_that_cannot_be_read(folder: Path) -> None:
         load_plan("it.yaml", LaunchOptions())
 
 
-def test_mistakes_of_all_kinds_are_told_at_once_in_the_order_of_their_places(folder: Path) -> None:
+def test_all_mistakes_are_reported_at_once_in_file_order(folder: Path) -> None:
     (folder / "it.yaml").write_text(
         "nam: x\n"
         "include: none.yaml\n"

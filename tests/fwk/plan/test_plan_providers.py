@@ -28,7 +28,7 @@ def test_who_asks_needs_its_provider_and_reads_what_that_writes(load: Load) -> N
     assert [each.needs for each in guides] == [(3,), (3,), (5,)]
 
 
-def test_a_robots_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
+def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
     plan = load(
         "templates: {bot: {guide: {use: plan_parts:Guide, providers: {way: '{namespace}/two'}},\n"
         "  one: {use: plan_parts:Wayfarer}, two: {use: plan_parts:Wayfarer, channels: {odometry: other}}}}\n"

@@ -29,7 +29,7 @@ def test_the_same_messages_are_equal(tmp_path: Path) -> None:
     assert (result.messages, result.channels) == (80, 4)
 
 
-def test_how_channels_interleave_and_when_events_were_logged_does_not_matter(tmp_path: Path) -> None:
+def test_interleaving_and_event_times_do_not_matter(tmp_path: Path) -> None:
     mixed = [(channel, data, 7) for channel, data, _ in sorted(entries(), key=lambda made: made[0])]
     assert text_of(tmp_path, entries(), mixed) == "None"
     assert text_of(tmp_path, mixed, entries()) == "None"
@@ -92,9 +92,7 @@ def test_a_list_of_other_length_is_named_by_its_count(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("a", "b"), [(0.0, -0.0), (float("nan"), 1.0)])
-def test_values_that_python_takes_for_equal_or_never_equal_are_told_by_their_bits(
-    tmp_path: Path, a: float, b: float
-) -> None:
+def test_floats_are_compared_by_their_bits(tmp_path: Path, a: float, b: float) -> None:
     logs = []
     for value in (a, b):
         made = odometry(1, 1)
@@ -172,12 +170,12 @@ def test_what_is_not_there_or_elsewhere_is_named(
     assert text_of(tmp_path, change(entries()), entries()) == f"{where}: {second} in A, {first} in B"
 
 
-def test_a_reordered_message_is_found_when_the_logs_interleave_differently(tmp_path: Path) -> None:
+def test_reordered_message_is_found_in_interleaved_logs(tmp_path: Path) -> None:
     ahead = sorted(swap(entries(), ODOMETRY, 5), key=lambda made: made[0])
     assert text_of(tmp_path, entries(), ahead).endswith("message 5 by cyan1/base: here in A, later in B")
 
 
-def test_of_several_differences_the_first_in_the_loops_order_is_named(tmp_path: Path) -> None:
+def test_first_difference_in_the_loops_order_is_named(tmp_path: Path) -> None:
     other = entries()
     for channel, tick in [("cyan1/odometry", 9), ("cyan2/world_model", 8), ("cyan2/odometry", 8)]:
         message = odometry(99, 1) if "odometry" in channel else world_model(99, 1)

@@ -75,7 +75,7 @@ def test_the_text_log_has_a_line_for_each_and_nothing_else(tmp_path: Path) -> No
     assert "tick 3 0.150 s warning r/base base.py:7: wheels are hot" in written
 
 
-def test_the_display_gets_lines_at_once_and_of_the_rest_the_newest() -> None:
+def test_display_gets_all_lines_and_the_newest_state() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Display(PLAN, ours)
     display.message("fwk/log", line("hello"), 0)

@@ -129,7 +129,7 @@ def test_progress_names_pictures_and_logical_time(tmp_path: Path) -> None:
     assert [time_s for _, time_s in told] == pytest.approx([0.05, 0.1, 0.15])
 
 
-def test_the_codec_is_named_and_one_that_browsers_do_not_play_has_advice(tmp_path: Path) -> None:
+def test_codec_is_named_with_advice_if_browsers_lack_it(tmp_path: Path) -> None:
     codec = render_video(write(tmp_path / "log", entries(ticks=3)), tmp_path / "out.mp4", grey).codec
     assert codec in ("H.264", "VP9", "MPEG-4 part 2")
     assert advice("H.264") == advice("VP9") == ""

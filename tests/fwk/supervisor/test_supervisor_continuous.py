@@ -62,7 +62,7 @@ class Told:
         return counts
 
 
-def test_it_is_told_what_moved_since_its_last_done_until_that_was_taken() -> None:
+def test_host_gets_marks_since_its_last_accepted_done() -> None:
     told = Told()
     told.ledger.publish(IMU, 1)
     assert list(told.tell(1).sequence) == [1]
@@ -96,7 +96,7 @@ def test_who_does_not_run_is_told_later() -> None:
     assert list(told.tell(2).sequence) == [3]
 
 
-def test_new_settings_are_told_until_a_done_of_that_tick_was_taken() -> None:
+def test_new_settings_are_sent_until_a_done_is_accepted() -> None:
     told = Told()
     entry = told.table[PLANS]
     told.tell(1)

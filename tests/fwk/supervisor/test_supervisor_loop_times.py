@@ -64,7 +64,7 @@ def test_histograms_of_stages_and_ticks() -> None:
     assert timed.texts == []
 
 
-def test_a_tick_that_takes_too_long_is_said_with_its_slowest_stage_and_component() -> None:
+def test_slow_tick_names_its_slowest_stage_and_component() -> None:
     timed = Timed()
     timed.tick(10 * S, think_us=30 * MS)
     assert timed.texts == [
@@ -101,7 +101,7 @@ def test_who_does_not_want_warnings_gets_none() -> None:
     assert timed.texts == []
 
 
-def test_who_overruns_the_stage_in_lockstep_is_named_ten_times_then_rarely() -> None:
+def test_lockstep_overruns_are_named_ten_times_then_rarely() -> None:
     timed = Timed(stage_time_us=4 * MS)
     for number in range(100):
         timed.tick(10 * S + number * 20 * MS, think_us=5 * MS)
@@ -122,7 +122,7 @@ def test_in_real_time_it_is_the_loop_that_names_the_late() -> None:
     assert timed.texts == []
 
 
-def test_in_a_process_of_several_the_component_that_takes_longest_is_named() -> None:
+def test_slowest_component_of_a_shared_process_is_named() -> None:
     timed = Timed(groups=[["r/senses"], ["r/thinks", "r/dreams"]])
     for name, busy_us in (("r/thinks", 10), ("r/dreams", 20)):
         told = component_state_t()

@@ -66,7 +66,7 @@ def test_the_wall_clock_is_what_it_is() -> None:
     assert clock.advance(1_063_000) == 113_000
 
 
-def test_paused_no_tick_begins_and_afterwards_none_runs_after_lost_time() -> None:
+def test_paused_run_begins_no_tick_and_skips_no_time_later() -> None:
     clock = pace(1.0)
     clock.begin_us(0)
     clock.advance(0)

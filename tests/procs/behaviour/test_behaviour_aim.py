@@ -22,7 +22,7 @@ def test_a_robot_before_the_ball_leaves_no_room() -> None:
     assert aim.best_shot(BALL, [robot("", 6.5, 0.0)], FIELD).free_rad < 0.0
 
 
-def test_a_robot_behind_the_ball_or_beyond_the_target_is_not_in_the_way() -> None:
+def test_robot_behind_ball_or_beyond_target_is_no_obstacle() -> None:
     free_rad = aim.lane_rad(BALL, Point(9.0, 0.0), [])
     assert aim.lane_rad(BALL, Point(9.0, 0.0), [robot("", 3.0, 0.0), robot("", 10.0, 0.0)]) > 1.0
     assert free_rad > 3.0

@@ -54,7 +54,7 @@ def navigate(ticks: int = 1, localized: bool = True, **target: Any) -> Bench:
     return bench
 
 
-def test_the_navigator_drives_in_its_own_frame_within_its_acceleration() -> None:
+def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
     bench = navigate(3, x_m=5.0, heading_rad=math.pi / 2)
     commands = bench.port("motor_command").sent
     assert all(command.enabled for command in commands)
@@ -219,7 +219,7 @@ def test_a_stopped_navigator_leaves_the_motors_off() -> None:
     assert (command.enabled, command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (False, 0.0, 0.0, 0.0)
 
 
-def test_a_stopped_skiller_leaves_no_target_no_kick_and_no_ball_handling() -> None:
+def test_stopped_skiller_leaves_no_target_kick_or_handling() -> None:
     bench = Bench(Skiller, "cyan2/skiller")
     bench.component.kick_command.value.kick_id = 3
     bench.component.kick_command.value.dribble = True

@@ -49,7 +49,7 @@ def play(system: MemorySystem, duration_s: float) -> tuple[list[game_state_t], l
     return states, events
 
 
-def test_one_robot_scores_on_an_empty_goal_soon_after_its_kick_off() -> None:
+def test_lone_robot_scores_on_an_empty_goal_after_kick_off() -> None:
     for seed in (1, 2, 3):
         states, _ = play(match(["cyan2"], seed, NOISE), 16.0)
         assert states[-1].score_cyan == 1, f"seed {seed}"

@@ -46,7 +46,7 @@ def test_a_target_in_a_disc_is_approached_from_outside() -> None:
     assert way.direction_rad == 0.0
 
 
-def test_a_target_in_the_core_of_a_disc_is_approached_to_its_edge() -> None:
+def test_target_inside_a_disc_is_approached_to_its_edge() -> None:
     way = find_way(START, Point(2.1, 0.1), [Disc(Point(2.0, 0.0), 0.6, core_m=0.5)])
     assert not way.blocked
     assert way.length_m == pytest.approx(1.48)

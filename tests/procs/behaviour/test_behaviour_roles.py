@@ -22,7 +22,7 @@ TEAM = (
 )
 
 
-def test_every_robot_computes_the_same_jobs_in_whatever_order_it_knows_its_mates() -> None:
+def test_robots_compute_the_same_jobs_in_any_order_of_mates() -> None:
     jobs = None
     for own in TEAM:
         mates = tuple(mate for mate in TEAM if mate is not own)
@@ -40,21 +40,21 @@ def test_every_robot_computes_the_same_jobs_in_whatever_order_it_knows_its_mates
     }
 
 
-def test_of_two_robots_at_one_place_all_send_the_same_one_forward() -> None:
+def test_robots_at_one_place_agree_on_the_attacker() -> None:
     twins = (robot("cyan3", -4.0, 0.0), robot("cyan4", -4.0, 0.0))
     orders = [(TEAM[0], TEAM[1], *pair) for pair in (twins, twins[::-1])]
     first, second = (assign(view(TEAM[4], ball(0.0, 0.0), order), FIELD) for order in orders)
     assert first == second
 
 
-def test_a_robot_alone_attacks_and_of_two_the_lower_number_keeps_the_goal() -> None:
+def test_lone_robot_attacks_and_lower_number_of_two_keeps_goal() -> None:
     alone = assign(view(TEAM[0], ball(0.0, 0.0)), FIELD)
     assert alone["cyan1"].role == ATTACKER
     two = assign(view(TEAM[2], ball(-4.0, -2.0), (TEAM[1],)), FIELD)
     assert (two["cyan2"].role, two["cyan3"].role) == (GOALKEEPER, ATTACKER)
 
 
-def test_an_attacker_keeps_its_role_against_a_mate_that_is_hardly_faster() -> None:
+def test_attacker_keeps_its_role_against_a_barely_faster_mate() -> None:
     new, old = robot("cyan2", -1.0, 0.0), robot("cyan3", -1.3, 0.0, role=ATTACKER)
     keeper = TEAM[0]
     assert assign(view(new, ball(0.0, 0.0), (old, keeper)), FIELD)["cyan3"].role == ATTACKER
@@ -68,13 +68,13 @@ def test_who_meets_a_rolling_ball_first_attacks() -> None:
     assert jobs["cyan3"].role == ATTACKER
 
 
-def test_who_dribbles_stays_attacker_although_the_ball_rolls_towards_a_mate() -> None:
+def test_dribbler_stays_attacker_when_the_ball_nears_a_mate() -> None:
     dribbler, ahead = robot("cyan2", 0.0, 0.0, role=ATTACKER), robot("cyan3", 1.5, 0.2)
     jobs = assign(view(dribbler, ball(0.33, 0.0, 2.0, 0.0), (ahead, TEAM[0])), FIELD)
     assert jobs["cyan2"].role == ATTACKER
 
 
-def test_the_supporter_changes_its_flank_only_when_the_ball_is_well_on_it() -> None:
+def test_supporter_changes_its_flank_only_for_a_clear_ball() -> None:
     supporter = robot("cyan5", 3.0, 3.0, role=SUPPORTER)
     for y_m, flank in ((0.5, 1.0), (2.5, -1.0)):
         jobs = assign(view(supporter, ball(0.0, y_m), (TEAM[0], TEAM[1])), FIELD)
@@ -125,7 +125,7 @@ def test_the_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
     assert min(distances_m[outside:]) > 3.0
 
 
-def test_defenders_stand_between_ball_and_goal_outside_the_penalty_area() -> None:
+def test_defenders_stand_between_ball_and_penalty_area() -> None:
     for where in (Point(4.0, 3.0), Point(-6.0, -3.0), Point(-10.0, 0.5)):
         _, stopper, sweeper, _ = formation.places(where, ours=False, flank=1.0, field=FIELD)
         assert not FIELD.in_penalty_area(*stopper, -1.0)

@@ -36,14 +36,14 @@ def test_goto_drives_there_around_the_ball_and_stays() -> None:
     assert there.drive is not None
 
 
-def test_mark_stands_between_opponent_and_own_goal_facing_the_ball() -> None:
+def test_mark_stands_between_opponent_and_goal_facing_the_ball() -> None:
     place = drive(Mark().step(scene(view(OWN, FAR_BALL), -5.0, 4.0)))
     assert -6.0 < place.place.x_m < -5.0
     assert 3.0 < place.place.y_m < 4.0
     assert abs(place.heading_rad) < math.pi / 2
 
 
-def test_get_ball_drives_mouth_first_and_switches_the_handling_on_nearby() -> None:
+def test_get_ball_drives_mouth_first_and_handles_when_near() -> None:
     far = GetBall().step(scene(view(OWN, ball(4.0, 3.0))))
     assert drive(far).heading_rad == pytest.approx(math.atan2(3.0, 4.0))
     assert 0.2 < math.dist(drive(far).place, (4.0, 3.0)) < 0.33
@@ -73,7 +73,7 @@ def test_a_set_pieces_ball_is_taken_from_behind() -> None:
     assert not drive(GetBall().step(scene(behind, set_piece=True))).avoid_ball
 
 
-def test_an_opponents_ball_is_attacked_from_the_side_of_the_own_goal() -> None:
+def test_ball_of_an_opponent_is_attacked_from_own_goal_side() -> None:
     seen = view(robot("cyan2", 1.0, 2.0), ball(0.0, 0.0), (), (robot("", 0.33, 0.0),))
     tackle = drive(GetBall().step(scene(seen)))
     assert tackle.place.x_m < -0.2
@@ -91,7 +91,7 @@ def test_intercept_waits_on_the_balls_way_facing_it() -> None:
     assert wait.heading_rad == pytest.approx(math.atan2(-0.6, 5.0))
 
 
-def test_dribble_drives_mouth_first_and_fails_when_the_ball_is_gone() -> None:
+def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
     skill, held = Dribble(), scene(view(OWN, ball(0.33, 0.0)), 4.0, 4.0, holds_ball=True)
     step = skill.step(held)
     assert step.dribble
@@ -101,7 +101,7 @@ def test_dribble_drives_mouth_first_and_fails_when_the_ball_is_gone() -> None:
     assert lost[-1] is Status.FAILED
 
 
-def test_shoot_turns_first_and_kicks_when_it_points_at_the_target() -> None:
+def test_shoot_turns_first_and_kicks_when_aimed() -> None:
     skill = Shoot()
     aside = scene(view(OWN._replace(heading_rad=0.5), ball(0.3, 0.1)), holds_ball=True, kicks_asked=4, kicks_done=4)
     turning = skill.step(aside)
@@ -126,7 +126,7 @@ def test_a_kick_allows_for_the_robots_own_motion() -> None:
     assert -0.2 < turn.heading_rad < -0.05
 
 
-def test_a_kick_that_the_kicker_does_not_carry_out_is_asked_again() -> None:
+def test_kick_that_the_kicker_ignores_is_requested_again() -> None:
     skill, held = Shoot(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
     assert skill.step(held).kick_m_s > 0
     later = [skill.step(held._replace(kicks_asked=1)).kick_m_s for _ in range(8)]
@@ -155,7 +155,7 @@ def test_the_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, cross
         assert place.y_m > -0.2  # goes wide
 
 
-def test_the_keeper_covers_the_side_of_the_ball_but_stays_between_the_posts() -> None:
+def test_keeper_covers_the_ball_side_between_the_posts() -> None:
     keeper = robot("cyan1", -10.5, 0.0)
     left, right = (drive(KeepGoal().step(scene(view(keeper, ball(-9.0, y_m))))).place.y_m for y_m in (5.0, -5.0))
     assert 0.3 < left < 1.0
@@ -163,7 +163,7 @@ def test_the_keeper_covers_the_side_of_the_ball_but_stays_between_the_posts() ->
     assert drive(KeepGoal().step(scene(view(keeper, Ball(known=False))))).place.y_m == 0.0
 
 
-def test_the_machine_moves_the_target_of_a_running_skill_and_begins_an_ended_one_anew() -> None:
+def test_machine_moves_a_running_skill_and_restarts_an_ended_one() -> None:
     machine, seen = Machine(), view(OWN, Ball(known=False))
     assert machine.step(1, "get_ball", scene(seen)).status is Status.FAILED
     assert machine.step(1, "get_ball", scene(view(OWN, FAR_BALL))).status is Status.FAILED

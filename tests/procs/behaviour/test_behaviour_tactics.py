@@ -49,7 +49,7 @@ def test_the_attacker_intercepts_a_ball_that_comes_its_way() -> None:
     assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, 3.0, 0.0))).skill == "get_ball"
 
 
-def test_with_the_ball_before_an_open_goal_it_shoots_beside_the_keeper() -> None:
+def test_open_goal_is_shot_beside_the_keeper() -> None:
     order = decide(with_ball(7.0, 0.0), holds_ball=True)
     assert order.skill == "shoot"
     assert order.place.x_m == 11.0
@@ -93,7 +93,7 @@ def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
     assert math.dist(order.place, game.spot) < 1.0
 
 
-def test_the_taker_of_a_kick_off_stays_in_its_half_even_if_it_will_pass_back() -> None:
+def test_kick_off_taker_stays_in_its_half_before_a_back_pass() -> None:
     game = Game(State.KICK_OFF, stopped=True, whose=Whose.OURS)
     mates = (robot("cyan3", -3.0, 3.0, role=SUPPORTER),)
     order = decide(view(robot("cyan2", -2.0, 0.0), ball(0.0, 0.0), mates), game)

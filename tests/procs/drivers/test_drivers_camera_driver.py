@@ -126,9 +126,7 @@ def test_a_device_may_be_named_by_its_number() -> None:
         Bench(CameraDriver, name="cyan1/camera", source=99)
 
 
-def test_a_device_that_the_user_may_not_read_is_refused_with_the_group(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_unreadable_device_is_refused_with_its_group(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.access", lambda *_: False)  # root may read everything
     with pytest.raises(SourceError, match="most systems want you in the group 'video'"):
         bench("/dev/null")
@@ -191,7 +189,7 @@ def test_a_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., S
     camera.component.finalize()
 
 
-def test_the_detectors_see_in_a_folder_what_they_saw_of_the_camera(tmp_path: Path) -> None:
+def test_detectors_see_the_same_in_saved_frames(tmp_path: Path) -> None:
     pictures, live = simulated(6)
     folder = write_folder(tmp_path / "film", pictures)
     replayed = MemorySystem(

@@ -140,7 +140,7 @@ class Course:
         robot.drive(robot.velocity + np.clip(wanted - robot.velocity, -most, most))
 
 
-def test_the_table_is_exact_beside_a_straight_line_and_beside_the_circle() -> None:
+def test_table_is_exact_near_a_straight_line_and_the_circle() -> None:
     x_m = np.array([-0.31, 0.17, 4.0])
     y_m = np.array([3.0, 4.0, FIELD.half_width_m - FIELD.line_width_m / 2 - 0.2])
     distance_m, _, _ = line_map(FIELD).look_up(x_m, y_m)
@@ -174,7 +174,7 @@ def test_a_line_says_nothing_about_the_place_along_it() -> None:
     assert found.poses[0] == pytest.approx((0.0, 4.5, 0.0), abs=0.02)
 
 
-def test_table_made_block_by_block_is_that_of_all_lines_everywhere(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_blockwise_table_equals_the_table_of_all_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     places_m = np.random.default_rng(1).uniform((-11.0, -8.0), (11.0, 8.0), (5000, 2))
     by_blocks = LineMap(FIELD).look_up(*places_m.T)
     monkeypatch.setattr("procs.localization.line_map._BLOCK_M", 100.0)  # one block, to which all lines are near
@@ -231,7 +231,7 @@ def test_driving_robot_stays_localized_within_10_cm() -> None:
 
 
 @pytest.mark.slow
-def test_kidnapped_robot_finds_itself_within_5_s_a_hundred_times_in_a_row() -> None:
+def test_kidnapped_robot_localizes_within_5_s_a_hundred_times() -> None:
     robot = FakeRobot(seed=7)
     robot.place()
     bench = Bench(Localization)
@@ -245,7 +245,7 @@ def test_kidnapped_robot_finds_itself_within_5_s_a_hundred_times_in_a_row() -> N
     assert np.isfinite(times).sum() >= 98
 
 
-def test_being_carried_again_and_again_teaches_nothing_wrong_about_the_compass() -> None:
+def test_repeated_kidnapping_does_not_bias_the_compass() -> None:
     robot = FakeRobot(seed=8)
     robot.place()
     bench = Bench(Localization)
@@ -314,7 +314,7 @@ def test_a_part_of_a_start_pose_is_refused() -> None:
         Bench(Localization, start_x_m=1.0)
 
 
-def test_a_robot_that_is_blocked_while_its_wheels_turn_stays_where_it_is() -> None:
+def test_blocked_robot_with_turning_wheels_stays_in_place() -> None:
     robot = FakeRobot(seed=19)
     robot.pose = np.array((3.0, 2.0, 0.0))
     bench = Bench(Localization, start_x_m=3.0, start_y_m=2.0, start_heading_rad=0.0)
@@ -356,7 +356,7 @@ def test_values_that_cannot_be_are_survived(value: float) -> None:
     assert np.hypot(*robot.error(bench)[:2]) < 0.05
 
 
-def test_settings_changed_while_it_runs_count_from_the_next_frame() -> None:
+def test_live_settings_count_from_the_next_frame() -> None:
     robot = FakeRobot(seed=25)
     robot.pose = np.array((3.0, 2.0, 0.0))
     bench = Bench(Localization)

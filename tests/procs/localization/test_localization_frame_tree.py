@@ -34,7 +34,7 @@ def edges(bench: Bench) -> dict[tuple[str, str], Any]:
     return {(each.parent, each.child): each for each in message.transforms}
 
 
-def test_the_tree_has_what_is_mounted_and_where_the_robot_stands_once_it_knows() -> None:
+def test_tree_has_mounted_frames_and_the_pose_once_known() -> None:
     bench = Bench(FrameTree, mounted={"camera": {"z_m": 0.5, "yaw_rad": math.pi}})
     bench.iterate()
     assert list(edges(bench)) == [("base", "camera")]
@@ -51,7 +51,7 @@ def test_frames_that_do_not_fit_keep_it_from_starting() -> None:
         Bench(FrameTree, mounted={"b": {"parent": "a"}, "a": {"parent": "b"}})
 
 
-def test_who_asks_for_transforms_looks_up_the_time_of_what_it_saw() -> None:
+def test_transform_lookups_use_the_time_of_the_input() -> None:
     system = MemorySystem({"r/senses": Senses, "r/spot": BallSpot, "r/tree": FrameTree})
     spot = system.runners["r/spot"].component
     system.tick(5)

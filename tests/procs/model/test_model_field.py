@@ -17,7 +17,7 @@ def test_lines_lie_inside_the_measures_and_are_symmetric() -> None:
     assert {Point(-x, y) for x, y in ends} == ends == {Point(x, -y) for x, y in ends}
 
 
-def test_there_are_seventeen_straight_lines_five_arcs_and_nine_marks() -> None:
+def test_field_has_seventeen_lines_five_arcs_and_nine_marks() -> None:
     assert (len(FIELD.segments()), len(FIELD.arcs()), len(FIELD.marks())) == (17, 5, 9)
     assert len(set(FIELD.marks())) == 9
 
@@ -30,7 +30,7 @@ def test_corner_arcs_bend_into_the_field() -> None:
         assert FIELD.in_field(x_m, y_m, -0.4)
 
 
-def test_the_front_line_of_the_penalty_area_ends_where_the_area_ends() -> None:
+def test_front_line_of_the_penalty_area_ends_with_the_area() -> None:
     fronts = [s for s in FIELD.segments() if s.start.x_m == s.end.x_m == pytest.approx(11.0 - 2.25 + 0.0625)]
     assert [(s.start.y_m, s.end.y_m) for s in fronts] == [pytest.approx((-3.45 + 0.0625, 3.45 - 0.0625))]
 

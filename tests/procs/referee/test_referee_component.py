@@ -39,7 +39,7 @@ def test_the_first_tick_kicks_off_and_places_the_ball() -> None:
     assert len(bench.port("game_state").sent) == 6
 
 
-def test_a_goal_is_counted_announced_and_the_ball_goes_to_the_centre() -> None:
+def test_goal_is_counted_and_the_ball_goes_to_the_centre() -> None:
     bench = playing()
     bench.port("match_events").put(
         ball_x_m=11.2, events=[make(match_event_t.TOUCH), make(match_event_t.GOAL, x_m=11.2)]

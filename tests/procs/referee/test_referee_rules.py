@@ -32,13 +32,13 @@ def report(referee: Referee, *events: Event) -> None:
     referee.step(TICK_S, Sight(Point(events[-1].x_m, events[-1].y_m), events))
 
 
-def test_a_match_begins_with_cyans_kick_off_and_the_ball_on_the_centre_mark() -> None:
+def test_match_begins_with_cyans_kick_off_at_the_centre_mark() -> None:
     referee = Referee(Rules())
     assert (referee.state, referee.team, referee.stopped) == (State.KICK_OFF, Team.CYAN, True)
     assert (referee.spot, referee.placements) == (CENTRE, 1)
 
 
-def test_a_set_piece_runs_after_the_stoppage_and_is_play_when_the_ball_has_moved() -> None:
+def test_set_piece_becomes_play_when_the_ball_has_moved() -> None:
     referee = Referee(Rules(kick_off_stoppage_s=2.0))
     wait(referee, 1.95)
     assert referee.stopped
@@ -126,7 +126,7 @@ def test_a_goal_counts_once_and_not_while_the_game_is_stopped() -> None:
     assert referee.score[Team.CYAN] == 1
 
 
-def test_a_ball_that_does_not_get_away_is_dropped_at_the_nearest_mark() -> None:
+def test_stuck_ball_is_dropped_at_the_nearest_mark() -> None:
     referee = in_play(deadlock_s=5.0)
     wait(referee, 1.0, Point(6.0, -3.0))
     wait(referee, 3.9, Point(6.2, -3.0))
@@ -136,7 +136,7 @@ def test_a_ball_that_does_not_get_away_is_dropped_at_the_nearest_mark() -> None:
     assert referee.spot == pytest.approx((7.4, -3.5))
 
 
-def test_a_ball_that_is_pushed_away_during_a_stoppage_is_put_back() -> None:
+def test_ball_pushed_away_during_a_stoppage_is_put_back() -> None:
     referee = in_play()
     report(referee, event(Kind.OUT_SIDE, "cyan2", 3.0, 7.2))
     wait(referee, 0.6, Point(3.0, 6.9))
@@ -146,7 +146,7 @@ def test_a_ball_that_is_pushed_away_during_a_stoppage_is_put_back() -> None:
     assert referee.spot == pytest.approx((3.0, 6.9))
 
 
-def test_after_half_time_magenta_kicks_off_and_after_the_second_half_all_is_over() -> None:
+def test_magenta_kicks_off_second_half_and_then_the_match_ends() -> None:
     referee = in_play(half_s=20.0, half_time_s=2.0)
     wait(referee, 15.0)
     assert (referee.state, referee.half) == (State.HALF_TIME, 1)

@@ -48,7 +48,7 @@ def ball_in_mouth(noise: Noise | None = None) -> World:
     return world
 
 
-def test_a_kick_gives_the_ball_its_speed_and_the_robot_the_recoil() -> None:
+def test_kick_gives_the_ball_speed_and_the_robot_recoil() -> None:
     world = ball_in_mouth()
     kick(world, "cyan1", 10.0)
     events = run(world, 1)

@@ -41,7 +41,7 @@ def test_the_wheels_limit_the_top_speed() -> None:
     assert drive(one_robot(), Velocity(9.0, 0.0, 0.0), 40).vx_m_s == pytest.approx(3.5 / (math.sqrt(3) / 2), abs=0.02)
 
 
-def test_grip_limits_the_acceleration_and_the_wheels_spin_meanwhile() -> None:
+def test_grip_limits_the_acceleration_while_wheels_spin() -> None:
     world = one_robot()
     robot = world.robots["cyan1"]
     drive(world, Velocity(3.0, 0.0, 0.0), 4)

@@ -109,7 +109,7 @@ def test_same_seed_same_radio_other_seed_another() -> None:
     assert run(1) != run(2)
 
 
-def test_a_change_of_one_setting_does_not_reshuffle_the_luck_of_the_others() -> None:
+def test_one_changed_setting_keeps_the_other_random_draws() -> None:
     def lost(delay_s: float) -> list[int]:
         bench = radio(loss=0.3, delay_s=delay_s)
         for _ in range(40):

@@ -109,13 +109,13 @@ def test_equal_scenes_give_equal_bytes() -> None:
     assert renderer().render(scene).tobytes() == other.render(scene).tobytes()
 
 
-def test_robots_that_touch_the_camera_or_stand_far_away_can_be_drawn() -> None:
+def test_robots_at_the_camera_or_far_away_can_be_drawn() -> None:
     robots = [(0.1, 0.0, CYAN), (0.0, 0.0, CYAN), (1e4, 0.0, MAGENTA)]
     renderer().render(Scene(Pose(0.0, 0.0, 0.0), robots, (0.0, 0.0, 0.11)))
     renderer().render(Scene(Pose(0.0, 0.0, 0.0), [], (0.3, 0.0, 5.0)))
 
 
-def test_noise_is_as_strong_as_asked_and_differs_from_frame_to_frame() -> None:
+def test_noise_is_as_strong_as_set_and_differs_by_frame() -> None:
     grey = np.full((200, 200, 3), 128, np.uint8)
     noise, rng = SensorNoise(200, 5.0, 1.0, 0.0, seed=1), np.random.default_rng(2)
     first, second = noise.apply(grey, rng), noise.apply(grey, rng)

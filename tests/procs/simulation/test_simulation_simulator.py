@@ -142,7 +142,7 @@ def test_a_goal_counts_for_the_team_that_attacks_it() -> None:
     assert world.port("match_events").sent[-1].last_touch == "cyan1"
 
 
-def test_the_ball_is_put_where_the_referee_says_once_for_each_number() -> None:
+def test_referee_placement_happens_once_for_each_number() -> None:
     world = bench()
     world.port("ball_placement").put(placement_id=1, x_m=3.0, y_m=-2.0)
     truth = tick(world)

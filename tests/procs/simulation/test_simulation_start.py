@@ -22,7 +22,7 @@ def test_names_say_team_number_and_side() -> None:
 
 
 @pytest.mark.parametrize("team", ["cyan", "magenta"])
-def test_everybody_starts_in_the_own_half_outside_the_circle_with_room(team: str) -> None:
+def test_robots_start_apart_in_their_half_outside_the_circle(team: str) -> None:
     poses = [starting_pose(f"{team}{number}", FIELD) for number in range(1, 10)]
     side = side_of(team)
     assert all(side * pose.x_m > 0.6 and FIELD.in_field(pose.x_m, pose.y_m) for pose in poses)

@@ -42,7 +42,7 @@ def test_lines_are_white_and_grass_is_green() -> None:
     assert colour_at(drawn, 5.0, 5.0) in GRASS
 
 
-def test_robots_wear_their_teams_colours_and_the_ball_is_in_its_place() -> None:
+def test_robots_have_team_colours_and_the_ball_its_place() -> None:
     drawn = VIEW.draw(truth(("cyan1", -5.0, 1.0, 0.0), ("magenta2", 4.0, -3.0, 0.0)))
     assert colour_at(drawn, -5.0, 0.88) == pytest.approx(TEAM_COLOURS["cyan"], abs=12)
     assert colour_at(drawn, 4.0, -3.12) == pytest.approx(TEAM_COLOURS["magenta"], abs=12)
@@ -67,7 +67,7 @@ def test_the_bar_shows_the_score() -> None:
     assert (bar(score_cyan=1) == bar(score_cyan=1)).all()
 
 
-def test_beliefs_are_drawn_where_the_robot_believes_the_ball_to_be() -> None:
+def test_beliefs_are_drawn_where_the_robot_sees_the_ball() -> None:
     belief = world_model_t()
     belief.ball.known, belief.ball.x_m, belief.ball.y_m = True, -6.0, -4.0
     belief.ball.covariance = [[0.25, 0, 0, 0], [0, 0.01, 0, 0], [0] * 4, [0] * 4]

@@ -68,14 +68,14 @@ def test_still_ball_is_found_to_a_small_part_of_a_pixel(distance_m: float, most_
 
 
 @pytest.mark.parametrize("distance_m", [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
-def test_covariance_says_how_large_the_errors_are_when_the_mirror_shakes(distance_m: float) -> None:
+def test_covariance_matches_the_errors_of_a_shaking_mirror(distance_m: float) -> None:
     errors, normed, missed = sightings(distance_m, SHAKE_PX)
     assert missed <= 1
     assert abs(errors.mean(axis=0)[0]) < errors[:, 0].std()
     assert 1.0 < normed.mean() < 3.5  # two degrees of freedom: 2 if it were exact
 
 
-def test_error_grows_with_distance_no_faster_than_cambada_assumes() -> None:
+def test_error_grows_with_distance_as_cambada_assumes_at_most() -> None:
     """CAMBADA's filter takes 0.01 d² - 0.01 d + 0.039 m for the standard deviation of a single sighting."""
     deviations = [math.sqrt((sightings(d, SHAKE_PX)[0] ** 2).sum(axis=1).mean()) for d in (1.0, 2.0, 4.0, 6.0)]
     assert deviations == sorted(deviations)
@@ -92,14 +92,14 @@ def crowd(rng: np.random.Generator, own: Pose) -> list[tuple[float, float, Bgr]]
     return robots
 
 
-def test_no_ball_is_seen_among_lines_robots_goals_and_surroundings() -> None:
+def test_lines_robots_goals_and_surroundings_show_no_ball() -> None:
     rng = np.random.default_rng(5)
     for _ in range(150):
         own = Pose(rng.uniform(-11.0, 11.0), rng.uniform(-7.0, 7.0), rng.uniform(-math.pi, math.pi))
         assert FINDER.find(picture(Scene(own, crowd(rng, own), None), rng)) is None
 
 
-def test_in_a_crowd_nearly_every_ball_is_found_and_the_found_one_is_the_ball() -> None:
+def test_nearly_every_ball_in_a_crowd_is_found() -> None:
     rng = np.random.default_rng(6)
     found = balls = 0
     for _ in range(150):

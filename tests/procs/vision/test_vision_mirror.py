@@ -27,7 +27,7 @@ def test_forward_is_up_and_left_is_left() -> None:
     assert left[1] == pytest.approx(mirror.centre_px)
 
 
-def test_farther_is_always_farther_out_and_eight_metres_are_in_the_picture() -> None:
+def test_image_radius_grows_with_distance_up_to_eight_metres() -> None:
     mirror = Mirror()
     radii = [mirror.radius_px(distance) for distance in np.arange(0.0, 8.01, 0.1)]
     assert np.all(np.diff(radii) > 0.0)

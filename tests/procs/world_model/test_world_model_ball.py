@@ -67,13 +67,13 @@ def rms(errors: Floats) -> float:
     return float(np.sqrt(np.nanmean(np.sum(errors**2, axis=1))))
 
 
-def test_ball_at_rest_is_known_to_5_cm_and_10_cm_per_second_from_4_m() -> None:
+def test_resting_ball_is_known_to_5_cm_and_10_cm_per_second() -> None:
     errors = np.concatenate([follow([Eye("a", (0, 0), seed)], rolling((4, 0), (0, 0), 100))[30:] for seed in range(10)])
     assert rms(errors[:, :2]) < 0.05
     assert rms(errors[:, 2:]) < 0.10
 
 
-def test_rolling_ball_is_known_to_10_cm_and_30_cm_per_second_within_4_m() -> None:
+def test_rolling_ball_is_known_to_10_cm_and_30_cm_per_second() -> None:
     errors = np.concatenate(
         [follow([Eye("a", (0, 0), seed)], rolling((-3.5, 1), (2.5, 0.3), 50))[10:] for seed in range(20)]
     )
@@ -107,7 +107,7 @@ def test_own_kick_is_believed_before_any_sighting() -> None:
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.25)
 
 
-def test_fused_ball_is_better_than_the_best_single_robot_and_half_the_error_of_the_median_one() -> None:
+def test_fused_ball_beats_the_best_single_robot() -> None:
     places = [(-2.0, 0.5), (3.0, -2.0), (-4.0, 4.0), (5.0, 4.0)]
 
     def eyes(seed: int) -> list[Eye]:
@@ -172,7 +172,7 @@ def test_a_phantom_seen_once_changes_nothing() -> None:
     assert tracker.track.state[:2] == pytest.approx((1.0, 1.0), abs=0.02)
 
 
-def test_a_ball_that_was_put_elsewhere_is_found_with_the_second_sighting() -> None:
+def test_moved_ball_is_found_with_the_second_sighting() -> None:
     tracker = BallTracker()
     for frame in range(12):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
@@ -181,7 +181,7 @@ def test_a_ball_that_was_put_elsewhere_is_found_with_the_second_sighting() -> No
     assert tracker.track.state[:2] == pytest.approx((-3.0, 0.0), abs=0.05)
 
 
-def test_own_sight_wins_over_a_mate_of_the_same_accuracy_and_the_mate_counts_when_it_is_gone() -> None:
+def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     tracker = BallTracker()
     own, other = np.array((1.0, 1.0)), np.array((2.5, 1.0))
     for _ in range(10):

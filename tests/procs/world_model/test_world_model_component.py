@@ -107,7 +107,7 @@ def team(seed: int = 0, **radio: float) -> TeamOnBench:
     return TeamOnBench(robots, **radio)
 
 
-def test_ball_and_opponent_are_where_the_camera_sees_them_from_the_robots_pose() -> None:
+def test_ball_and_opponent_are_placed_from_camera_and_pose() -> None:
     robot = Robot("cyan1", (2.0, 1.0, math.pi / 2), seed=1)
     for _ in range(20):
         robot.sense(np.array((2.0, 3.0)), [np.array((0.0, 1.0))])
@@ -143,7 +143,7 @@ def decoded(robot: Robot, data: bytes) -> list[team_message_t]:
     return list(port.message_type.decode(data).messages)
 
 
-def test_mates_with_roles_and_no_mate_nor_oneself_among_the_opponents() -> None:
+def test_opponents_contain_neither_mates_nor_oneself() -> None:
     four = team()
     four.robots[3].role = "goalkeeper"
     opponents = (np.array((0.0, -3.0)), np.array((-2.0, 1.05)))
@@ -171,7 +171,7 @@ def test_an_opponent_that_only_a_mate_sees_is_known() -> None:
     assert any(math.hypot(one.x_m - 6.0, one.y_m + 3.0) < 0.3 for one in pair.robots[0].world.opponents)
 
 
-def test_a_robot_that_does_not_know_its_place_listens_but_tells_no_sight() -> None:
+def test_unlocalized_robot_listens_but_shares_no_sighting() -> None:
     pair = team()
     lost = pair.robots[0]
     lost.localized = False
@@ -235,7 +235,7 @@ def ball_errors(loss: float, blind: bool, seeds: int = 6) -> tuple[float, list[f
 
 
 @pytest.mark.slow
-def test_the_teams_ball_is_half_as_wrong_as_the_median_robots_and_no_worse_than_the_best_ones() -> None:
+def test_team_ball_beats_median_and_matches_best_robot() -> None:
     fused, alone = ball_errors(loss=0.03, blind=False)
     assert fused <= 0.5 * np.median(alone)
     assert fused <= 1.1 * min(alone)

@@ -87,7 +87,7 @@ def test_track_covariance_is_not_too_small() -> None:
     assert 2.5 < np.mean(values) < 5.5, "4 for an honest covariance"
 
 
-def test_a_mate_takes_away_one_obstacle_so_that_the_opponent_beside_it_stays() -> None:
+def test_mate_explains_one_obstacle_and_the_opponent_stays() -> None:
     seen = np.array([[1.0, 0.0], [1.4, 0.0], [4.0, 4.0]])
     sharp = spreads(3, 0.05)
     remain = without_known(seen, sharp, np.array([[1.05, 0.0]]), spreads(1, 0.05), 0.5)
@@ -102,7 +102,7 @@ def test_a_poorly_seen_mate_is_that_mate_from_further_away() -> None:
     assert not without_known(seen, spreads(1, 0.4), mate, spreads(1, 0.05), 0.5).any()
 
 
-def test_team_keeps_the_newest_word_of_each_mate_until_the_timeout() -> None:
+def test_team_keeps_the_newest_message_until_the_timeout() -> None:
     def word(name: str, told_s: float, x_m: float, localized: bool = True) -> Mate:
         return Mate(name, "defender", told_s, np.array((x_m, 0.0)), 0.0, np.array((1.0, 0.0)), localized)
 

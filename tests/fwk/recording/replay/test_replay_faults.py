@@ -161,7 +161,7 @@ def differences(replay: Replay) -> list[str]:
     return [str(each) for each in replay.differences]
 
 
-def test_an_iteration_that_was_late_and_never_ran_is_not_replayed(tmp_path: Path) -> None:
+def test_late_iteration_that_never_ran_is_not_replayed(tmp_path: Path) -> None:
     made = Made(tmp_path / "log.lcm")
     made.sensed(1)
     made.counted(1, 1.0, tick=1)
@@ -174,7 +174,7 @@ def test_an_iteration_that_was_late_and_never_ran_is_not_replayed(tmp_path: Path
     assert differences(made.replayed()) == []
 
 
-def test_an_iteration_that_was_late_has_the_inputs_and_settings_of_its_tick(tmp_path: Path) -> None:
+def test_late_iteration_has_the_inputs_and_settings_of_its_tick(tmp_path: Path) -> None:
     made = Made(tmp_path / "log.lcm")
     made.sensed(1)
     made.tick(LATE, marks=(1, 0))
@@ -210,7 +210,7 @@ def started_anew(folder: Path, *never_got: TickEvent) -> Made:
     return made
 
 
-def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Path) -> None:
+def test_newcomer_has_messages_that_its_process_lost(tmp_path: Path) -> None:
     """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
     made = started_anew(tmp_path)
     made.sensed(3)
@@ -219,7 +219,7 @@ def test_a_newcomer_has_what_came_before_what_its_process_never_got(tmp_path: Pa
     assert differences(made.replayed()) == []
 
 
-def test_the_newest_that_a_new_process_never_got_nobody_in_it_has(tmp_path: Path) -> None:
+def test_newest_message_lost_by_a_new_process_is_absent_there(tmp_path: Path) -> None:
     made = started_anew(tmp_path, missed(2))
     made.sensed(3)
     made.counted_anew(2, 3.0, tick=3)
