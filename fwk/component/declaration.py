@@ -22,8 +22,7 @@ from fwk.component.main_loop import MainLoop
 from fwk.component.plugins import PluginControl
 from fwk.component.port import IMAGE_KINDS, PORT_KINDS, DeclarationError, Port, declared_port
 from fwk.model.names import LINES
-from lcmtypes.core import log_t
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t, log_t
 
 RATE_MAX_HZ = 10_000
 _METHODS = ("init", "loop", "finalize", "config_changed")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fwk.component.channels import Reads, Writes
 from fwk.component.log import Logger
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t
 
 SLOTS = 4
 """Of a ring; one less may be given out in an iteration."""

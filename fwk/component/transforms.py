@@ -5,7 +5,7 @@ import numpy as np
 from fwk.component.aspect import Aspect
 from fwk.component.channels import Reads
 from fwk.component.transform_tree import Transform, TransformTree
-from lcmtypes.robot import transform_t, transforms_t
+from lcmtypes.core import transform_t, transforms_t
 
 
 class Transforms(Aspect):

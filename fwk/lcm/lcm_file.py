@@ -44,7 +44,7 @@ class Struct:
 
     @property
     def full_name(self) -> str:
-        """Name with the package: `robot.frame_t`."""
+        """Name with the package: `core.frame_t`."""
         return f"{self.package}.{self.name}"
 
     def full_type(self, member: Member) -> str:

@@ -80,17 +80,26 @@ def tick_and_sequence_of(data: bytes) -> tuple[int, int]:
 
 
 def type_name(message_type: type[Message]) -> str:
-    """Name as in the .lcm files: `robot.frame_t`."""
+    """Name as in the .lcm files: `core.frame_t`."""
     return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"
 
 
+_RENAMED = {f"robot.{name}": f"core.{name}" for name in ("frame_t", "picture_t", "transform_t", "transforms_t")}
+"""Former names of types, as in launch files and recordings made before; fingerprints do not depend on names."""
+
+
+def current_name(name: str) -> str:
+    """Returns the present name of a type that may have been renamed: `core.frame_t` for `robot.frame_t`."""
+    return _RENAMED.get(name, name)
+
+
 def type_named(name: str) -> type[Message]:
-    """Finds the generated class of `robot.frame_t`.
+    """Finds the generated class of `core.frame_t`, also by a former name.
 
     Raises:
         MessageError: there is no such type.
     """
-    package, _, short = name.rpartition(".")
+    package, _, short = current_name(name).rpartition(".")
     try:
         found: type[Message] = getattr(import_module(f"lcmtypes.{package}"), short)
     except (ImportError, AttributeError) as error:

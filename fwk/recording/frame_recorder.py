@@ -11,7 +11,7 @@ from fwk.lcm import messages
 from fwk.model.plan import Plan
 from fwk.recording.pictures import FRAME, compressed
 from fwk.recording.sinks import Recorder
-from lcmtypes.robot import frame_t, picture_t
+from lcmtypes.core import frame_t, picture_t
 
 WAITING_BYTES = 128 << 20  # frames that are not compressed yet
 _THREADS = 2

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from fwk.lcm import messages
 from fwk.lcm.event_log import LogReader
-from lcmtypes.robot import picture_t
+from lcmtypes.core import picture_t
 
 FRAME = "fwk/frame"
 """Channel of the frames that the launch file wants recorded."""

@@ -3,7 +3,7 @@
 from pydantic import Field
 
 from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, Writes, channel, transform_message
-from lcmtypes.robot import transforms_t
+from lcmtypes.core import transforms_t
 from lcmtypes.soccer import pose_t
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from pydantic import Field as Setting
 
 from fwk import Clock, Component, Config, ImagesEach, Writes
-from lcmtypes.robot import picture_t
+from lcmtypes.core import picture_t
 from procs.model.units import US_PER_S
 from procs.vision.colours import Picture
 

@@ -16,7 +16,7 @@ from fwk.component.images import Ring
 from fwk.control import client
 from fwk.model.errors import hint
 
-FRAME_TYPE = "robot.frame_t"
+FRAME_TYPE = "core.frame_t"
 
 
 def cam(

@@ -13,8 +13,7 @@ from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import decode
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
 from fwk.recording.replay.frames import FrameSource, View
-from lcmtypes.core import tick_t
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t, tick_t
 
 Newest = Mapping[int, bytes]
 """The newest visible message of each channel, by index."""

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from fwk.cli.commands import app as fwk
 from fwk.lcm.event_log import LogWriter
-from lcmtypes.robot import picture_t
+from lcmtypes.core import picture_t
 from tests.harness.fuzz import damaged
 
 PIXELS = np.random.default_rng(1).integers(0, 256, (12, 16, 3), np.uint8)

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from fwk.cli.commands import app
 from fwk.cli.look.picture_output import as_text
 from fwk.lcm.event_log import LogWriter
-from lcmtypes.robot import picture_t
+from lcmtypes.core import picture_t
 
 NOISE = np.random.default_rng(1).integers(0, 256, (60, 80, 3), np.uint8)
 

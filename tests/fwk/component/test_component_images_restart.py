@@ -6,7 +6,7 @@ from fwk.clock import Clock
 from fwk.component.channels import Reads, Writes
 from fwk.component.images import Image, Ring, VisionMaster
 from fwk.component.log import Logger
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t
 
 
 def test_first_frame_of_a_restarted_camera_is_new() -> None:

@@ -10,7 +10,8 @@ from fwk.lcm.messages import fingerprint, type_name
 from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, facts_of, text_of
 from fwk.model.plan import Plan
 from fwk.testing.plans import plan_of
-from lcmtypes.robot import frame_t, imu_t, odometry_t
+from lcmtypes.core import frame_t
+from lcmtypes.robot import imu_t, odometry_t
 
 A, B, READER = 0, 1, 2
 IMU = (type_name(imu_t), fingerprint(imu_t).hex())

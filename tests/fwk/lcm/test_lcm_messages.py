@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from fwk.lcm import messages
-from lcmtypes.core import header_t
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t, header_t
 from lcmtypes.soccer import ball_percept_t
 
 WRONG: list[tuple[Any, str]] = [
@@ -16,7 +15,7 @@ WRONG: list[tuple[Any, str]] = [
     (frame_t(encoding=3), "encoding is 3, not a string"),  # type: ignore[arg-type]
     (frame_t(header=None), "header is a NoneType, not a core.header_t"),  # type: ignore[arg-type]
     (frame_t(header=header_t(tick="1")), "header.tick is '1', not an int64_t"),  # type: ignore[arg-type]
-    (header_t(), "it is a header_t, not a robot.frame_t"),
+    (header_t(), "it is a header_t, not a core.frame_t"),
 ]
 
 
@@ -24,7 +23,7 @@ WRONG: list[tuple[Any, str]] = [
 def test_the_member_that_does_not_fit_is_named(message: Any, text: str) -> None:
     with pytest.raises(messages.MessageError) as told:
         messages.encoder(frame_t, "a/image")(message)
-    assert str(told.value) == f"a/image: cannot encode robot.frame_t: {text}"
+    assert str(told.value) == f"a/image: cannot encode core.frame_t: {text}"
 
 
 @pytest.mark.parametrize(
@@ -48,3 +47,8 @@ def test_a_dict_becomes_a_struct() -> None:
     assert repr(made) == "frame_t(header=header_t(tick=7, writer='a/b'), frame=3)"
     with pytest.raises(messages.MessageError, match="header_t has no field 'tik'; its fields are tick"):
         messages.of_dict(frame_t, {"header": {"tik": 7}})
+
+
+@pytest.mark.parametrize("name", ["frame_t", "picture_t", "transform_t", "transforms_t"])
+def test_types_are_found_by_their_former_names(name: str) -> None:
+    assert messages.type_named(f"robot.{name}") is messages.type_named(f"core.{name}")

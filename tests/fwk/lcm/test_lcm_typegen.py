@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from fwk.lcm.typegen import TypeGenerationError, generate
-from lcmtypes.core import command_t, header_t
-from lcmtypes.robot import frame_t, odometry_t
+from lcmtypes.core import command_t, frame_t, header_t
+from lcmtypes.robot import odometry_t
 
 SOURCE = """package NAME;
 struct point_t { double x_m; double y_m; }

@@ -17,7 +17,8 @@ from fwk import (
     WritesEach,
     channel,
 )
-from lcmtypes.robot import frame_t, motor_command_t, odometry_t
+from lcmtypes.core import frame_t
+from lcmtypes.robot import motor_command_t, odometry_t
 
 
 class Limits(Config):

@@ -120,7 +120,7 @@ def test_a_latin_1_comment_is_named_with_its_line(folder: Path) -> None:
     [
         "struct node_t { int32_t n; node_t children[n]; }",
         "struct a_t { double x_m, y_m, z_m[3]; const int8_t N = 2, M = 0x10; int16_t grid[N][M]; byte raw[N]; }",
-        "struct /* one */ a_t // two\n{ };\nstruct b_t { a_t inner; robot.frame_t frame; float f[1]; string s; }",
+        "struct /* one */ a_t // two\n{ };\nstruct b_t { a_t inner; core.frame_t frame; float f[1]; string s; }",
     ],
 )
 def test_types_that_are_right(folder: Path, source: str) -> None:

@@ -23,6 +23,8 @@ from fwk.model.tick_events import (
     TickTold,
 )
 from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.versions import read_plan
+from lcmtypes import core_v1
 from lcmtypes.core import plan_t, protocol_t
 from tests.harness.runs import fwk, replayed
 
@@ -74,6 +76,16 @@ def test_old_recordings_are_listed_and_compared(folder: Path) -> None:
     assert [name for name, each in listed.items() if each["undecodable"]] == []
     shutil.copy(folder / "log.lcm", folder / "same.lcm")
     assert "equal" in fwk(folder, "compare", "log.lcm", "same.lcm")
+
+
+def test_a_recorded_plan_may_use_former_names_of_types() -> None:
+    recorded = core_v1.plan_t.decode(next(iter(LogReader(OLD / "log.lcm"))).data)
+    content = json.loads(recorded.json)
+    content["channels"][0]["type_name"] = "robot.frame_t"
+    content["outside"] = {"a/picture": "robot.picture_t"}
+    old = core_v1.plan_t(json=json.dumps(content))
+    plan, version = read_plan(old.encode())
+    assert (plan.channels[0].type_name, plan.outside, version) == ("core.frame_t", {"a/picture": "core.picture_t"}, 1)
 
 
 def test_a_recording_of_a_newer_version_is_refused(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from fwk import Component, TransformError, Writes
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.robot import transforms_t
+from lcmtypes.core import transforms_t
 from lcmtypes.soccer import ball_percept_t, pose_t
 from procs.localization.frame_tree import FrameTree
 from procs.world_model.ball_spot import BallSpot

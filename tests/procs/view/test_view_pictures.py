@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.robot import picture_t
+from lcmtypes.core import picture_t
 from procs.simulation.camera import Camera
 from procs.view.pictures import Pictures
 from procs.vision.colours import Picture

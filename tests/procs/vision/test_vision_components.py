@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from fwk.testing import Bench
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t
 from lcmtypes.soccer import ground_truth_t
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall

@@ -8,7 +8,7 @@ from fwk import Blackboard, Component, VisionMaster, Writes
 from fwk.model.channel_table import Fact, change_message
 from fwk.model.tick_events import ChannelsChanged, HostLost, HostStarted, StageBegun, StageDone
 from fwk.testing.plans import plan_of
-from lcmtypes.robot import frame_t
+from lcmtypes.core import frame_t
 from lcmtypes.soccer import pose_t
 from tests.fwk.recording.replay.replay_logs import HandMadeLog
 
