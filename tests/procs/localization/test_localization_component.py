@@ -8,6 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from fwk.testing import Bench
+from procs.evaluation.system import settings_in
 from procs.localization.global_search import GlobalSearch
 from procs.localization.line_map import LineMap, line_map
 from procs.localization.line_matching import LinePoints, match
@@ -15,7 +16,6 @@ from procs.localization.localization import Localization, LocalizationConfig
 from procs.localization.pose_filter import PoseFilter
 from procs.model.field import Field
 from procs.model.frames import rotation, wrap
-from tests.procs.launched import launched_settings
 
 Floats = NDArray[np.float64]
 FIELD = Field()
@@ -371,7 +371,7 @@ def test_live_settings_count_from_the_next_frame() -> None:
 @pytest.mark.parametrize("parity", [0, 1])
 def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> None:
     """Cameras take turns: a robot may get its frames in even or in odd ticks only."""
-    bench, robot = Bench(Localization, **launched_settings("soccer.yaml", "cyan1/localization")), FakeRobot(3)
+    bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization")), FakeRobot(3)
     robot.pose = np.array((-5.0, 2.0, 0.3))
     known: list[bool] = []
     for tick in range(240):
@@ -391,7 +391,7 @@ def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> 
 
 def test_robot_without_compass_is_declared_lost() -> None:
     start = {"start_x_m": -5.0, "start_y_m": 2.0, "start_heading_rad": 0.3}
-    bench, robot = Bench(Localization, **launched_settings("soccer.yaml", "cyan1/localization") | start), FakeRobot(4)
+    bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization") | start), FakeRobot(4)
     known: list[bool] = []
     for tick in range(200):
         robot.pose = np.array((-5.0, 2.0, 0.3) if tick < 60 else (4.0, -3.0, 0.3))

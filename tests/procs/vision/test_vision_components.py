@@ -13,10 +13,10 @@ import pytest
 from fwk.testing import Bench
 from lcmtypes.core import frame_t
 from lcmtypes.soccer import ground_truth_t
+from procs.evaluation.system import settings_in
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
-from tests.procs.launched import launched_settings
 from tests.procs.vision.picture_parts import frame_of, robot, system
 
 ROOT = Path(__file__).parents[3]
@@ -84,14 +84,14 @@ def test_whole_robot_of_the_launch_file_takes_a_4_to_3_camera() -> None:
     wide[:, 80:560] = square
     places = []
     for frame in (square, wide):
-        bench = Bench(OmniBall, **launched_settings("soccer.yaml", "cyan1/omni_ball"))
+        bench = Bench(OmniBall, **settings_in("soccer.yaml", "cyan1/omni_ball"))
         bench.show("image", frame)
         bench.iterate()
         (percept,) = bench.port("ball_percept").sent
         assert percept.visible
         places.append((percept.x_m, percept.y_m))
     assert places[0] == places[1]
-    field = Bench(OmniField, **launched_settings("soccer.yaml", "cyan1/omni_field"))
+    field = Bench(OmniField, **settings_in("soccer.yaml", "cyan1/omni_field"))
     field.show("image", wide)
     field.iterate()
     assert field.port("line_points").sent[-1].n > 40

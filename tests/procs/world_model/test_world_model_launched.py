@@ -1,14 +1,14 @@
 """World models of the real launch file, with its cameras and detectors."""
 
 from lcmtypes.soccer import team_message_t
-from tests.procs.launched import launched
+from procs.evaluation.system import system_of
 
 OWNERS = ("world", "team_cyan", "cyan2", "cyan3")
 
 
 def test_robots_share_the_ball_in_odd_and_even_ticks() -> None:
     """The launch file lets cameras take turns; no robot's turn may fall between its messages."""
-    system = launched("soccer.yaml", lambda name: name.partition("/")[0] in OWNERS)
+    system = system_of("soccer.yaml", lambda name: name.partition("/")[0] in OWNERS)
     system.tick(60)
     for robot in ("cyan2", "cyan3"):
         told = [team_message_t.decode(sent) for sent in system.sent[f"{robot}/team_message"]][-15:]

@@ -1,0 +1,231 @@
+"""Errors of the robots' beliefs about ball, robots and themselves, sample by sample."""
+
+import math
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, true_robot_t, world_model_t
+from procs.evaluation.piece import Piece
+from procs.model.frames import Floats, wrap
+from procs.model.robot import team_of
+
+NEAR_M = 4.0
+"""Distance from the observer to which published accuracies of ball and obstacles refer."""
+MOVING_M_S = 0.3
+"""A ball slower than that counts as resting."""
+SETTLED_S = 0.3
+"""A ball that nobody has touched for so long rolls freely."""
+_CONTACT_S = 0.1
+_INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
+_START_S = 4.0  # until all robots know their places
+_WRONG_M, _WRONG_RAD = 1.0, 0.5
+_SAME_M = 1.0  # an opponent further from all robots is not one of them
+_DRIVING_M_S = 0.5
+_STALE_S = 0.2  # older sightings of a robot are not averaged
+_KICK_M_S = 2.0
+_KNOWN_SHARE = 0.1
+
+Samples = dict[str, Floats]
+"""Measure to its samples: (n), or (n, 2) where the measure is a ratio."""
+
+
+class _Ball(NamedTuple):
+    """Belief of one robot about the ball in one tick, beside the truth."""
+
+    error_m2: float
+    velocity_error_m2_s2: float
+    inside: bool
+    """The truth lies within the ellipse that holds it with a probability of 95 % by the robot's own covariance."""
+    near: bool
+    speed_m_s: float
+    holder: str
+    """`itself`, `another`, or empty: the robot that touches the ball."""
+    settled: bool
+
+
+def believed(piece: Piece) -> Samples:
+    """Returns the samples of every measure of beliefs."""
+    return _ball_samples(piece) | _fusion(piece) | _kicks(piece) | _opponents(piece) | _poses(piece)
+
+
+def _models(piece: Piece) -> Iterator[tuple[str, int, world_model_t, ground_truth_t]]:
+    for robot, models in sorted(piece.by_robot.get("world_model", {}).items()):
+        for tick, model in models.items():
+            if tick * piece.period_s >= _START_S and tick in piece.truth:
+                yield robot, tick, model, piece.truth[tick]
+
+
+def _ball_samples(piece: Piece) -> Samples:
+    seen: list[_Ball] = []
+    known: list[bool] = []
+    for robot, tick, model, truth in _models(piece):
+        known.append(model.ball.known)
+        if model.ball.known:
+            seen.append(_ball(piece, robot, tick, model, truth))
+
+    def of(value: str, *, case: list[bool]) -> Floats:
+        return np.array([getattr(each, value) for each, asked in zip(seen, case, strict=True) if asked], np.float64)
+
+    moving = [each.near and each.speed_m_s >= MOVING_M_S for each in seen]
+    rolling = [asked and each.settled for each, asked in zip(seen, moving, strict=True)]
+    resting = [each.near and each.settled and each.speed_m_s < 0.01 for each in seen]
+    every = [True] * len(seen)
+    return {
+        "ball known": np.array(known, np.float64),
+        "ball moving, position": of("error_m2", case=moving),
+        "ball moving, velocity": of("velocity_error_m2_s2", case=moving),
+        "ball rolling freely, position": of("error_m2", case=rolling),
+        "ball rolling freely, velocity": of("velocity_error_m2_s2", case=rolling),
+        "ball resting, position": of("error_m2", case=resting),
+        "ball resting, velocity": of("velocity_error_m2_s2", case=resting),
+        "inside 95 %, all": of("inside", case=every),
+        "inside 95 %, rolling freely": of("inside", case=rolling),
+        "inside 95 %, resting": of("inside", case=resting),
+        "inside 95 %, held by another": of("inside", case=[each.holder == "another" for each in seen]),
+        "inside 95 %, held by itself": of("inside", case=[each.holder == "itself" for each in seen]),
+    }
+
+
+def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: ground_truth_t) -> _Ball:
+    own, ball = piece.robot(tick, robot), model.ball
+    error = np.array((ball.x_m - truth.ball_x_m, ball.y_m - truth.ball_y_m))
+    covariance = np.array(ball.covariance)[:2, :2]
+    touching = piece.touched_by(tick, _CONTACT_S)
+    return _Ball(
+        float(error @ error),
+        (ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2,
+        bool(error @ np.linalg.solve(covariance, error) < _INSIDE_95),
+        math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
+        math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
+        "itself" if robot in touching else "another" if touching else "",
+        not piece.touched_by(tick, SETTLED_S),
+    )
+
+
+def _fusion(piece: Piece) -> Samples:
+    """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick."""
+    best: list[tuple[float, float]] = []
+    average: list[tuple[float, float]] = []
+    fused: dict[tuple[str, int], list[float]] = defaultdict(list)
+    for robot, tick, model, truth in _models(piece):
+        if model.ball.known:
+            error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
+            fused[team_of(robot), tick].append(error_m2)
+    sightings = _sightings(piece)
+    for (team, tick), errors_m2 in fused.items():
+        recent = [
+            (seen_tick, each)
+            for robot, seen in sightings.items()
+            if team_of(robot) == team
+            for seen_tick, each in _newest(seen, tick, _STALE_S / piece.period_s)
+        ]
+        truth = piece.truth[tick]
+        ball_m, error_m2 = np.array((truth.ball_x_m, truth.ball_y_m)), float(np.mean(errors_m2))
+        now = [each for seen_tick, each in recent if seen_tick == tick]
+        if now:
+            single = min(now, key=lambda each: each[2])[:2] - ball_m
+            best.append((error_m2, float(single @ single)))
+        if recent:
+            mean = np.mean([each[:2] for _, each in recent], axis=0) - ball_m
+            average.append((error_m2, float(mean @ mean)))
+    return {
+        "fused to best single": np.array(best).reshape(-1, 2),
+        "fused to plain average": np.array(average).reshape(-1, 2),
+    }
+
+
+def _sightings(piece: Piece) -> dict[str, dict[int, Floats]]:
+    """Returns x, y and distance of each robot's own sightings, by the tick of the exposure."""
+    found: dict[str, dict[int, Floats]] = {}
+    for robot, told in piece.by_robot.get("team_message", {}).items():
+        found[robot] = {
+            round(each.ball_capture_us / 1e6 / piece.period_s): np.array(
+                (each.ball_x_m, each.ball_y_m, each.ball_distance_m)
+            )
+            for each in told.values()
+            if each.ball_visible
+        }
+    return found
+
+
+def _newest(seen: dict[int, Floats], tick: int, within: float) -> list[tuple[int, Floats]]:
+    ticks = [each for each in range(tick, tick - round(within) - 1, -1) if each in seen]
+    return [(ticks[0], seen[ticks[0]])] if ticks else []
+
+
+def _kicks(piece: Piece) -> Samples:
+    """Seconds from a kick until each robot knows the ball's velocity within a tenth; infinite if it never does."""
+    delays_s = []
+    for tick, events in piece.events.items():
+        for kick in events:
+            if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= _START_S:
+                delays_s += _delays_s(piece, tick, kick.robot)
+    return {"velocity known after a kick": np.array(delays_s)}
+
+
+def _delays_s(piece: Piece, kicked: int, kicker: str) -> list[float]:
+    flight = []
+    for tick in range(kicked, max(piece.truth) + 1):
+        if tick > kicked and piece.touched_by(tick, 0.0) - {kicker}:
+            break
+        flight.append(tick)
+    if len(flight) * piece.period_s < SETTLED_S:
+        return []
+    delays_s = []
+    for models in piece.by_robot["world_model"].values():
+        found = (tick for tick in flight if tick in models and _knows(models[tick], piece.truth[tick]))
+        delays_s.append((next(found, math.inf) - kicked) * piece.period_s)
+    return delays_s
+
+
+def _knows(model: world_model_t, truth: ground_truth_t) -> bool:
+    error_m_s = math.hypot(model.ball.vx_m_s - truth.ball_vx_m_s, model.ball.vy_m_s - truth.ball_vy_m_s)
+    return model.ball.known and error_m_s <= _KNOWN_SHARE * math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s)
+
+
+def _opponents(piece: Piece) -> Samples:
+    errors_m2, ghosts, found, ways = [], [], [], []
+    for robot, tick, model, _ in _models(piece):
+        own, rivals = piece.robot(tick, robot), piece.rivals(tick, robot)
+        near = [rival for rival in rivals if math.dist((own.x_m, own.y_m), (rival.x_m, rival.y_m)) <= NEAR_M]
+        matched = []
+        for estimate in model.opponents:
+            rival = min(rivals, key=lambda each: _between_m(estimate, each), default=None)
+            ghosts.append(rival is None or _between_m(estimate, rival) > _SAME_M)
+            if rival in near and not ghosts[-1]:
+                matched.append(rival.name)
+                errors_m2.append(_between_m(estimate, rival) ** 2)
+                if math.hypot(rival.vx_m_s, rival.vy_m_s) > _DRIVING_M_S:
+                    behind = (rival.x_m - estimate.x_m) * rival.vx_m_s + (rival.y_m - estimate.y_m) * rival.vy_m_s
+                    ways.append((behind, rival.vx_m_s**2 + rival.vy_m_s**2))
+        found += [rival.name in matched for rival in near]
+    return {
+        "opponents, position": np.array(errors_m2),
+        "opponents, lag": np.array(ways).reshape(-1, 2),
+        "opponents known": np.array(found, np.float64),
+        "opponents that are none": np.array(ghosts, np.float64),
+    }
+
+
+def _between_m(estimate: robot_estimate_t | world_model_t, robot: true_robot_t) -> float:
+    return math.dist((estimate.x_m, estimate.y_m), (robot.x_m, robot.y_m))
+
+
+def _poses(piece: Piece) -> Samples:
+    errors_m2, turns_rad2, wrong = [], [], []
+    for robot, tick, model, _ in _models(piece):
+        if model.localized:
+            own = piece.robot(tick, robot)
+            error_m, turn_rad = _between_m(model, own), wrap(model.heading_rad - own.heading_rad)
+            errors_m2.append(error_m**2)
+            turns_rad2.append(turn_rad**2)
+            wrong.append(error_m > _WRONG_M or abs(turn_rad) > _WRONG_RAD)
+    began = sum(now and not before for before, now in zip([False, *wrong], wrong, strict=False))
+    return {
+        "pose, position": np.array(errors_m2),
+        "pose, heading": np.array(turns_rad2),
+        "wrong pose believed": np.array([(began, len(wrong) * piece.period_s / 60 / 1000)]),
+    }

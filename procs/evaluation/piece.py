@@ -1,0 +1,85 @@
+"""A played piece of a match: what was true and what the robots believed, tick by tick."""
+
+import math
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lcmtypes.robot import kicker_state_t
+from lcmtypes.soccer import (
+    game_state_t,
+    ground_truth_t,
+    match_event_t,
+    match_events_t,
+    skill_command_t,
+    team_message_t,
+    true_robot_t,
+    world_model_t,
+)
+from procs.model.robot import team_of
+
+BELIEFS: dict[str, Any] = {
+    "world_model": world_model_t,
+    "team_message": team_message_t,
+    "skill_command": skill_command_t,
+    "kicker_state": kicker_state_t,
+}
+"""Interfaces of each robot that a piece keeps."""
+
+
+@dataclass
+class Piece:
+    """Messages of a piece by tick; a world model is compared with the truth of its own tick."""
+
+    period_s: float
+    truth: dict[int, ground_truth_t] = field(default_factory=dict)
+    game: dict[int, game_state_t] = field(default_factory=dict)
+    events: dict[int, list[match_event_t]] = field(default_factory=dict)
+    by_robot: dict[str, dict[str, dict[int, Any]]] = field(default_factory=dict)
+    """Interface to robot to tick to message, for the interfaces in `BELIEFS`."""
+
+    @property
+    def minutes(self) -> float:
+        """Length of the piece."""
+        return len(self.truth) * self.period_s / 60
+
+    @property
+    def robots(self) -> list[str]:
+        """Names of the robots on the field."""
+        return sorted(robot.name for robot in self.truth[max(self.truth)].robots)
+
+    def robot(self, tick: int, name: str) -> true_robot_t:
+        """Returns the true pose of a robot.
+
+        Raises:
+            StopIteration: no such robot is on the field.
+        """
+        return next(robot for robot in self.truth[tick].robots if robot.name == name)
+
+    def rivals(self, tick: int, name: str) -> list[true_robot_t]:
+        """Returns the robots of the other team."""
+        return [robot for robot in self.truth[tick].robots if team_of(robot.name) != team_of(name)]
+
+    def touched_by(self, tick: int, within_s: float) -> set[str]:
+        """Returns the robots that touched the ball in a tick or up to `within_s` before."""
+        ticks = range(tick - math.floor(within_s / self.period_s + 1e-9), tick + 1)
+        kinds = (match_event_t.TOUCH, match_event_t.KICK)
+        return {event.robot for each in ticks for event in self.events.get(each, ()) if event.kind in kinds}
+
+
+def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float) -> Piece:
+    """Sorts the messages of a match by tick; `sent` holds the encoded messages of each channel."""
+    piece = Piece(period_s)
+    piece.truth = {truth.header.tick: truth for truth in map(ground_truth_t.decode, sent["world/ground_truth"])}
+    piece.game = {game.header.tick: game for game in map(game_state_t.decode, sent.get("world/game_state", ()))}
+    reports = map(match_events_t.decode, sent.get("world/match_events", ()))
+    piece.events = {report.header.tick: report.events for report in reports}
+    found: dict[str, dict[str, dict[int, Any]]] = defaultdict(dict)
+    for channel, messages in sent.items():
+        robot, _, interface = channel.rpartition("/")
+        if interface in BELIEFS:
+            decoded = map(BELIEFS[interface].decode, messages)
+            found[interface][robot] = {message.header.tick: message for message in decoded}
+    piece.by_robot = dict(found)
+    return piece

@@ -1,0 +1,62 @@
+"""Builds the components of a launch file in one process."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from importlib import import_module
+from itertools import takewhile
+from typing import Any
+
+from fwk.component.declaration import declaration
+from fwk.model.plan import ComponentPlan, Plan
+from fwk.plan.load import load_plan
+from fwk.testing import MemorySystem
+
+
+@lru_cache(maxsize=8)
+def plan(file: str) -> Plan:
+    """Loads a launch file."""
+    return load_plan(file)
+
+
+def settings_in(file: str, component: str) -> dict[str, Any]:
+    """Returns the settings that a launch file gives to a component.
+
+    Raises:
+        KeyError: the launch file has no such component.
+    """
+    return dict({each.name: each.config for each in plan(file).components}[component])
+
+
+def system_of(
+    file: str, wanted: Callable[[str], bool] = bool, seed: int = 1, **changes: dict[str, Any]
+) -> MemorySystem:
+    """Builds the components of a launch file whose names are `wanted`, with the settings of the file.
+
+    `changes` are further settings by the component's own name: `camera={"flicker": 0.1}`.
+    """
+    found = [each for each in plan(file).components if wanted(each.name)]
+    return MemorySystem(
+        {each.name: _class(each) for each in found},
+        {each.name: {**each.config, **changes.get(each.name.rpartition("/")[2], {})} for each in found},
+        {each.name: _channels(each) for each in found},
+        seed,
+        period_s=plan(file).period_us / 1e6,
+        stages=plan(file).stages,
+    )
+
+
+def _class(component: ComponentPlan) -> Any:
+    return getattr(import_module(component.module), component.class_name)
+
+
+def _channels(component: ComponentPlan) -> dict[str, str]:
+    """Returns the channel of each port, or the pattern of a port with many instances."""
+    each = {port.attribute for port in declaration(_class(component)).ports if port.each}
+    return {port: _pattern(names) if port in each else names[0] for port, names in component.channels.items() if names}
+
+
+def _pattern(names: tuple[str, ...]) -> str:
+    """Returns the shortest pattern of channels in one interface: `cyan*/team_message`."""
+    columns = zip(*(name.rpartition("/")[0] for name in names), strict=False)
+    prefix = "".join(letters[0] for letters in takewhile(lambda each: len(set(each)) == 1, columns))
+    return f"{prefix}*/{names[0].rpartition('/')[2]}"

@@ -1,0 +1,133 @@
+"""The table of an evaluation: each measure with its interval, beside its goal."""
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from procs.evaluation.beliefs import Samples
+from procs.model.frames import Floats
+
+_REDRAWS = 1000
+
+
+def rms(samples: Floats) -> float:
+    """Root of the mean of squared errors (n)."""
+    return float(np.sqrt(np.mean(samples))) if len(samples) else np.nan
+
+
+def mean(samples: Floats) -> float:
+    """Mean of samples (n)."""
+    return float(np.mean(samples)) if len(samples) else np.nan
+
+
+def median(samples: Floats) -> float:
+    """Median of samples (n), infinite ones among them."""
+    return float(np.quantile(samples, 0.5, method="inverted_cdf")) if len(samples) else np.nan
+
+
+def ratio(samples: Floats) -> float:
+    """Sum of the first column by the sum of the second (n, 2)."""
+    below = samples[:, 1].sum() if len(samples) else 0.0
+    return float(samples[:, 0].sum() / below) if below else np.nan
+
+
+def root_ratio(samples: Floats) -> float:
+    """Ratio of two root mean squares whose squares are the columns (n, 2)."""
+    return float(np.sqrt(ratio(samples)))
+
+
+@dataclass(frozen=True)
+class Measure:
+    """A row of the table."""
+
+    name: str
+    statistic: Callable[[Floats], float]
+    unit: str
+    goal: str
+    """The value to reach, in the same unit; empty without one."""
+
+
+MEASURES = [
+    Measure("ball known", mean, "share", ">= 0.95"),
+    Measure("ball moving, position", rms, "m", ""),
+    Measure("ball moving, velocity", rms, "m/s", ""),
+    Measure("ball rolling freely, position", rms, "m", "<= 0.05"),
+    Measure("ball rolling freely, velocity", rms, "m/s", "<= 0.15"),
+    Measure("ball resting, position", rms, "m", "<= 0.03"),
+    Measure("ball resting, velocity", rms, "m/s", "<= 0.05"),
+    Measure("fused to best single", root_ratio, "", "<= 0.5"),
+    Measure("fused to plain average", root_ratio, "", "<= 0.8"),
+    Measure("inside 95 %, all", mean, "share", "0.90-0.99"),
+    Measure("inside 95 %, rolling freely", mean, "share", "0.90-0.99"),
+    Measure("inside 95 %, resting", mean, "share", "0.90-0.99"),
+    Measure("inside 95 %, held by another", mean, "share", "0.90-0.99"),
+    Measure("inside 95 %, held by itself", mean, "share", "0.90-0.99"),
+    Measure("velocity known after a kick", median, "s", "<= 0.10"),
+    Measure("opponents, position", rms, "m", "<= 0.08"),
+    Measure("opponents, lag", ratio, "s", "0"),
+    Measure("opponents known", mean, "share", ">= 0.80"),
+    Measure("opponents that are none", mean, "share", ""),
+    Measure("pose, position", rms, "m", "<= 0.10"),
+    Measure("pose, heading", rms, "rad", "<= 0.03"),
+    Measure("wrong pose believed", ratio, "/1000 min", "0"),
+    Measure("collisions above 1 m/s", ratio, "/min", "<= 1"),
+    Measure("collisions above 3 m/s", ratio, "/min", "0"),
+    Measure("distance violated at restarts", mean, "share", "0"),
+    Measure("half violated at kick-offs", mean, "share", "0"),
+    Measure("passes controlled by the receiver", mean, "share", ">= 0.80"),
+    Measure("goals", ratio, "/min", ""),
+]
+"""Rows of the table in their order."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """A measure over all pieces, with the interval that holds the value with a probability of 95 %."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    samples: int
+    unit: str
+    goal: str
+
+
+def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, seed: int = 1) -> list[Row]:
+    """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
+
+    With a single piece there is no interval: its limits are NaN.
+    """
+    rng = np.random.default_rng(seed)
+    draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
+    rows = []
+    for measure in measures:
+        samples = [piece[measure.name] for piece in pieces]
+        value, low, high = measure.statistic(np.concatenate(samples)), np.nan, np.nan
+        if len(pieces) > 1:
+            redrawn = [measure.statistic(np.concatenate([samples[index] for index in draw])) for draw in draws]
+            sound = [each for each in redrawn if not np.isnan(each)]
+            if sound:
+                low, high = np.quantile(sound, (0.025, 0.975), method="inverted_cdf").tolist()
+        count = sum(map(len, samples))
+        rows.append(Row(measure.name, value, low, high, count, measure.unit, measure.goal))
+    return rows
+
+
+def as_text(rows: Sequence[Row]) -> str:
+    """Returns the table for people."""
+    lines = [f"{'measure':34} {'value':>9} {'95 % interval':>19} {'samples':>8}  {'unit':9} goal"]
+    for row in rows:
+        interval = "" if np.isnan(row.low) else f"{row.low:.3f} .. {row.high:.3f}"
+        lines.append(
+            f"{row.name:34} {row.value:9.3f} {interval:>19} {row.samples:8d}  {row.unit:9} {row.goal}".rstrip()
+        )
+    return "\n".join(lines)
+
+
+def as_json(rows: Sequence[Row]) -> str:
+    """Returns the table for programs; values without a number are null."""
+    plain = [{key: None if value != value else value for key, value in asdict(row).items()} for row in rows]
+    return json.dumps(plain, indent=1)

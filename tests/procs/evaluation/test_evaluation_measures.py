@@ -1,0 +1,159 @@
+"""Measures of pieces whose errors are known."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lcmtypes.robot import kicker_state_t
+from lcmtypes.soccer import (
+    ball_estimate_t,
+    game_state_t,
+    ground_truth_t,
+    match_event_t,
+    robot_estimate_t,
+    skill_command_t,
+    team_message_t,
+    true_robot_t,
+    world_model_t,
+)
+from procs.evaluation.beliefs import believed
+from procs.evaluation.conduct import conducted
+from procs.evaluation.piece import Piece, piece_of
+from procs.evaluation.system import system_of
+from procs.evaluation.table import MEASURES, rows_of
+
+FIRST = 100  # tick; measuring begins some seconds after the start
+
+
+def robot(name: str, x_m: float, y_m: float, vx_m_s: float = 0.0) -> true_robot_t:
+    made = true_robot_t()
+    made.name, made.x_m, made.y_m, made.vx_m_s = name, x_m, y_m, vx_m_s
+    return made
+
+
+def event(kind: int, name: str, speed_m_s: float = 0.0) -> match_event_t:
+    made = match_event_t()
+    made.kind, made.robot, made.speed_m_s = kind, name, speed_m_s
+    return made
+
+
+def model(ball_m: tuple[float, float], deviation_m: float = 0.1, **values: Any) -> world_model_t:
+    made = world_model_t()
+    made.ball = ball_estimate_t()
+    made.ball.known = True
+    made.ball.x_m, made.ball.y_m = ball_m
+    made.ball.covariance = np.diag([deviation_m**2] * 4).tolist()
+    made.localized = True
+    for name, value in values.items():
+        setattr(made, name, value)
+    return made
+
+
+def piece(robots: list[true_robot_t], ticks: int = 40, vx_m_s: float = 1.0) -> Piece:
+    """Makes a piece in which the ball rolls along x, from the centre, and all robots stand."""
+    made = Piece(0.05)
+    for tick in range(FIRST, FIRST + ticks):
+        truth = made.truth[tick] = ground_truth_t()
+        truth.robots = robots
+        truth.ball_x_m, truth.ball_vx_m_s = (tick - FIRST) * 0.05 * vx_m_s, vx_m_s
+    return made
+
+
+def test_ball_errors_are_those_of_the_belief() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
+    made.by_robot["world_model"] = {"cyan1": {tick: model((truth.ball_x_m, 0.1)) for tick, truth in made.truth.items()}}
+    found = believed(made)
+    assert np.sqrt(found["ball rolling freely, position"].mean()) == pytest.approx(0.1)
+    assert np.sqrt(found["ball moving, velocity"].mean()) == pytest.approx(1.0)  # the belief says that it rests
+    assert found["inside 95 %, all"].mean() == 1.0
+    assert not len(found["ball resting, position"])
+
+
+@pytest.mark.parametrize(("toucher", "case"), [("cyan1", "held by itself"), ("magenta1", "held by another")])
+def test_claim_is_judged_by_who_has_the_ball(toucher: str, case: str) -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
+    made.events = {tick: [event(match_event_t.TOUCH, toucher)] for tick in made.truth}
+    made.by_robot["world_model"] = {
+        "cyan1": {tick: model((truth.ball_x_m + 0.3, 0.0)) for tick, truth in made.truth.items()}
+    }
+    found = believed(made)
+    assert found[f"inside 95 %, {case}"].mean() == 0.0  # three deviations off
+    assert not len(found["ball rolling freely, position"])
+
+
+def test_fused_ball_is_compared_with_the_nearest_robots_sighting() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("cyan2", 0.0, 3.0)])
+    made.by_robot["world_model"] = {
+        "cyan1": {tick: model((truth.ball_x_m, 0.05)) for tick, truth in made.truth.items()}
+    }
+    made.by_robot["team_message"] = {"cyan1": {}, "cyan2": {}}
+    for tick, truth in made.truth.items():
+        for name, error_m, distance_m in (("cyan1", 0.2, 1.0), ("cyan2", 0.4, 3.0)):
+            told = made.by_robot["team_message"][name][tick + 1] = team_message_t()
+            told.ball_visible, told.ball_capture_us, told.ball_distance_m = True, tick * 50_000, distance_m
+            told.ball_x_m, told.ball_y_m = truth.ball_x_m, error_m
+    rows = {row.name: row.value for row in rows_of([believed(made) | conducted(made)])}
+    assert rows["fused to best single"] == pytest.approx(0.05 / 0.2)
+    assert rows["fused to plain average"] == pytest.approx(0.05 / 0.3)
+
+
+def test_kick_delay_ends_when_the_velocity_is_known() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=5.0)
+    made.events[FIRST] = [event(match_event_t.KICK, "cyan1", 5.0)]
+    models: dict[int, Any] = {tick: model((truth.ball_x_m, 0.0)) for tick, truth in made.truth.items()}
+    for tick in range(FIRST + 3, FIRST + 40):
+        models[tick].ball.vx_m_s = 4.6
+    made.by_robot["world_model"] = {"cyan1": models, "cyan2": {FIRST: model((0.0, 0.0))}}
+    made.truth[FIRST].robots.append(robot("cyan2", 5.0, 5.0))
+    assert believed(made)["velocity known after a kick"].tolist() == pytest.approx([0.15, math.inf])
+
+
+def test_lag_of_an_opponent_is_its_way_behind_by_its_speed() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 2.0, 0.0, vx_m_s=2.0)])
+    behind = robot_estimate_t()
+    behind.x_m = 1.8
+    made.by_robot["world_model"] = {"cyan1": {tick: model((0.0, 0.0), opponents=[behind]) for tick in made.truth}}
+    rows = {row.name: row.value for row in rows_of([believed(made) | conducted(made)])}
+    assert rows["opponents, lag"] == pytest.approx(0.1)
+    assert rows["opponents, position"] == pytest.approx(0.2)
+    assert (rows["opponents known"], rows["opponents that are none"]) == (1.0, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("others", "violated"),
+    [([(3.1, 0.0), (-2.1, 0.0)], False), ([(2.8, 0.0)], True), ([(3.1, 0.0), (-1.8, 0.0)], True)],
+)
+def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, float]], violated: bool) -> None:
+    names = ("magenta1", "cyan2")
+    robots = [robot("cyan1", -0.5, 0.0), *(robot(name, *at) for name, at in zip(names, others, strict=False))]
+    made = piece(robots, ticks=2, vx_m_s=0.0)
+    for tick, stopped in ((FIRST, True), (FIRST + 1, False)):
+        game = made.game[tick] = game_state_t()
+        game.state, game.state_team, game.stopped = game_state_t.FREE_KICK, game_state_t.TEAM_CYAN, stopped
+    assert conducted(made)["distance violated at restarts"].tolist() == [violated]
+
+
+@pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False)])
+def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled: bool) -> None:
+    made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)])
+    command, holding = skill_command_t(), kicker_state_t()
+    command.skill, holding.ball_held = "pass", True
+    made.by_robot |= {
+        "skill_command": {"cyan1": {FIRST: command}},
+        "kicker_state": {"cyan2": dict.fromkeys(made.truth, holding), "magenta1": {}},
+    }
+    made.events = {FIRST + 1: [event(match_event_t.KICK, "cyan1", 4.0)]}
+    made.events |= {tick: [event(match_event_t.TOUCH, toucher)] for tick in range(FIRST + 10, FIRST + 20)}
+    assert conducted(made)["passes controlled by the receiver"].tolist() == [controlled]
+
+
+def test_launch_file_gives_every_measure_its_samples() -> None:
+    system = system_of("soccer-1v1.yaml", seed=2)
+    system.tick(110)
+    made = piece_of(system.sent, 0.05)
+    found = believed(made) | conducted(made)
+    assert set(found) == {measure.name for measure in MEASURES}
+    assert found["ball known"].any()
+    assert np.sqrt(found["pose, position"].mean()) < 0.2

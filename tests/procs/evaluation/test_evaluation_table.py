@@ -1,0 +1,57 @@
+"""Statistics and intervals of the table."""
+
+import json
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from procs.evaluation.table import Measure, as_json, as_text, mean, median, ratio, rms, root_ratio, rows_of
+from procs.model.frames import Floats
+
+
+@pytest.mark.parametrize(
+    ("statistic", "samples", "expected"),
+    [
+        (rms, np.array([9.0, 16.0, 11.0]), math.sqrt(12.0)),
+        (mean, np.array([1.0, 0.0, 1.0, 1.0]), 0.75),
+        (median, np.array([0.1, np.inf, 0.2]), 0.2),
+        (median, np.array([np.inf, np.inf, 0.2]), np.inf),
+        (ratio, np.array([[1.0, 2.0], [2.0, 4.0]]), 0.5),
+        (root_ratio, np.array([[1.0, 4.0], [1.0, 4.0]]), 0.5),
+    ],
+)
+def test_statistic(statistic: Callable[[Floats], float], samples: Floats, expected: float) -> None:
+    assert statistic(samples) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("statistic", [rms, mean, median])
+def test_measure_without_samples_has_no_value(statistic: Callable[[Floats], float]) -> None:
+    assert math.isnan(statistic(np.empty(0)))
+
+
+@pytest.mark.parametrize("statistic", [ratio, root_ratio])
+def test_ratio_without_samples_has_no_value(statistic: Callable[[Floats], float]) -> None:
+    assert math.isnan(statistic(np.empty((0, 2))))
+
+
+ERROR = Measure("error", rms, "m", "<= 1")
+
+
+def test_interval_holds_the_spread_between_pieces() -> None:
+    (row,) = rows_of([{"error": np.full(10, each)} for each in (1.0, 4.0, 9.0)], [ERROR])
+    assert row.value == pytest.approx(math.sqrt(14 / 3))
+    assert (row.low, row.high) == (1.0, 3.0)
+    assert row.samples == 30
+
+
+def test_table_is_the_same_with_the_same_seed() -> None:
+    pieces = [{"error": np.arange(each, dtype=np.float64)} for each in (3, 5, 8)]
+    assert rows_of(pieces, [ERROR], seed=4) == rows_of(pieces, [ERROR], seed=4)
+
+
+def test_single_piece_has_no_interval() -> None:
+    rows = rows_of([{"error": np.array([4.0])}], [ERROR])
+    assert as_text(rows).splitlines()[1].split() == ["error", "2.000", "1", "m", "<=", "1"]
+    assert json.loads(as_json(rows))[0]["low"] is None
