@@ -42,6 +42,7 @@ class ContinuousHost(Host):
         self._catch_up = CatchUp(assignment.start.incarnation, continuous=True)
         self._told: list[tick_t] = []  # ticks that were not taken over yet
         self._tick: tick_t | None = None  # the newest tick that was taken over
+        self._marks: dict[int, int] = {}  # marks of all ticks since the last iteration, by channel
         self._moved: dict[int, ChannelBuffer] = {}  # buffers with messages that became visible since the last iteration
         self._settings: dict[int, settings_change_t] = {}  # changes for the next iteration, by number
         self._channels: dict[int, channels_change_t] = {}
@@ -110,6 +111,7 @@ class ContinuousHost(Host):
         for tick in told:
             if self._tick and tick.tick <= self._tick.tick:
                 continue
+            self._marks.update(zip(tick.channel, tick.sequence, strict=True))
             for buffer in self.inputs.advance(tick.channel, tick.sequence, tick.voids):
                 self._moved[buffer.plan.index] = buffer
             if self._catch_up.applies(tick.tick):
@@ -129,6 +131,7 @@ class ContinuousHost(Host):
         self._settings, self._channels = {}, {}
         if self._dynamic and channels:
             self._open(self._dynamic, channels, tick)
+        self._marks.clear()
         moved = list(self._moved.values())
         lacking = self.inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
@@ -154,9 +157,12 @@ class ContinuousHost(Host):
         self._finish(self._names, ran)
 
     def _open(self, dynamic: DynamicChannels, changes: Sequence[channels_change_t], tick: tick_t) -> None:
-        """Applies decisions on dynamic channels before an iteration; the catch-up rule holds for newly read ones."""
+        """Applies decisions on dynamic channels before an iteration; the catch-up rule holds for newly read ones.
+
+        The mark of a newly read channel may have come with any tick since the last iteration.
+        """
         new = dynamic.take_over(changes)
-        self.inputs.advance(tick.channel, tick.sequence, tick.voids)
+        self.inputs.advance(list(self._marks), list(self._marks.values()), tick.voids)
         for buffer in new:
             buffer.keep_newest()
         moved = {**self._moved, **{buffer.plan.index: buffer for buffer in new if buffer.mark}}

@@ -1,6 +1,7 @@
 """Runs one host in memory, step by step: for replays and for systems without processes."""
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from fwk.bus import sync
 from fwk.bus.memory_network import MemoryNetwork, MemorySocket
@@ -72,6 +73,7 @@ class MemoryHost:
             self._ports.channel(channel.index): channel.name.encode() for channel in assignment.plan.channels
         }
         self._missing: set[tuple[int, int]] = set()  # port and sequence number of messages that never come
+        self._losing: set[int] = set()  # ports whose sockets may hold such messages
         # By port of a channel that is going to be opened: number of the change that says so, messages since then.
         self._expected: dict[int, tuple[int, list[bytes]]] = {}
         self._told = 0  # number of the newest change that the host was told
@@ -141,8 +143,7 @@ class MemoryHost:
         """Keeps a message from this host, which then fetches it in vain."""
         port = self._ports.channel(channel)
         self._missing.add((port, sequence))
-        begin = len(wire.in_one(_NUMBER, self._names.get(port, b""), b""))
-        self._network.drop((GROUP, port), lambda datagram: sequence_of(datagram[begin:]) == sequence)
+        self._losing.add(port)
 
     def tick(self, tick: tick_t, stage: int) -> tuple[Written, done_t]:
         """Runs the iterations of a tick in a stage; returns what they wrote, and the done.
@@ -192,6 +193,7 @@ class MemoryHost:
     def _result(self, final: bool = False) -> tuple[Written, done_t]:
         """Resumes the host until it sends a done that it has not sent before."""
         self._written, self._done = [], None
+        self._drop_missing()
         for _ in range(_WAITS_MAX):
             self._until_us = self._network.run(self._steps, self._until_us)
             if self._done:
@@ -208,6 +210,17 @@ class MemoryHost:
             taken = sync.taken(done, taken_t.SUPERVISOR)
             self._put(sync.TAKEN, taken, (LOOPBACK, self._own_port), self._ports.supervisor)
         return self._written, done
+
+    def _drop_missing(self) -> None:
+        """Takes messages that never come out of the sockets that they wait in."""
+        for port in sorted(self._losing):
+            begin = len(wire.in_one(_NUMBER, self._names.get(port, b""), b""))
+            unwanted = partial(self._is_missing, port, begin)
+            self._network.drop((GROUP, port), unwanted)
+        self._losing.clear()
+
+    def _is_missing(self, port: int, begin: int, datagram: bytes) -> bool:
+        return (port, sequence_of(datagram[begin:])) in self._missing
 
     @property
     def _is_continuous(self) -> bool:

@@ -244,6 +244,7 @@ class Opener(Player):
         super().init()
         self.opened: list[Any] = []
         self.number = 0
+        self.at_init = self.seen()
         if self.moved():
             self.open()
 
@@ -264,7 +265,8 @@ class Opener(Player):
             self.opened.append(self.blackboard.open_multiple_for_reading(rumour_t, "rumour/*"))
 
     def act(self) -> None:
-        self.tell(f"{self.seen()} {[str(event) for event in self.blackboard.events]}")
+        self.tell(f"{self.at_init} {self.seen()} {[str(event) for event in self.blackboard.events]}")
+        self.at_init = ""
         for handle in self.opened:
             self.use(handle)
         if len(self.opened) < 4 and self.moved():
@@ -291,6 +293,13 @@ class Opener(Player):
             self.tell(f"{reader.channel} {heard.count} {heard.first} {heard.last} {heard.newest} {digest}")
 
 
+class Rover(Opener):
+    """Opens and closes channels at a pace of its own, which is slower than the ticks of some plans."""
+
+    stage = ()
+    rate_hz = 30.0
+
+
 class Listener(Player):
     """Hears what programs outside say."""
 
@@ -301,7 +310,8 @@ class Listener(Player):
 
 
 KINDS = {
-    kind.__name__: kind for kind in (Player, Drifter, Conductor, Boss, Worker, Usurper, Director, Opener, Listener)
+    kind.__name__: kind
+    for kind in (Player, Drifter, Conductor, Boss, Worker, Usurper, Director, Opener, Rover, Listener)
 }
 """Every kind of component, by name."""
 

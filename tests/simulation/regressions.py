@@ -23,4 +23,20 @@ REGRESSIONS: dict[str, Scenario] = {
         stages=("think",),
         weather=Weather(loss=0.3),
     ),
+    # A continuous component that is slower than the ticks got the mark of a channel that it had opened with an earlier
+    # tick than the newest one, and only the marks of the newest tick counted for the new channel.
+    "slow component opens a channel": Scenario(
+        seed=346,
+        ticks=22,
+        parts=(
+            Part("drift1/rover", "Rover", (), {"bursts": 3, "early": False}),
+            Part("b4/opener", "Opener", ("think",), {"ballast": 20, "eager": 0.3, "early": False}),
+            Part("a5/opener", "Opener", ("plan",), {"ballast": 20, "bursts": 3, "eager": 0.8, "work_us": 500}),
+            Part("drift6/drifter", "Drifter", (), {"ballast": 20, "eager": 0.1}),
+        ),
+        stages=("plan", "think"),
+        period_us=10_000,
+        weather=Weather(delay=0.1754, delay_us=24_142),
+        actions=(Action("steer", 15, 818, "drift6/drifter", word="stop"),),
+    ),
 }

@@ -15,6 +15,10 @@ Hosting = Literal["process", "robot", "single", "mixed"]
 Settings = dict[str, str | int | float | bool]
 
 
+MANY = 600
+"""More messages of an iteration than a writer keeps for readers that lose them."""
+
+
 @dataclass(frozen=True)
 class Part:
     """A component of a scenario."""
@@ -138,29 +142,27 @@ def _parts(random: Random, stages: tuple[str, ...], exact: bool) -> tuple[Part, 
         if random.random() < rate:
             kinds += [kind] * random.randint(1, most)
     if not exact:
-        kinds += ["Drifter"] * (random.random() < 0.35) + ["Listener"] * (random.random() < 0.3)
+        for kind, rate in (("Drifter", 0.35), ("Rover", 0.25), ("Listener", 0.3)):
+            kinds += [kind] * (random.random() < rate)
     random.shuffle(kinds)
     crashes = random.random() < 0.25
     parts = []
     for number, kind in enumerate(kinds):
-        continuous = kind == "Drifter"
+        continuous = not KINDS[kind].stage
         namespace = f"drift{number}" if continuous else f"{'abc'[random.randrange(3)]}{number}"
         name = f"{namespace}/{kind.lower()}"
         chosen = sorted(random.sample(range(len(stages)), random.choice([1, 1, 1, 2]) if len(stages) > 1 else 1))
-        parts.append(
-            Part(
-                name=name,
-                kind=kind,
-                stages=() if continuous else tuple(stages[place] for place in chosen),
-                settings=_settings(random, crashes and random.random() < 0.3),
-            )
-        )
+        settings = _settings(random, crashes and random.random() < 0.3)
+        if kind == "Rover":
+            settings["work_us"] = random.choice([0, 30_000, 100_000])  # ticks pass during an iteration
+        running = () if continuous else tuple(stages[place] for place in chosen)
+        parts.append(Part(name, kind, running, settings))
     return tuple(parts)
 
 
 def _settings(random: Random, crashes: bool) -> Settings:
     made: Settings = {
-        "bursts": random.choice([0, 1, 3]),
+        "bursts": random.choice([0, 1, 3, MANY if random.random() < 0.04 else 3]),
         "ballast": random.choice([0, 20, 20, 20, 200_000 if random.random() < 0.2 else 20]),
         "work_us": random.choice([0, 0, 500, 20_000 if random.random() < 0.3 else 0]),
         "eager": random.choice([0.1, 0.3, 0.8]),

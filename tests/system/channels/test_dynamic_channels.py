@@ -38,13 +38,7 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
     replayed(tmp_path, "--only", "b/trader", log="process.log")
 
 
-REAL_TIME = pytest.param(
-    "real time",
-    marks=pytest.mark.xfail(strict=False, reason="a restarted opener in real time may see other presence in a replay"),
-)
-
-
-@pytest.mark.parametrize("clock", ["lockstep", REAL_TIME])
+@pytest.mark.parametrize("clock", ["lockstep", "real time"])
 @pytest.mark.parametrize("hosts", ["", GROUPS], ids=["process", "groups"])
 def test_a_restart_closes_dynamic_channels_and_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, clock: str, hosts: str
