@@ -5,34 +5,13 @@ import ctypes
 import itertools
 import socket
 import struct
-from urllib.parse import parse_qs, urlsplit
 
 from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
 from fwk.lcm import wire
+from fwk.model.public_url import parse_url
 
 _SO_ATTACH_FILTER = 26
 _DATAGRAMS_AT_ONCE = 5000  # more than the largest message has
-
-
-class UrlError(Exception):
-    """A bus URL that is not understood; says which and what would be right."""
-
-
-def parse_url(url: str) -> tuple[str, int, int]:
-    """Group, port and ttl of `udpm://239.255.76.67:7667?ttl=0`.
-
-    Raises:
-        UrlError: something else.
-    """
-    parts = urlsplit(url)
-    try:
-        group, port = parts.hostname or "239.255.76.67", parts.port or 7667
-        ttl = int(parse_qs(parts.query).get("ttl", ["0"])[0])
-        if parts.scheme != "udpm" or not 224 <= socket.inet_aton(group)[0] <= 239 or not 0 <= ttl <= 255:
-            raise ValueError
-    except (ValueError, OSError) as error:
-        raise UrlError(f"{url!r} is no LCM bus; say for example udpm://239.255.76.67:7667?ttl=0") from error
-    return group, port, ttl
 
 
 class PublicBus:

@@ -27,8 +27,7 @@ def say_table(table: Table) -> None:
 
 def complain(text: str) -> None:
     """Prints an error to stderr."""
-    if sys.stderr is not None:
-        print(f"error: {text}", file=sys.stderr)
+    print(f"error: {text}", file=sys.stderr)
 
 
 def run_program(program: Callable[[], int | None], interrupted: int = INTERRUPTED) -> NoReturn:
@@ -37,15 +36,16 @@ def run_program(program: Callable[[], int | None], interrupted: int = INTERRUPTE
     `interrupted` is the exit code after Ctrl-C before the program handles Ctrl-C itself.
     """
     signal.signal(signal.SIGINT, lambda *_: _interrupt(interrupted))
+    _open_closed_streams()
     code: int | str | None
     try:
         _need_folder()
         code = program()
-        _flush()
+        sys.stdout.flush()
     except SystemExit as end:
         code = end.code
         try:
-            _flush()
+            sys.stdout.flush()
         except OSError as error:
             code = _ended(error)
     except KeyboardInterrupt:
@@ -74,9 +74,15 @@ def _need_folder() -> None:
         raise SystemExit(BAD_INPUT) from None
 
 
-def _flush() -> None:
-    if sys.stdout is not None:
-        sys.stdout.flush()
+def _open_closed_streams() -> None:
+    """Opens /dev/null in place of closed standard streams, so that no file or socket takes their descriptors."""
+    for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        if getattr(sys, name) is None:
+            null = os.open(os.devnull, os.O_RDWR)
+            if null != number:
+                os.dup2(null, number)
+                os.close(null)
+            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - stays open until the end
 
 
 def _ended(error: OSError) -> int:
@@ -103,10 +109,6 @@ def _ended(error: OSError) -> int:
 
 
 def _discard_output() -> None:
-    """Sends what is still buffered nowhere, so that the interpreter does not fail on it at its end."""
-    if sys.stdout is not None:
-        try:
-            null = os.open(os.devnull, os.O_WRONLY)
-            os.dup2(null, sys.stdout.fileno())
-        except OSError:
-            sys.stdout = None
+    """Discards what is still buffered, so that the interpreter does not fail on it at its end."""
+    null = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(null, sys.stdout.fileno())

@@ -24,6 +24,16 @@ _NOT_OWN = ("<", str(Path(__file__).parent.parent) + "/", *_LIBRARIES)
 """Beginnings of files whose lines are not a component's own: generated code, the framework, libraries."""
 
 
+def own_frame(error: BaseException) -> traceback.FrameSummary | None:
+    """Returns the innermost frame of an error outside the framework and the libraries, else the innermost one.
+
+    None if there was no memory for the traceback.
+    """
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if not frame.filename.startswith(_NOT_OWN)] or frames
+    return own[-1] if own else None
+
+
 class Logger:
     """Writes lines to wherever the system's log goes: console, files, buses.
 
@@ -72,9 +82,8 @@ class Logger:
         The line's place is the innermost line of the traceback outside the framework and the libraries, such as a
         component's own `write()` of a value that the message cannot hold.
         """
-        frames = traceback.extract_tb(error.__traceback__)
-        own = [frame for frame in frames if not frame.filename.startswith(_NOT_OWN)] or frames
-        place = (short_path(own[-1].filename), own[-1].lineno or 0) if own else ("", 0)
+        frame = own_frame(error)
+        place = (short_path(frame.filename), frame.lineno or 0) if frame else ("", 0)
         self.write(log_t.ERROR, f"{text}\n{''.join(traceback.format_exception(error)).rstrip()}", *place)
 
     def write(self, level: int, text: str, file: str, line_number: int) -> None:

@@ -13,7 +13,7 @@ from rich.console import Console
 from rich.live import Live
 
 from fwk.clock import SPEED_MAX, SPEED_MIN, US_PER_S, monotonic_us
-from fwk.display.floods import FloodGate
+from fwk.display.floods import FloodGate, Tracebacks
 from fwk.display.keys import Keyboard
 from fwk.display.lines import held_back_line, log_line, progress_of, status_line
 from fwk.display.screen import screen
@@ -54,12 +54,12 @@ def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Ste
     say the same, the first are printed and the others counted.
     """
     due_us, shown, waiting_due_us = 0, "", 0
-    gate = FloodGate()
+    gate, tracebacks = FloodGate(), Tracebacks()
     for packet in _packets(connection, _LOOK_S):
         with contextlib.suppress(MessageError):
             line = view.take(packet) if packet else None
             if line and gate.passes(line, monotonic_us()):
-                print(log_line(line), file=out, flush=True)
+                print(log_line(tracebacks.shortened(line)), file=out, flush=True)
         for line, count in gate.held_back(monotonic_us()):
             print(held_back_line(line, count), file=out, flush=True)
         if view.status and monotonic_us() >= due_us:

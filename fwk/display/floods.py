@@ -3,6 +3,7 @@
 import re
 from collections import deque
 from collections.abc import Iterator
+from copy import copy
 
 from fwk.clock import US_PER_S
 from lcmtypes.core import log_t
@@ -85,3 +86,22 @@ class FloodGate:
         ended = [key for key, group in self._groups.items() if now_us - group.since_us > WINDOW_US]
         groups = [self._groups.pop(key) for key in ended]
         return [(group.line, group.count - group.printed) for group in groups if group.count > group.printed]
+
+
+class Tracebacks:
+    """Shortens tracebacks that were printed before: a failure that repeats with each restart needs one."""
+
+    def __init__(self) -> None:
+        self._printed: set[tuple[str, str]] = set()
+
+    def shortened(self, line: log_t) -> log_t:
+        """Returns the line, or a copy with the last line of its traceback if the component has printed the same one."""
+        first, _, trace = line.text.partition("\n")
+        if not trace.startswith("Traceback "):
+            return line
+        if (line.component, trace) not in self._printed:
+            self._printed.add((line.component, trace))
+            return line
+        short = copy(line)
+        short.text = f"{first}: {trace.splitlines()[-1]}, with the same traceback as before"
+        return short

@@ -21,7 +21,8 @@ def log_line(line: log_t) -> str:
 def held_back_line(line: log_t, count: int) -> str:
     """Returns the line that stands for lines that were not printed because they said the same."""
     level = LEVEL_NAMES.get(line.level, str(line.level))
-    return f"... {count} more {level} {'line' if count == 1 else 'lines'} like: {line.component}: {line.text}"
+    first = line.text.partition("\n")[0]
+    return f"... {count} more {level} {'line' if count == 1 else 'lines'} like: {line.component}: {first}"
 
 
 def status_line(status: status_t) -> str:

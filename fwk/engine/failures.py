@@ -1,11 +1,10 @@
 """Failures of components: which component failed, where and why, in its state and in the log."""
 
-import traceback
 from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
-from fwk.component.log import Logger
+from fwk.component.log import Logger, own_frame
 from fwk.engine.metrics import ComponentMetrics, told
 
 _RESERVED = 4000  # small objects, a quarter of a megabyte together
@@ -67,8 +66,8 @@ class Failures:
         if isinstance(error, BdbQuit | KeyboardInterrupt):
             return
         self.make_room(error)
-        trace = traceback.extract_tb(error.__traceback__)  # empty if there was no memory for it
-        place = f"{trace[-1].filename}:{trace[-1].lineno}, " if trace else ""
+        frame = own_frame(error)
+        place = f"{frame.filename}:{frame.lineno}, " if frame else ""
         reason = f"{self._described(error)} ({place}in {moment})"
         self._metrics[name].state, self._metrics[name].reason = "failed", reason
         self._log.named(name).exception(f"failed in {moment}", error)

@@ -17,8 +17,9 @@ def mistake_in(name: str) -> str:
     LCM takes a channel name as a regular expression when somebody subscribes, so only characters without a meaning
     there are allowed.
     """
-    if len(name.encode()) > CHANNEL_BYTES:
-        return f"'{name}' has {len(name.encode())} bytes, LCM carries {CHANNEL_BYTES}; shorten it"
+    size = len(name.encode(errors="surrogatepass"))  # half a surrogate is refused below
+    if size > CHANNEL_BYTES:
+        return f"'{name}' has {size} bytes, LCM carries {CHANNEL_BYTES}; shorten it"
     if not _NAME.fullmatch(name):
         return f"'{name}' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball"
     if name.startswith(RESERVED):

@@ -9,6 +9,7 @@ from fwk.lcm import envelope, messages
 from fwk.model.errors import Problems, hint
 from fwk.model.names import mistake_in
 from fwk.model.plan import ChannelPlan, LogPlan, Plan, RecordPlan, RunsPlan
+from fwk.model.public_url import UrlError, parse_url
 from fwk.model.selection import matches
 from fwk.plan.classes import UnusableError, find_object, imported
 from fwk.plan.files.launch_file import Files
@@ -72,6 +73,11 @@ def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str
     if not url.startswith(_URL):
         text = f"'{url}' is no public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
         problems.add(_place(files, "public_url"), "", text)
+    else:
+        try:
+            parse_url(url)
+        except UrlError as error:
+            problems.add(_place(files, "public_url"), "", str(error))
     if _BUFFER in url:
         return url
     return f"{url}{'&' if '?' in url else '?'}{Plan.public_url.rpartition('&')[2]}"

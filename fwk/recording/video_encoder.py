@@ -4,6 +4,7 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from importlib import import_module
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -71,9 +72,8 @@ class PyavEncoder:
     """
 
     def __init__(self, out: Path, pictures_per_s: float, width_px: int, height_px: int) -> None:
-        import av
-
-        self._av: Any = av
+        av: Any = import_module("av")
+        self._av = av
         self._out = out
         name = next((each for each in _PYAV_CODECS if each in av.codecs_available and _encodes(av, each)), None)
         if name is None:

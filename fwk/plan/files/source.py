@@ -1,5 +1,7 @@
 """Reads YAML so that every value knows the file and line it stands in."""
 
+import errno
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,6 +14,8 @@ from fwk.model.errors import Problems
 _HALF = re.compile("[\ud800-\udfff]")
 VALUES_MAX = 100_000
 """Of a file with its aliases written out; more is a mistake or meant to hurt."""
+BYTES_MAX = 1_000_000
+"""Of a file; reading so many takes some seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,15 +70,31 @@ for _kind, _pattern in {
 
 def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
     """Reads a file; `shown` is its name in places. None if it cannot be read, which is then among the problems."""
+    data = b""
     try:
-        text = path.read_text(encoding="utf-8")
+        data = _read(path)
+        text = data.decode()
     except OSError as error:
         problems.add(shown, "", f"cannot be read: {error.strerror}")
         return None
     except UnicodeDecodeError as error:
-        problems.add(f"{shown}:{path.read_bytes()[: error.start].count(10) + 1}", "", "this is no UTF-8 text")
+        problems.add(f"{shown}:{data[: error.start].count(10) + 1}", "", "this is no UTF-8 text")
+        return None
+    if len(data) > BYTES_MAX:
+        text = f"more than {BYTES_MAX:,} bytes are too many for a launch file; split the system, or use templates"
+        problems.add(shown, "", text)
         return None
     return _parse(text, shown, problems)
+
+
+def _read(path: Path) -> bytes:
+    """Returns the bytes of a file, at most one more than allowed; never waits for a device such as /proc/kmsg."""
+    descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
+    with open(descriptor, "rb") as file:
+        data = file.read(BYTES_MAX + 1)
+    if data is None:  # a device or a pipe that has nothing to read now
+        raise OSError(errno.EAGAIN, "it is not an ordinary file")
+    return data
 
 
 def read_value(text: str, place: str, problems: Problems) -> Node | None:

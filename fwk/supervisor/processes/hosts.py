@@ -51,6 +51,7 @@ class Hosts:
         self._changes = changes
         self._channels = channels
         self._stopping = False
+        self._started = False
         self._asked: set[int] = set()  # hosts whose desired state was changed and that do not have it yet
         self._named: set[int] = set()  # hosts that were said to wait for others
         self._forwarders: dict[int, FetchForwarder] = {}
@@ -86,6 +87,7 @@ class Hosts:
         if failed:
             failed += [host for host in core.hosts if host.state is HostState.LOADED]
             raise StartFailure("\n".join(f"{host.name}: {host.reason}" for host in failed))
+        self._started = True
 
     @property
     def unsettled(self) -> bool:
@@ -294,7 +296,7 @@ class Hosts:
 
     def _log_end(self, host: HostProcess, code: int, culprit: str) -> None:
         again = ""
-        if host.state is HostState.WAITING:
+        if host.state is HostState.WAITING and self._started:  # a failure before the start ends the run
             wait_us = max(0, host.restart_us - self._core.now_us())
             again = f"; starting it again in {wait_us / US_PER_S:.1f} s"
         log = self._log.info if code == LEFT else self._log.error

@@ -10,6 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from tests.fwk.cli.cli_processes import PROCS, write_files
+from tests.harness.runs import PortBlock
+
 FWK = [sys.executable, "-m", "fwk.cli.main"]
 
 
@@ -29,6 +32,16 @@ def test_a_full_disk_is_a_sentence(typed: list[str]) -> None:
 def test_a_closed_output_is_no_traceback(typed: str) -> None:
     done = run(["sh", "-c", f'exec "$0" -m fwk.cli.main {typed} >&-', sys.executable])
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.system
+def test_a_run_needs_no_standard_stream(tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, PROCS)
+    arguments = f"cards.yaml --ticks 3 --speed max --no-record --bus-port {ports.bus}"
+    script = f'"$0" -P -m fwk.cli.launch {arguments} <&- >&- 2>&-; echo "ended with $?"'
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[3]), "HOME": str(tmp_path)}
+    done = run(["sh", "-c", script, sys.executable], stdout=subprocess.PIPE, cwd=tmp_path, env=environment)
+    assert done.stdout == "ended with 0\n"
 
 
 def test_a_reader_that_leaves_early_ends_it_quietly() -> None:

@@ -300,3 +300,13 @@ def test_keys_reach_the_display_on_a_terminal(start: Callable[..., Display]) -> 
     display.read_until("level info")
     assert display.close() == 0
     assert SHOW_CURSOR in display.shown
+
+
+def test_a_repeated_traceback_is_printed_once(start: Callable[..., Display]) -> None:
+    trace = "Traceback (most recent call last):\n  File \"probe.py\", line 28, in loop\nAttributeError: no 'vlaue'"
+    display = start(terminal=False)
+    for tick in (1, 2):
+        display.send("fwk/log", log(f"failed in loop, tick {tick}\n{trace}"))
+    assert display.close() == 0
+    assert display.shown.count("Traceback") == 1
+    assert "tick 2: AttributeError: no 'vlaue', with the same traceback as before" in display.shown

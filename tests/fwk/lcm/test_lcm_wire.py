@@ -8,9 +8,10 @@ from collections.abc import Iterator
 import lcm
 import pytest
 
-from fwk.bus.public import PublicBus, UrlError, parse_url
+from fwk.bus.public import PublicBus
 from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
+from fwk.model.public_url import UrlError, parse_url
 from tests.harness.runs import PortBlock
 
 SIZES = [0, 1, 300, 65_000, 65_490, 65_499, 65_500, 131_000, 1_000_000]

@@ -176,6 +176,13 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:1: 'it/\ud800' is no name; use letters, digits, '_' and '-', parts separated by '/', "
+        "such as cyan1/ball",
+        """
+        components: {"it/\\ud800": {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
         "it.yaml:2: '1/a' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball",
         """
         components:

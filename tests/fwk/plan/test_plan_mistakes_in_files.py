@@ -167,6 +167,14 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:1: 'udpm://[::1]:7667?ttl=0' is not an LCM bus: udpm://GROUP:PORT?ttl=N with an IPv4 multicast group, "
+        "such as udpm://239.255.76.67:7667?ttl=0",
+        """
+        public_url: "udpm://[::1]:7667?ttl=0"
+        components: {it/a: {use: plan_parts:Odometer}}
+        """,
+    ),
+    Broken(
         "it.yaml:1: 'tcpq://' is no public bus; lcm-spy and Java read only udpm://ADDRESS:PORT, such as "
         "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304",
         """

@@ -1,10 +1,11 @@
 """YAML as launch files read it: plain values as people mean them, and every value's line."""
 
+import os
 from pathlib import Path
 
 import pytest
 
-from fwk.model.errors import Problems
+from fwk.model.errors import PlanError, Problems
 from fwk.plan.files.source import Node, read_value, read_yaml
 
 
@@ -45,3 +46,21 @@ def test_every_value_knows_the_line_of_its_key(tmp_path: Path) -> None:
     assert [node.at(*path).place for path in paths] == ["a.yaml:1", "a.yaml:2", "a.yaml:3", "a.yaml:5", "a.yaml:7"]
     assert node.at("one", "nothing", "deep").place == "a.yaml:1"
     assert node.at("six", "five") == Node(5, "a.yaml:6")
+
+
+def test_a_pipe_without_data_is_refused_at_once(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe.yaml")
+    held_open = os.open(tmp_path / "pipe.yaml", os.O_RDWR)
+    problems = Problems()
+    assert read_yaml(tmp_path / "pipe.yaml", "pipe.yaml", problems) is None
+    os.close(held_open)
+    with pytest.raises(PlanError, match=r"^pipe\.yaml: cannot be read: it is not an ordinary file$"):
+        problems.stop_if_any()
+
+
+def test_a_file_of_ten_megabytes_is_refused_at_once(tmp_path: Path) -> None:
+    (tmp_path / "big.yaml").write_text("components:\n" + "  a/b: { use: c }\n" * 600_000)
+    problems = Problems()
+    assert read_yaml(tmp_path / "big.yaml", "big.yaml", problems) is None
+    with pytest.raises(PlanError, match=r"^big\.yaml: more than 1,000,000 bytes"):
+        problems.stop_if_any()
