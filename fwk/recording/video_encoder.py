@@ -80,12 +80,14 @@ class PyavEncoder:
             raise ImportError("PyAV without a codec that browsers play")
         self.codec = "VP9" if "vp9" in name else "H.264"
         try:
-            self._file = av.open(str(out), "w", format="mp4", options={"movflags": _FRAGMENTS})
-            self._stream: Any = self._file.add_stream(name, rate=Fraction(pictures_per_s).limit_denominator(1000))
-        except (OSError, ValueError) as error:
-            raise EncoderError(f"{out}: cannot be written: {error}") from error
+            self._bytes = open(out, "wb")  # noqa: SIM115 - closed with the video; FFmpeg's own files hide a full disk
+        except OSError as error:
+            raise EncoderError(_unwritable(out)) from error
+        self._file = av.open(self._bytes, "w", format="mp4", options={"movflags": _FRAGMENTS})
+        self._stream = self._file.add_stream(name, rate=Fraction(pictures_per_s).limit_denominator(1000))
         self._stream.width, self._stream.height, self._stream.pix_fmt = width_px, height_px, "yuv420p"
         self._stream.codec_context.gop_size = _KEY_PICTURES
+        self._stream.codec_context.max_b_frames = 0  # with them, players show every picture two pictures late
 
     def write(self, picture: Picture) -> None:
         """Adds a picture.
@@ -93,7 +95,8 @@ class PyavEncoder:
         Raises:
             EncoderError: the disk is full, for example.
         """
-        self._put(self._av.VideoFrame.from_ndarray(picture, format="bgr24"))
+        with self._written():
+            self._file.mux(self._stream.encode(self._av.VideoFrame.from_ndarray(picture, format="bgr24")))
 
     def close(self) -> None:
         """Finishes the file.
@@ -101,15 +104,15 @@ class PyavEncoder:
         Raises:
             EncoderError: the disk is full, for example.
         """
-        self._put(None)
-        try:
+        with self._written():
+            self._file.mux(self._stream.encode(None))
             self._file.close()
-        except OSError as error:
-            raise EncoderError(f"{self._out}: cannot be written: {error.strerror}") from error
+            self._bytes.close()
 
-    def _put(self, frame: Any) -> None:
+    @contextmanager
+    def _written(self) -> Iterator[None]:
         try:
-            self._file.mux(self._stream.encode(frame))
+            yield
         except OSError as error:
             raise EncoderError(f"{self._out}: cannot be written: {error.strerror}") from error
 
@@ -131,7 +134,7 @@ class OpencvEncoder:
                 if self._writer.isOpened():
                     self.codec = codec
                     return
-        raise EncoderError(f"{out}: cannot write a video there; check that the folder exists and can be written")
+        raise EncoderError(_unwritable(out))
 
     def write(self, picture: Picture) -> None:
         """Adds a picture."""
@@ -150,6 +153,10 @@ class OpencvEncoder:
             raise EncoderError(
                 f"{self._out}: cannot be written: {written} of {self._pictures} pictures are in it; is there room?"
             )
+
+
+def _unwritable(out: Path) -> str:
+    return f"{out}: cannot write a video there; check that the folder exists and can be written"
 
 
 def _pictures_of(file: Path) -> Iterator[None]:

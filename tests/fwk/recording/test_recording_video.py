@@ -41,6 +41,14 @@ class Grey:
         return grey(newest)
 
 
+@pytest.fixture(params=["PyAV", "OpenCV"], autouse=True)
+def library(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The library that encodes; both are installed for tests."""
+    if request.param == "OpenCV":
+        monkeypatch.setitem(sys.modules, "av", None)
+    return str(request.param)
+
+
 def played(file: Path) -> tuple[list[int], float]:
     """Brightness of each picture, and pictures a second."""
     capture = cv2.VideoCapture(str(file))
@@ -136,10 +144,9 @@ def test_codec_is_named_with_advice_if_browsers_lack_it(tmp_path: Path) -> None:
     assert "pip install 'fwk[video]'" in advice("MPEG-4 part 2")
 
 
-def test_without_pyav_opencv_writes_the_video(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "av", None)
+def test_the_best_installed_library_encodes(tmp_path: Path, library: str) -> None:
     made = open_encoder(tmp_path / "out.mp4", 20.0, 64, 48)
-    assert isinstance(made, video_encoder.OpencvEncoder)
+    assert isinstance(made, video_encoder.PyavEncoder if library == "PyAV" else video_encoder.OpencvEncoder)
     for number in range(5):
         made.write(np.full((48, 64, 3), 20 * number, np.uint8))
     made.close()

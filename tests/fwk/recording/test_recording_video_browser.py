@@ -1,0 +1,88 @@
+"""Videos play in a browser: Chromium without a window loads a page with the video and reports how far it came."""
+
+import http.server
+import queue
+import shutil
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from urllib.parse import unquote
+
+import numpy as np
+import pytest
+
+from fwk.recording.video_encoder import open_encoder
+
+BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
+OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--autoplay-policy=no-user-gesture-required")
+WAIT_S = 60.0
+PICTURES, PER_S = 20, 20.0
+PAGE = b"""<video id="video" muted autoplay src="video.mp4"></video>
+<script>
+  const video = document.getElementById("video");
+  const report = text => fetch("/report/" + encodeURIComponent(text));
+  video.onended = () => report(`${video.videoWidth}x${video.videoHeight} until ${video.currentTime.toFixed(1)} s`);
+  video.onerror = () => report("refused: " + video.error.message);
+</script>"""
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(BROWSER is None, reason=f"left out: whether a browser plays videos; needs {BROWSERS[0]}"),
+]
+
+
+class Site(http.server.ThreadingHTTPServer):
+    """Serves the page and a video; collects what the page reports."""
+
+    def __init__(self, video: Path) -> None:
+        super().__init__(("127.0.0.1", 0), Handler)
+        self.video = video
+        self.reports: queue.Queue[str] = queue.Queue()
+
+
+class Handler(http.server.BaseHTTPRequestHandler):
+    server: Site
+
+    def do_GET(self) -> None:  # noqa: N802 - named by http.server
+        if self.path.startswith("/report/"):
+            self.server.reports.put(unquote(self.path.removeprefix("/report/")))
+        video = self.path == "/video.mp4"
+        self.send_response(200)
+        self.send_header("Content-Type", "video/mp4" if video else "text/html")
+        self.end_headers()
+        self.wfile.write(self.server.video.read_bytes() if video else PAGE)
+
+    def log_message(self, *_: object) -> None:
+        pass
+
+
+@pytest.fixture
+def site(tmp_path: Path) -> Iterator[Site]:
+    with Site(tmp_path / "video.mp4") as site:
+        thread = threading.Thread(target=site.serve_forever)
+        thread.start()
+        yield site
+        site.shutdown()
+        thread.join()
+
+
+@pytest.mark.parametrize(("library", "codec"), [("PyAV", "H.264"), ("OpenCV", "VP9")])
+def test_a_browser_plays_the_video(site: Site, monkeypatch: pytest.MonkeyPatch, library: str, codec: str) -> None:
+    if library == "OpenCV":
+        monkeypatch.setitem(sys.modules, "av", None)
+    encoder = open_encoder(site.video, PER_S, 320, 240)
+    for number in range(PICTURES):
+        encoder.write(np.full((240, 320, 3), 10 * number, np.uint8))
+    encoder.close()
+    assert encoder.codec == codec
+    profile = f"--user-data-dir={site.video.parent / 'browser'}"
+    address = f"http://127.0.0.1:{site.server_port}/"
+    browser = subprocess.Popen([str(BROWSER), *OPTIONS, profile, address], stderr=subprocess.DEVNULL)
+    try:
+        assert site.reports.get(timeout=WAIT_S) == "320x240 until 1.0 s"
+    finally:
+        browser.kill()
+        browser.wait()
