@@ -46,7 +46,7 @@ class Site(http.server.ThreadingHTTPServer):
 class Handler(http.server.BaseHTTPRequestHandler):
     server: Site
 
-    def do_GET(self) -> None:  # noqa: N802 - named by http.server
+    def do_GET(self) -> None:
         if self.path.startswith("/report/"):
             self.server.reports.put(unquote(self.path.removeprefix("/report/")))
         video = self.path == "/video.mp4"
