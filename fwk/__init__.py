@@ -12,19 +12,32 @@ if TYPE_CHECKING:
 
     from fwk.clock import Clock, TimeSource
     from fwk.component.aspect import Aspect
-    from fwk.component.blackboard import Blackboard, NotOpen
-    from fwk.component.channels import Reads, ReadsEach, Writes, WritesEach, channel
-    from fwk.component.commands import Command, CommandError, Commands, CommandState
+    from fwk.component.blackboard import Blackboard, NotOpenError
+    from fwk.component.calls import Call, Calls
+    from fwk.component.channels import Reads, Writes, channel
     from fwk.component.component import Component
     from fwk.component.config import Config
-    from fwk.component.images import FrameError, Image, ImagesEach, VisionMaster
+    from fwk.component.each import Each
+    from fwk.component.former_names import CallsEach as CallsEach
+    from fwk.component.former_names import Command as Command
+    from fwk.component.former_names import CommandError as CommandError
+    from fwk.component.former_names import Commands as Commands
+    from fwk.component.former_names import CommandsEach as CommandsEach
+    from fwk.component.former_names import CommandState as CommandState
+    from fwk.component.former_names import Future as Future
+    from fwk.component.former_names import ImagesEach as ImagesEach
+    from fwk.component.former_names import NotOpen as NotOpen
+    from fwk.component.former_names import ReadsEach as ReadsEach
+    from fwk.component.former_names import Sends as Sends
+    from fwk.component.former_names import SendsEach as SendsEach
+    from fwk.component.former_names import ServesEach as ServesEach
+    from fwk.component.former_names import WritesEach as WritesEach
+    from fwk.component.images import FrameError, Image, VisionMaster
     from fwk.component.log import Logger
     from fwk.component.log_lines import LogLines
     from fwk.component.main_loop import MainLoop
     from fwk.component.plugins import PluginControl
-    from fwk.component.requests import Call, Calls, CallsEach, Request, Serves
-    from fwk.component.sending import Future, Sends, SendsEach
-    from fwk.component.services_each import CommandsEach, ServesEach
+    from fwk.component.services import Request, RequestState, Serves, ServiceError
     from fwk.component.transform_tree import Transform, TransformError, TransformTree
     from fwk.component.transforms import Transforms, transform_message
     from fwk.lcm.messages import Header, MessageError
@@ -34,25 +47,29 @@ _MODULES = {
     "pydantic": ("Field",),
     "fwk.clock": ("Clock", "TimeSource"),
     "fwk.component.aspect": ("Aspect",),
-    "fwk.component.blackboard": ("Blackboard", "NotOpen"),
-    "fwk.component.channels": ("Reads", "ReadsEach", "Writes", "WritesEach", "channel"),
-    "fwk.component.commands": ("Command", "CommandError", "CommandState", "Commands"),
+    "fwk.component.blackboard": ("Blackboard", "NotOpenError"),
+    "fwk.component.calls": ("Call", "Calls"),
+    "fwk.component.channels": ("Reads", "Writes", "channel"),
     "fwk.component.component": ("Component",),
     "fwk.component.config": ("Config",),
-    "fwk.component.images": ("FrameError", "Image", "ImagesEach", "VisionMaster"),
+    "fwk.component.each": ("Each",),
+    "fwk.component.images": ("FrameError", "Image", "VisionMaster"),
     "fwk.component.log": ("Logger",),
     "fwk.component.log_lines": ("LogLines",),
     "fwk.component.main_loop": ("MainLoop",),
     "fwk.component.plugins": ("PluginControl",),
-    "fwk.component.requests": ("Call", "Calls", "CallsEach", "Request", "Serves"),
-    "fwk.component.sending": ("Future", "Sends", "SendsEach"),
-    "fwk.component.services_each": ("CommandsEach", "ServesEach"),
+    "fwk.component.services": ("Request", "RequestState", "Serves", "ServiceError"),
     "fwk.component.transform_tree": ("Transform", "TransformError", "TransformTree"),
     "fwk.component.transforms": ("Transforms", "transform_message"),
     "fwk.lcm.messages": ("Header", "MessageError"),
     "fwk.model.channel_table": ("BlackboardEvent",),
 }
 _MODULE_OF = {name: module for module, names in _MODULES.items() for name in names}
+_FORMER = (
+    *("CallsEach", "Command", "CommandError", "CommandState", "Commands", "CommandsEach", "Future", "ImagesEach"),
+    *("NotOpen", "ReadsEach", "Sends", "SendsEach", "ServesEach", "WritesEach"),
+)
+"""Former names, which earlier components and recordings of them use."""
 
 __all__ = [
     "Aspect",
@@ -60,34 +77,25 @@ __all__ = [
     "BlackboardEvent",
     "Call",
     "Calls",
-    "CallsEach",
     "Clock",
-    "Command",
-    "CommandError",
-    "CommandState",
-    "Commands",
-    "CommandsEach",
     "Component",
     "Config",
+    "Each",
     "Field",
     "FrameError",
-    "Future",
     "Header",
     "Image",
-    "ImagesEach",
     "LogLines",
     "Logger",
     "MainLoop",
     "MessageError",
-    "NotOpen",
+    "NotOpenError",
     "PluginControl",
     "Reads",
-    "ReadsEach",
     "Request",
-    "Sends",
-    "SendsEach",
+    "RequestState",
     "Serves",
-    "ServesEach",
+    "ServiceError",
     "TimeSource",
     "Transform",
     "TransformError",
@@ -95,7 +103,6 @@ __all__ = [
     "Transforms",
     "VisionMaster",
     "Writes",
-    "WritesEach",
     "channel",
     "transform_message",
 ]
@@ -103,9 +110,10 @@ __all__ = [
 
 def __getattr__(name: str) -> object:
     """Imports the module that defines `name` and keeps its value."""
-    if name not in _MODULE_OF:
+    module = "fwk.component.former_names" if name in _FORMER else _MODULE_OF.get(name)
+    if module is None:
         raise AttributeError(f"module 'fwk' has no attribute '{name}'")
-    value = globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
+    value = globals()[name] = getattr(import_module(module), name)
     return value
 
 

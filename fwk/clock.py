@@ -47,16 +47,15 @@ class TimeSource:
     """
 
     def __init__(self) -> None:
-        self.said_us = -1
-        """For the framework: what was said in this iteration; -1: nothing."""
+        self._next_us = -1
         self._was_right = False
         self._wrong = 0
         self._silent = 0
 
     @property
     def next_us(self) -> int:
-        """Logical time of the next tick, if it was said in this iteration; else -1."""
-        return self.said_us
+        """Logical time of the next tick, if it was set in this iteration; otherwise -1."""
+        return self._next_us
 
     @next_us.setter
     def next_us(self, value: int) -> None:
@@ -66,20 +65,20 @@ class TimeSource:
             said_us = -1
         if not 0 <= said_us <= _TIME_MAX_US:
             raise ValueError(f"next_us is {value!r}; it should be whole microseconds, from 0 to {_TIME_MAX_US}")
-        self.said_us = said_us
+        self._next_us = said_us
 
     def _mistake(self, now_us: int) -> str:
-        """For the framework, after an iteration at `now_us`: what is wrong with `next_us`, to be logged; mostly empty.
+        """Returns what is wrong with `next_us` after an iteration at `now_us`, to be logged; mostly empty.
 
-        A time that is not after `now_us` is reported the 1st, 10th, 100th time; silence once, after some iterations
-        without any time.
+        A time that is not after `now_us` is reported the 1st, 10th, 100th time; a time that is never set is reported
+        once, after some iterations.
         """
-        if self.said_us > now_us:
+        if self._next_us > now_us:
             self._was_right = True
-        elif self.said_us >= 0:
+        elif self._next_us >= 0:
             self._wrong += 1
             if str(self._wrong).strip("0") == "1":
-                said = f"next_us = {self.said_us} is not after this tick's time, {now_us} us"
+                said = f"next_us = {self._next_us} is not after this tick's time, {now_us} us"
                 return f"time source: {said}; time goes on by the period instead ({self._wrong} times so far)"
         elif not self._was_right:
             self._silent += 1

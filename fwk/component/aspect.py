@@ -1,12 +1,12 @@
-"""Aspects that a component provides: what it writes, bundled with the behaviour that makes it easy to use."""
+"""Aspects that components provide: channels bundled with methods that make them easy to use."""
 
 
 class Aspect:
-    """What one component provides and others ask for by annotation.
+    """Base class of aspects that one component provides and other components declare.
 
     ```python
     class Battery(Aspect):
-        charge: Reads[charge_t]  # what the provider writes as `charge`
+        charge: Reads[charge_t]  # the channel that the provider writes as `charge`
 
         def low(self) -> bool:
             return self.charge.has_value and self.charge.value.percent < 20.0
@@ -16,14 +16,15 @@ class Aspect:
         charge: Writes[charge_t]
 
     class Agent(Component):
-        battery: Battery  # only with a Gauge in the plan, and not before it is ready
+        battery: Battery  # needs a Gauge in the plan, and starts when it is ready
     ```
-    Each component that asks has an aspect of its own. Its annotated lines may be `Reads`, `ReadsEach`, `Image`, `Clock`
-    and `Logger`. `Reads` and `Image` stand for what the provider writes under the same name.
+    Each component that declares the aspect has an object of its own. The annotated lines of an aspect may be `Reads`,
+    `Each[Reads[...]]`, `Image`, `Clock` and `Logger`. `Reads` and `Image` connect to the channel that the provider
+    writes under the same name.
     """
 
     def init(self) -> None:
-        """Called before the component's own `init`; an exception means that the component does not start."""
+        """Called before the component's `init`; after an exception the component does not start."""
 
     def begin(self) -> None:
-        """Called at the beginning of each iteration, when the inputs are frozen."""
+        """Called at the beginning of each iteration, after the inputs are frozen."""

@@ -1,104 +1,94 @@
-"""The blackboard aspect: channels opened and closed while the run goes on, and who else is there."""
+"""The blackboard aspect: channels that a component opens and closes during the run."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
-from typing import Any, Generic, Literal, TypeVar, cast
+from typing import Any, Literal, TypeVar, cast
 
 from fwk.component.channels import Reads, ReadsHistory, Stamp, Writes, WritesPlain
+from fwk.component.each import Each
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, Instance, InstanceView
 from fwk.model.names import mistake_in
 
 T = TypeVar("T")
 
-WISHES_MAX = 64
-"""Openings and closings that a component may ask for in an iteration; more is taken for a mistake."""
+REQUESTS_MAX = 64
+"""Channels that a component may open and close in one iteration; more are refused as a mistake."""
 
 
-class NotOpen(Exception):  # noqa: N818 - a state
-    """A channel is written that is not open; says which and since when not."""
+class NotOpenError(Exception):
+    """A channel is written that is not open; the text names the channel and the reason."""
 
 
 class OpenReads(ReadsHistory[T]):
-    """A reader that was opened at run time; it has nothing before it `is_open`, and keeps its value when closed."""
+    """Reader of a dynamic channel; it has no value before it `is_open`, and keeps its value when closed."""
 
     is_open = False
     refused = ""
-    """Why it was not opened; empty if it was, or nobody has decided yet."""
+    """Why the channel was not opened; empty if it was, and while the request is not decided."""
 
     def __init__(self, channel: str, message_type: type[T], length: int = 0) -> None:
         super().__init__(channel, message_type, max(1, length))
 
-    def freeze(self, fresh: list[bytes]) -> None:
-        """For the framework: begins an iteration. Of what was there before it was opened it sees the newest."""
-        super().freeze(fresh if self.has_value else fresh[-1:])
+    def _freeze(self, fresh: list[bytes]) -> None:
+        """Begins an iteration; of the messages before the opening only the newest is visible."""
+        super()._freeze(fresh if self.has_value else fresh[-1:])
 
 
 class OpenWrites(Writes[T]):
-    """A writer that was opened at run time."""
+    """Writer of a dynamic channel."""
 
     is_open = False
     refused = ""
-    """Why it was not opened; empty if it was, or nobody has decided yet."""
+    """Why the channel was not opened; empty if it was, and while the request is not decided."""
 
     def write(self) -> None:
-        """Stamps the value as it is now; it goes out at the end of the iteration.
+        """Stamps and encodes `value` as it is now; the message is sent at the end of the iteration.
 
         Raises:
-            NotOpen: it is not open yet, or any more.
-            MessageError: a field holds something that its type cannot.
+            NotOpenError: the channel is not open yet, or no longer.
+            MessageError: a field holds a value that its type cannot.
         """
         if not self.is_open:
-            raise NotOpen(self.refused or f"{self.channel} is not open for writing; ask 'is_open' before")
+            raise NotOpenError(self.refused or f"{self.channel} is not open for writing; check 'is_open' first")
         super().write()
 
 
 class OpenWritesPlain(OpenWrites[T], WritesPlain[T]):
-    """The same for a type without our header."""
+    """Writer of a dynamic channel whose type has no header."""
 
 
-class OpenReadsEach(Mapping[str, Reads[T]], Generic[T]):
-    """Readers of every instance that fits a pattern, by channel name; they come and go with the instances."""
+class OpenReadsEach(Each[Reads[T]]):
+    """Readers of all channels that match a pattern, by channel name; they come and go with the channels."""
 
     def __init__(self, pattern: str, message_type: type[T], length: int = 0) -> None:
+        super().__init__({})
         self.pattern = pattern
         self.message_type = message_type
-        self.length = length
-        self._readers: dict[str, Reads[T]] = {}
+        self._length = length
 
-    def __getitem__(self, channel: str) -> Reads[T]:
-        return self._readers[channel]
+    def _put(self, reader: Reads[T]) -> None:
+        self._ports = dict(sorted({**self._ports, reader.channel: reader}.items()))
 
-    def __iter__(self) -> Iterator[str]:
-        return iter(sorted(self._readers))
-
-    def __len__(self) -> int:
-        return len(self._readers)
-
-    def put(self, reader: Reads[T]) -> None:
-        """For the framework: an instance came."""
-        self._readers[reader.channel] = reader
-
-    def drop(self, channel: str) -> None:
-        """For the framework: an instance went."""
-        self._readers.pop(channel, None)
+    def _remove(self, channel: str) -> None:
+        self._ports.pop(channel, None)
 
 
 Handle = OpenReads[Any] | OpenWrites[Any] | OpenReadsEach[Any]
 
 
 class Blackboard:
-    """Opens channels that the class does not declare, and tells who has which open.
+    """Opens channels that the class does not declare, and lists channels, their writers and readers.
 
-    What is asked in `init` or an iteration happens between that tick and the next, in one order for all components,
-    and is recorded. Names without a slash belong to the component's namespace, `/JOYSTICK` to none.
+    Requests of an iteration, or of `init`, take effect at the next boundary, in one order for all components, and are
+    recorded. Names without a slash belong to the component's namespace, `/JOYSTICK` to none.
     """
 
     def __init__(
         self, name: str, stamp: Stamp, readers: dict[str, Reads[Any]], writers: dict[str, Writes[Any]]
     ) -> None:
         self.events: tuple[BlackboardEvent, ...] = ()
-        """What happened on the blackboard since the last iteration, in order; of what was before the first: nothing."""
+        """Events since the last iteration, in order; empty in the first iteration."""
         self._name = name
         self._stamp = stamp
         self._readers = readers
@@ -106,24 +96,24 @@ class Blackboard:
         self._declared = frozenset({*readers, *writers})
         self._instances: ChannelTable | None = None
         self._handles: dict[int, Handle] = {}
-        self._numbers: dict[int, int] = {}  # id of what is open, or was asked for, to its number
+        self._numbers: dict[int, int] = {}  # id of a handle that is open or requested, to its number
         self._newest = 0
         self._reading: dict[str, OpenReads[Any]] = {}
         self._writing: dict[str, OpenWrites[Any]] = {}
-        self._holders: dict[str, set[int]] = {}  # of each reader: the handles that want it
-        self._wishes: list[list[Any]] = []
+        self._holders: dict[str, set[int]] = {}  # channel to the numbers of the handles that share its reader
+        self._requests: list[list[Any]] = []
         self._closing: list[OpenWrites[Any]] = []
         self._arrived: list[BlackboardEvent] = []
         self._begun = False
 
     def open_for_reading(self, message_type: type[T], channel: str, *, history: int = 0) -> Reads[T]:
-        """A reader of a channel, whether the plan has it or somebody opens it now or later.
+        """Opens a channel for reading, whether the plan has it or a component opens it now or later.
 
-        One that the class declares is given as it is. A first iteration with it open has the newest value. It keeps as
-        many of the newest messages as `history` says, from then on.
+        If the class declares a reader of the channel, that reader is returned. The first iteration with the open
+        channel sees its newest value; from then on the newest `history` messages are kept.
 
         Raises:
-            ValueError: no such name, type or history can be, or too much was asked in this iteration.
+            ValueError: the name, type or history is invalid, or this iteration made too many requests.
         """
         self._check(message_type, history)
         full = self._full(channel)
@@ -132,17 +122,17 @@ class Blackboard:
         reader = self._reading.get(full)
         if reader is None or reader.message_type is not message_type:
             reader = OpenReads(full, message_type)
-        reader.keep(history)
+        reader._keep(history)
         if id(reader) not in self._numbers:
-            self._ask("read", reader, full, message_type)
+            self._open("read", reader, full, message_type)
             self._reading[full] = reader
         return reader
 
     def open_for_writing(self, message_type: type[T], channel: str) -> OpenWrites[T]:
-        """The writer of a channel that the plan does not have.
+        """Opens a channel that the plan does not have for writing.
 
         Raises:
-            ValueError: no such name or type can be, or too much was asked in this iteration.
+            ValueError: the name or type is invalid, or this iteration made too many requests.
         """
         self._check(message_type)
         full = self._full(channel)
@@ -150,75 +140,77 @@ class Blackboard:
         if writer is None or writer.message_type is not message_type or id(writer) not in self._numbers:
             kind = OpenWrites if messages.has_header(cast(Any, message_type)) else OpenWritesPlain
             writer = kind(full, message_type, self._stamp)
-            self._ask("write", writer, full, message_type)
+            self._open("write", writer, full, message_type)
             self._writing[full] = writer
         return writer
 
-    def open_multiple_for_reading(self, message_type: type[T], pattern: str, *, history: int = 0) -> OpenReadsEach[T]:
-        """Readers of all instances of a type whose names fit: `*/ball`, `cyan?/pose`; those too that come later.
+    def open_multiple_for_reading(self, message_type: type[T], pattern: str, *, history: int = 0) -> Each[Reads[T]]:
+        """Opens all channels of a type whose names match, `*/ball` or `cyan?/pose`, also those that are opened later.
+
+        Returns:
+            Readers by channel name.
 
         Raises:
-            ValueError: it is no type of a channel, no history, or too much was asked in this iteration.
+            ValueError: the type or history is invalid, or this iteration made too many requests.
         """
         self._check(message_type, history)
         full = self._with_namespace(pattern)
         each = OpenReadsEach(full, message_type, history)
-        self._ask("each", each, full, message_type)
+        self._open("each", each, full, message_type)
         return each
 
-    def close(self, handle: Reads[Any] | Writes[Any] | OpenReadsEach[Any]) -> None:
-        """From the next tick on it is not open any more; what is written, not from this component's next iteration on.
+    def close(self, handle: Reads[Any] | Writes[Any] | Each[Reads[Any]]) -> None:
+        """Closes what was opened: readers at the next tick, a writer at this component's next iteration.
 
         Raises:
-            ValueError: it is declared in the class, closed already, or of somebody else.
+            ValueError: the handle is declared in the class, already closed, or of another component.
         """
         number = self._numbers.pop(id(handle), None)
         if number is None:
-            raise ValueError(f"{self._name}: this was not opened here at run time, or is closed already")
-        self._wish(["close", number])
+            raise ValueError(f"{self._name}: this was not opened by this component, or is already closed")
+        self._request(["close", number])
         if isinstance(handle, OpenWrites):
             self._closing.append(handle)
         if isinstance(handle, OpenReadsEach) and not handle:
             del self._handles[number]
 
     def instances(self, pattern: str = "*") -> list[InstanceView]:
-        """The channels that there are in this tick and whose names fit, ordered by name."""
+        """Returns the channels of this tick whose names match, ordered by name."""
         table = self._instances
         return [table.view(instance) for instance in table.matching(pattern)] if table else []
 
     def has_writer(self, channel: str) -> bool:
-        """Whether somebody who takes part in the run writes the channel."""
+        """Returns whether a component that takes part in the run writes the channel."""
         return self.writer(channel) != ""
 
     def writer(self, channel: str) -> str:
-        """Full name of the component that writes the channel in this tick; empty: nobody."""
+        """Returns the full name of the component that writes the channel in this tick; empty if there is none."""
         return self._asked_of(channel, lambda instances, instance: instances.writer(instance), "")
 
     def readers(self, channel: str) -> tuple[str, ...]:
-        """Full names of the components that read the channel in this tick, ordered."""
+        """Returns the full names of the components that read the channel in this tick, ordered."""
         return self._asked_of(channel, lambda instances, instance: instances.readers(instance), ())
 
     def events_of(self, pattern: str) -> list[BlackboardEvent]:
-        """Those of `events` that concern channels whose names fit."""
+        """Returns those of `events` that concern channels whose names match."""
         return [event for event in self.events if fnmatchcase(event.channel, pattern)]
 
-    def begin(self) -> None:
-        """For the framework: an iteration begins."""
+    def _begin(self) -> None:
         self.events, self._arrived, self._begun = tuple(self._arrived) if self._begun else (), [], True
 
-    def take(self) -> list[list[Any]]:
-        """For the framework, at the end of an iteration: what was asked in it."""
+    def _take(self) -> list[list[Any]]:
+        """Ends an iteration; returns its requests."""
         for writer in self._closing:  # the next iteration of a continuous component may begin before this is granted
             self._end_writing(writer)
-        taken, self._wishes, self._closing = self._wishes, [], []
+        taken, self._requests, self._closing = self._requests, [], []
         return taken
 
-    def take_over(
+    def _take_over(
         self, instances: ChannelTable, component: int, fact: Fact, events: Sequence[BlackboardEvent]
     ) -> Literal["opened", "closed", ""]:
-        """For the framework, between two iterations: what was decided, and what happened by that.
+        """Applies a decision between two iterations.
 
-        Says whether the component reads the fact's channel from now on, or does not any more.
+        Returns whether the component begins or ceases to read the fact's channel.
         """
         before = len(self._readers)
         self._instances = instances
@@ -232,8 +224,8 @@ class Blackboard:
         after = len(self._readers)
         return "opened" if after > before else "closed" if after < before else ""
 
-    def first(self, instances: ChannelTable) -> None:
-        """For the framework, before the first iteration: the table as it is."""
+    def _first(self, instances: ChannelTable) -> None:
+        """Takes the channel table before the first iteration."""
         self._instances = instances
 
     def _settle(self, fact: Fact, handle: Handle) -> None:
@@ -243,7 +235,7 @@ class Blackboard:
             self._numbers.pop(id(handle), None)
             _forget(self._writing if isinstance(handle, OpenWrites) else self._reading, handle)
         elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.opening:
-            if id(handle) in self._numbers:  # it has not been closed meanwhile
+            if id(handle) in self._numbers:  # not closed meanwhile
                 handle.is_open, handle.sequence = True, fact.opening.sequence
                 self._writers[name] = handle
         elif fact.kind == "read" and not isinstance(handle, OpenWrites):
@@ -254,7 +246,7 @@ class Blackboard:
             self._end_reading(name, fact.handle, handle)
 
     def _begin_reading(self, name: str, number: int, handle: Handle) -> None:
-        """A reader is open for one more handle; whoever wants it in this component has the same one."""
+        """Opens a reader for one more handle; all handles of the component share it."""
         reader = self._readers.get(name)
         if reader is None:
             made = self._reading.get(name) if isinstance(handle, OpenReadsEach) else cast(OpenReads[Any], handle)
@@ -264,12 +256,12 @@ class Blackboard:
         self._holders.setdefault(name, set()).add(number)
         if isinstance(handle, OpenReadsEach):
             if isinstance(reader, OpenReads):
-                reader.keep(handle.length)
-            handle.put(reader)
+                reader._keep(handle._length)
+            handle._put(reader)
 
     def _end_reading(self, name: str, number: int, handle: Handle) -> None:
         if isinstance(handle, OpenReadsEach):
-            handle.drop(name)
+            handle._remove(name)
         holders = self._holders[name]
         holders.discard(number)
         if not holders and name not in self._declared:
@@ -281,24 +273,24 @@ class Blackboard:
         _forget(self._writers, handle)
         _forget(self._writing, handle)
 
-    def _ask(self, what: str, handle: Handle, name: str, message_type: Any) -> None:
+    def _open(self, what: str, handle: Handle, name: str, message_type: Any) -> None:
         fingerprint = messages.fingerprint(message_type).hex()
         self._newest += 1
-        self._wish([what, self._newest, name, messages.type_name(message_type), fingerprint])
+        self._request([what, self._newest, name, messages.type_name(message_type), fingerprint])
         self._handles[self._newest], self._numbers[id(handle)] = handle, self._newest
 
     def _check(self, message_type: Any, history: int = 0) -> None:
         if history < 0:
             raise ValueError(f"{self._name}: history={history}: a history has at least 1 message")
         if not hasattr(message_type, "_get_packed_fingerprint"):
-            raise ValueError(f"{self._name}: {message_type!r} is no LCM type; import it from lcmtypes")
+            raise ValueError(f"{self._name}: {message_type!r} is not an LCM type; import it from lcmtypes")
         if mistake := envelope.mistake_in(message_type):
             raise ValueError(f"{self._name}: {mistake}")
 
-    def _wish(self, wish: list[Any]) -> None:
-        if len(self._wishes) >= WISHES_MAX:
-            raise ValueError(f"{self._name}: more than {WISHES_MAX} openings and closings in one iteration")
-        self._wishes.append(wish)
+    def _request(self, request: list[Any]) -> None:
+        if len(self._requests) >= REQUESTS_MAX:
+            raise ValueError(f"{self._name}: more than {REQUESTS_MAX} channels opened and closed in one iteration")
+        self._requests.append(request)
 
     def _full(self, channel: str) -> str:
         full = self._with_namespace(channel)

@@ -10,16 +10,16 @@ LogLevel = Literal["debug", "info", "warning", "error"]
 
 
 class Config(BaseModel):
-    """Base of every component's settings: one field a line, its unit and meaning as a docstring below it.
+    """Base class of settings: one field a line, with its unit and meaning as a docstring below.
 
     ```python
     class TrackerConfig(Config):
         gain: float = 0.3
         \"\"\"0 keeps the old position, 1 jumps to the newest sighting.\"\"\"
     ```
-    A setting that cannot be changed while the run goes on says so: `port: int = Field(7000, frozen=True)`.
-    Unknown keys, wrong types and numbers that are not finite are refused. Nested settings are fields that are
-    `Config`s themselves.
+    A setting that cannot be changed during the run is frozen: `port: int = Field(7000, frozen=True)`.
+    Unknown keys, wrong types and numbers that are not finite are refused. Nested settings are fields whose type is a
+    `Config`.
     """
 
     model_config = ConfigDict(
@@ -30,15 +30,16 @@ class Config(BaseModel):
         allow_inf_nan=False,
     )
 
-    def take_over(self, other: Self) -> frozenset[str]:
-        """Becomes like `other`, whose values are checked already; whoever holds this object, or one nested in it, sees
-        the new values. Returns the dotted names of those that changed.
+    def _take_over(self, other: Self) -> frozenset[str]:
+        """Copies the checked values of `other` into this object and its nested objects.
+
+        Returns the dotted names of the fields that changed.
         """
         changed: set[str] = set()
         for name in type(self).model_fields:
             old, new = getattr(self, name), getattr(other, name)
             if isinstance(old, Config) and type(new) is type(old):
-                changed |= {f"{name}.{below}" for below in old.take_over(new)}
+                changed |= {f"{name}.{below}" for below in old._take_over(new)}
             elif old != new:
                 self.__dict__[name] = new
                 changed.add(name)
@@ -47,8 +48,8 @@ class Config(BaseModel):
 
 @cache
 def with_log_level(config: type[Config]) -> type[Config]:
-    """A component's settings as its class has them, and the level of its log lines, which every component has."""
-    meaning = "lines of this level and worse are logged; it decides nothing else"
+    """Returns a component's settings class with the setting `log_level`, which every component has."""
+    meaning = "lowest level of the lines that are logged; it affects nothing else"
     return create_model(
         config.__name__,
         __base__=config,

@@ -1,4 +1,4 @@
-"""What a component's class says it wants: its stages or rate, ports, settings and aspects."""
+"""Declaration of a component's class: stages or rate, ports, settings and aspects."""
 
 import typing
 from dataclasses import dataclass, field, replace
@@ -12,41 +12,40 @@ import numpy as np
 from fwk.clock import Clock, TimeSource
 from fwk.component.aspect import Aspect
 from fwk.component.blackboard import Blackboard
-from fwk.component.channels import Reads, ReadsEach
 from fwk.component.component import Component
 from fwk.component.config import LOG_LEVEL, Config, with_log_level
-from fwk.component.images import Image
+from fwk.component.each import Each
 from fwk.component.log import Logger
 from fwk.component.log_lines import LogLines
 from fwk.component.main_loop import MainLoop
 from fwk.component.plugins import PluginControl
-from fwk.component.port import IMAGE_KINDS, PORT_KINDS, DeclarationError, Port, declared_port
+from fwk.component.port import DeclarationError, Port, port_of
 from fwk.model.names import LINES
-from lcmtypes.core import frame_t, log_t
+from lcmtypes.core import log_t
 
 RATE_MAX_HZ = 10_000
 _METHODS = ("init", "loop", "finalize", "config_changed")
-_ALIKE = 0.8  # similarity of a misspelt method's name: `lop` is one, `look` is a method of its own
+_ALIKE = 0.8  # similarity from which a method's name counts as misspelt: `lop` does, `look` does not
 _OF_ALL = frozenset(get_annotations(Component))
-"""Annotated attributes that every component has; they are no aspects."""
+"""Annotated attributes that every component has and that are not aspects."""
 
 
 @dataclass(frozen=True)
 class Declaration:
-    """Everything a component's class says about itself."""
+    """Everything that a component's class declares."""
 
     component: type[Component]
     stages: tuple[str, ...]
     ports: tuple[Port, ...]
     config: type[Config]
-    """With `log_level`, which every component has."""
+    """The class of its settings, with `log_level`, which every component has."""
     aspects: dict[str, str] = field(default_factory=dict)
     """Attribute to aspect name: clock, log, rng, time_source, main_loop, plugins, blackboard."""
     asks: dict[str, type[Aspect]] = field(default_factory=dict)
-    """Attribute to an aspect that another component provides; its own attributes are `attribute.own` above."""
+    """Attribute to an aspect that another component provides; ports and aspects of it have dotted names above."""
     provides: tuple[type[Aspect], ...] = ()
     rate_hz: float | None = None
-    """Of a continuous component; None: it takes part in stages."""
+    """Rate of a continuous component; None: the component iterates in stages."""
 
 
 _ASPECTS: dict[Any, str] = {
@@ -61,12 +60,12 @@ _ASPECTS: dict[Any, str] = {
 
 
 def declaration(component: type[Component]) -> Declaration:
-    """Reads a component's class, once.
+    """Reads a component's class; the result is cached.
 
     Raises:
-        DeclarationError: no stage, or an annotation that is no aspect.
+        DeclarationError: the class declares no stage or something invalid.
     """
-    return _read(component)  # type: ignore[arg-type]  # mypy takes classes for something that cannot be hashed
+    return _read(component)  # type: ignore[arg-type]  # mypy does not take classes for hashable
 
 
 @cache
@@ -74,50 +73,42 @@ def _read(component: type[Component]) -> Declaration:
     where = f"{component.__module__}.{component.__qualname__}"
     stages, rate_hz = _stages(component, where), component.rate_hz
     if stages and rate_hz is not None:
-        raise DeclarationError(f"{where}: a stage and a rate; keep 'stage', or 'rate_hz' if it is to be continuous")
+        raise DeclarationError(f"{where}: both a stage and a rate; keep 'stage', or 'rate_hz' to be continuous")
     if not stages and rate_hz is None:
-        raise DeclarationError(f'{where}: no stage; say for example: stage = "think"')
+        raise DeclarationError(f'{where}: no stage; write for example: stage = "think"')
     _check_methods(component, where)
     hints = _hints(component, where)
     ports: list[Port] = []
     aspects, asks, config = {}, {}, Config
-    for attribute, wish in hints.items():
+    for attribute, annotation in hints.items():
         if attribute in _OF_ALL or attribute.startswith("_"):
             continue
         if hasattr(Component, attribute) and attribute != "config":
-            raise DeclarationError(f"{where}.{attribute}: every component has '{attribute}'; call this one otherwise")
+            raise DeclarationError(f"{where}.{attribute}: every component has '{attribute}'; choose another name")
         default = getattr(component, attribute, None)
-        if get_origin(wish) in PORT_KINDS:
-            ports.append(declared_port(where, attribute, PORT_KINDS[get_origin(wish)], get_args(wish), default))
-        elif wish in IMAGE_KINDS:
-            ports.append(declared_port(where, attribute, IMAGE_KINDS[wish], (frame_t,), default))
-        elif wish is LogLines:
+        if port := port_of(where, attribute, annotation, default):
+            ports.append(port)
+        elif annotation is LogLines:
             ports.append(Port(attribute, "lines", log_t, LINES))
-        elif wish in _ASPECTS:
-            aspects[attribute] = _ASPECTS[wish]
-        elif isinstance(wish, type) and issubclass(wish, Aspect):
-            asks[attribute] = wish
-            inner_ports, inner_aspects = _inside(wish, attribute)
+        elif annotation in _ASPECTS:
+            aspects[attribute] = _ASPECTS[annotation]
+        elif isinstance(annotation, type) and issubclass(annotation, Aspect):
+            asks[attribute] = annotation
+            inner_ports, inner_aspects = _inside(annotation, attribute)
             ports += inner_ports
             aspects |= inner_aspects
-        elif isinstance(wish, type) and issubclass(wish, Config):
+        elif isinstance(annotation, type) and issubclass(annotation, Config):
             if attribute != "config":
-                raise DeclarationError(f"{where}.{attribute}: settings are called 'config'")
-            if LOG_LEVEL in wish.model_fields:
-                raise DeclarationError(f"{where}: every component has a setting '{LOG_LEVEL}'; call its own otherwise")
-            config = wish
-        elif wish in PORT_KINDS:
-            name = wish.__name__
-            types = "request_t, reply_t" if name.startswith(("Serves", "Calls")) else "message_t"
-            right = f"name its type: {attribute}: {name}[{types}]"
-            raise DeclarationError(f"{where}.{attribute}: {name} of which messages? {right}")
-        elif get_origin(wish) is not ClassVar and default is None:
+                raise DeclarationError(f"{where}.{attribute}: the attribute of the settings is called 'config'")
+            if LOG_LEVEL in annotation.model_fields:
+                raise DeclarationError(f"{where}: every component has a setting '{LOG_LEVEL}'; choose another name")
+            config = annotation
+        elif get_origin(annotation) is not ClassVar and default is None:
             raise DeclarationError(
-                f"{where}.{attribute}: {getattr(wish, '__name__', wish)} is not an aspect; "
-                "annotate with Reads, Writes, ReadsEach, WritesEach, Commands, CommandsEach, Sends, SendsEach, Serves, "
-                "ServesEach, Calls, CallsEach, Image, ImagesEach, VisionMaster, a Config, Clock, Logger, LogLines, "
-                "numpy.random.Generator, TimeSource, MainLoop, PluginControl, Blackboard or an Aspect, and set plain "
-                "attributes in init()"
+                f"{where}.{attribute}: {_name(annotation)} is not an aspect; "
+                "annotate with Reads, Writes, Serves, Calls, Image, Each, VisionMaster, a Config, Clock, Logger, "
+                "LogLines, numpy.random.Generator, TimeSource, MainLoop, PluginControl, Blackboard or an Aspect, and "
+                "set plain attributes in init()"
             )
     if rate_hz is not None:
         _check_continuous(where, rate_hz, ports, aspects)
@@ -134,15 +125,17 @@ def _read(component: type[Component]) -> Declaration:
 
 
 def _stages(component: type[Component], where: str) -> tuple[str, ...]:
-    said = getattr(component, "stage", None) or ()
-    stages = (said,) if isinstance(said, str) else said
+    declared = getattr(component, "stage", None) or ()
+    stages = (declared,) if isinstance(declared, str) else declared
     if not isinstance(stages, tuple | list) or not all(isinstance(stage, str) for stage in stages):
-        raise DeclarationError(f'{where}: stage is {said!r}; it should be text such as "think", or a tuple of it')
+        raise DeclarationError(
+            f'{where}: stage is {declared!r}; it should be text such as "think", or a tuple of texts'
+        )
     return tuple(stages)
 
 
 def _check_methods(component: type[Component], where: str) -> None:
-    """Finds a method that is called almost like one of `Component`, such as `lop`, in a class without that one."""
+    """Refuses a method that the class probably means to override, but misspells, such as `lop`."""
     for base in component.__mro__[: component.__mro__.index(Component)]:
         for name, value in vars(base).items():
             if not callable(value) or name.startswith("_") or hasattr(Component, name):
@@ -162,41 +155,46 @@ def _hints(kind: type, where: str) -> dict[str, Any]:
 
 
 def _inside(aspect: type[Aspect], attribute: str) -> tuple[list[Port], dict[str, str]]:
-    """Ports and aspects of a provided aspect, as those of the component that asks for it."""
+    """Returns the ports and aspects that a provided aspect adds to the component that declares it."""
     where = f"{aspect.__module__}.{aspect.__qualname__}"
     ports, aspects = [], {}
-    for own, wish in _hints(aspect, where).items():
+    for own, annotation in _hints(aspect, where).items():
         default, dotted = getattr(aspect, own, None), f"{attribute}.{own}"
-        if get_origin(wish) in (Reads, ReadsEach):
-            port = declared_port(where, own, PORT_KINDS[get_origin(wish)], get_args(wish), default)
+        port = port_of(where, own, annotation, default)
+        if port and (port.kind == "reads" or (port.kind == "image" and not port.each)):
             ports.append(replace(port, attribute=dotted))
-        elif wish is Image:
-            ports.append(replace(declared_port(where, own, "image", (frame_t,), default), attribute=dotted))
-        elif wish in (Clock, Logger):
-            aspects[dotted] = _ASPECTS[wish]
-        elif not own.startswith("_") and get_origin(wish) is not ClassVar and default is None:
+        elif annotation in (Clock, Logger):
+            aspects[dotted] = _ASPECTS[annotation]
+        elif port or (not own.startswith("_") and get_origin(annotation) is not ClassVar and default is None):
             raise DeclarationError(
-                f"{where}.{own}: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "
-                f"not {getattr(wish, '__name__', wish)}; what a component writes stands in its own class"
+                f"{where}.{own}: an aspect that a component provides has Reads, Each[Reads[...]], Image, Clock and "
+                f"Logger, not {_name(annotation)}; what a component writes is declared in its own class"
             )
     return ports, aspects
 
 
+def _name(annotation: Any) -> str:
+    """Returns the name of an annotation as a class writes it, without its types."""
+    if get_origin(annotation) is Each:
+        return f"Each[{', '.join(map(_name, get_args(annotation)))}]"
+    return str(getattr(annotation, "__name__", annotation))
+
+
 def _provided(component: type[Component], where: str, ports: list[Port]) -> tuple[type[Aspect], ...]:
-    """What a class says that it provides, if it writes what that takes."""
-    said = component.provides if isinstance(component.provides, tuple) else (component.provides,)
-    for aspect in said:
+    """Returns the aspects that a class provides, after checking that it writes what they read."""
+    provided = component.provides if isinstance(component.provides, tuple) else (component.provides,)
+    written = {port.attribute: port for port in ports if port.writes and not port.each}
+    for aspect in provided:
         if not (isinstance(aspect, type) and issubclass(aspect, Aspect)):
-            raise DeclarationError(f"{where}: it provides {aspect!r}, which is no aspect; derive it from fwk.Aspect")
-        written = {port.attribute: port for port in ports if port.kind in ("writes", "vision_master")}
+            raise DeclarationError(f"{where}: it provides {aspect!r}, not an aspect; derive it from fwk.Aspect")
         for port in _inside(aspect, "")[0]:
             own = port.attribute[1:]
             if not port.each and (own not in written or written[own].message_type is not port.message_type):
-                wish = "VisionMaster" if port.images else f"Writes[{port.message_type.__name__}]"
+                right = "VisionMaster" if port.images else f"Writes[{port.message_type.__name__}]"
                 raise DeclarationError(
-                    f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {wish}"
+                    f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {right}"
                 )
-    return said
+    return provided
 
 
 def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict[str, str]) -> None:
@@ -205,9 +203,11 @@ def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict
     for port in ports:
         if port.images:
             raise DeclarationError(
-                f"{where}.{port.attribute}: a continuous component has no frames: their ring goes on without it; "
-                "give it a stage, or let a component with a stage look"
+                f"{where}.{port.attribute}: a continuous component cannot use frames, because their ring does not wait "
+                "for it; give it a stage, or let a component with a stage read the frames"
             )
     for attribute, aspect in aspects.items():
         if aspect == "time_source":
-            raise DeclarationError(f"{where}.{attribute}: a continuous component is no time source; give it a stage")
+            raise DeclarationError(
+                f"{where}.{attribute}: a continuous component cannot be a time source; give it a stage"
+            )

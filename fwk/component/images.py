@@ -1,10 +1,9 @@
-"""The vision aspects: camera frames in a shared-memory ring, written by one vision master and read by many."""
+"""The vision aspects: camera frames in shared memory, written by one vision master and read by many components."""
 
 import math
 import mmap
 import os
 import struct
-from collections.abc import ItemsView, Iterator, Mapping
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -16,29 +15,29 @@ from fwk.component.log import Logger
 from lcmtypes.core import frame_t
 
 SLOTS = 4
-"""Of a ring; one less may be given out in an iteration."""
-SLOT_BYTES = 8 << 20  # room for the largest frame; memory is used only where a frame was written
+"""Frames in a ring; a vision master may publish one less in an iteration."""
+SLOT_BYTES = 8 << 20  # size of the largest frame; only written parts take up memory
 _MARKS = struct.Struct("=qq")  # frame number before and after the pixels: different while a frame is being written
 _SHAPE = struct.Struct("=3i")  # height, width, channels; behind the marks
 _PAGE = mmap.PAGESIZE
-_TRIES = 100  # of somebody who looks at a ring from outside, while the camera goes on
+_TRIES = 100  # attempts to read the newest frame while the camera writes
 
 Frame = NDArray[np.uint8]
 
 
 class FrameError(Exception):
-    """A frame does not fit into its ring, or too many were written in one iteration."""
+    """A frame does not fit into its ring, or too many frames were published in one iteration."""
 
 
 class Frames(Protocol):
-    """Where somebody who was told of a frame finds it: a ring, or in a replay a recording."""
+    """Store of announced frames: a ring, or a recording in a replay."""
 
     def get(self, number: int, size: int) -> Frame | None:
-        """A copy of frame `number`; None if it is no longer to be had."""
+        """Returns a copy of frame `number` as `size` bytes; None if the frame is gone."""
 
 
 class Ring:
-    """A few frames in anonymous shared memory; it vanishes with the last process that has it, whatever kills it."""
+    """The newest frames of a camera in anonymous shared memory, which is freed with the last process that maps it."""
 
     def __init__(self, descriptor: int, access: int = mmap.ACCESS_WRITE) -> None:
         self.descriptor = descriptor
@@ -47,16 +46,16 @@ class Ring:
 
     @classmethod
     def create(cls, name: str, slots: int = SLOTS) -> "Ring":
-        """Makes a new ring; processes forked afterwards share it, others open `/proc/<pid>/fd/<descriptor>`."""
+        """Makes a ring. Processes forked later share it; other processes open `/proc/<pid>/fd/<descriptor>`."""
         descriptor = os.memfd_create(name)
         os.ftruncate(descriptor, slots * (_PAGE + SLOT_BYTES))
         return cls(descriptor)
 
     @classmethod
     def of_process(cls, pid: int, name: str) -> Self | None:
-        """The ring of that name among the open files of another process, to read; None if it has none.
+        """Opens the ring of that name in another process, read-only; None if the process has no such ring.
 
-        The kernel allows it to the user of that process and to root.
+        The kernel allows this to the user of that process and to root.
         """
         for link in Path(f"/proc/{pid}/fd").iterdir():
             try:
@@ -76,7 +75,7 @@ class Ring:
         _MARKS.pack_into(self._memory, start, number, number)
 
     def get(self, number: int, size: int) -> Frame | None:
-        """A copy of frame `number`, or None if it has been overwritten: never a torn one."""
+        """Returns a copy of frame `number` as `size` bytes, never a torn frame; None if it was overwritten."""
         start = (number % self.slots) * (_PAGE + SLOT_BYTES)
         if not 0 < size <= SLOT_BYTES or _MARKS.unpack_from(self._memory, start) != (number, number):
             return None
@@ -84,7 +83,7 @@ class Ring:
         return pixels if _MARKS.unpack_from(self._memory, start) == (number, number) else None
 
     def newest(self) -> tuple[int, Frame] | None:
-        """Number and copy of the newest frame, for somebody who is not told of them; None before the first."""
+        """Returns number and copy of the newest frame, for readers without announcements; None before the first."""
         starts = [slot * (_PAGE + SLOT_BYTES) for slot in range(self.slots)]
         for _ in range(_TRIES):
             marks = [(*_MARKS.unpack_from(self._memory, start), start) for start in starts]
@@ -99,7 +98,7 @@ class Ring:
 
 
 def shape_of(height_px: int, width_px: int, channels: int) -> tuple[int, ...]:
-    """The shape of a frame's array: pictures of one channel have two dimensions."""
+    """Returns the shape of a frame's array; frames of one channel have two dimensions."""
     return (height_px, width_px, channels) if channels > 1 else (height_px, width_px)
 
 
@@ -108,49 +107,52 @@ def _channels(pixels: Frame) -> int:
 
 
 class VisionMaster:
-    """The vision-master aspect: gives out the frames of one camera.
+    """Publishes the frames of one camera; the vision-master aspect.
 
     Frames are arrays of bytes, height x width x channels (3: bgr8) or height x width (gray8).
     """
 
     def __init__(self, announcement: Writes[frame_t], ring: Ring) -> None:
-        self.announcement = announcement
+        self._announcement = announcement
         self._ring = ring
 
     def publish(self, pixels: Frame) -> None:
         """Puts a frame into the ring and announces it at the end of the iteration.
 
         Raises:
-            FrameError: it is larger than a slot, no uint8 array of two or three dimensions, or the ring would
-                overwrite a frame of the same iteration.
+            FrameError: the frame is larger than a slot or not a uint8 array of two or three dimensions, or the ring
+                would overwrite a frame of the same iteration.
         """
         if pixels.dtype != np.uint8 or pixels.ndim not in (2, 3) or not 0 < pixels.size <= SLOT_BYTES:
             raise FrameError(
-                f"{self.announcement.channel}: a frame is a uint8 array, height x width (x channels), of at most "
+                f"{self._announcement.channel}: a frame is a uint8 array, height x width (x channels), of at most "
                 f"{SLOT_BYTES} bytes, not {pixels.dtype} {pixels.shape}"
             )
-        if self.announcement.pending >= SLOTS - 1:
-            raise FrameError(f"{self.announcement.channel}: at most {SLOTS - 1} frames in one iteration")
-        frame = self.announcement.value
-        frame.frame = self.announcement.sequence + self.announcement.pending + 1  # goes on when the master is restarted
+        pending = len(self._announcement._pending)
+        if pending >= SLOTS - 1:
+            raise FrameError(f"{self._announcement.channel}: at most {SLOTS - 1} frames in one iteration")
+        frame = self._announcement.value
+        frame.frame = self._announcement.sequence + pending + 1  # continues when the master is restarted
         frame.slot = frame.frame % SLOTS  # the same in every run, however many slots the ring has
         self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
         frame.channels = _channels(pixels)
         frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
-        self.announcement.write()
+        self._announcement.write()
 
 
 class Image:
-    """The vision aspect: the newest frame of one camera as of the iteration's beginning.
+    """Newest frame of one camera at the beginning of the iteration; the vision aspect.
 
-    In lockstep it is always there. In real time one who comes very late may find it overwritten: that is counted in
-    `lost` and logged at the 1st, 10th, 100th time.
+    In lockstep the frame is always there. In real time a very late component may find it overwritten: such frames are
+    counted in `lost` and logged at the 1st, 10th, 100th time.
     """
 
     def __init__(self, announcement: Reads[frame_t], frames: Frames, log: Logger) -> None:
         self.announcement = announcement
-        self.lost = 0  # frames that were overwritten before this component came to read them
+        """Reader of the frame's announcement: number, size, encoding."""
+        self.lost = 0
+        """Number of frames that were overwritten before this component read them."""
         self._missed: list[int] = []
         self._frames = frames
         self._log = log
@@ -159,17 +161,17 @@ class Image:
 
     @property
     def changed(self) -> bool:
-        """Whether a new frame came since the last iteration."""
+        """Whether a new frame became visible since the last iteration."""
         return self.announcement.refreshed
 
     @property
     def header(self) -> Any:
-        """Tick, stage, sequence, writer and logical time of the frame."""
+        """Tick, stage, sequence number, writer and logical time of the frame."""
         return self.announcement.header
 
     @property
     def pixels(self) -> Frame | None:
-        """The frame, height x width x channels, a copy; None before the first and if it was overwritten."""
+        """Copy of the frame, height x width x channels; None before the first frame and if it was overwritten."""
         frame = self.announcement.value
         if frame.frame != self._number:
             self._number = frame.frame
@@ -184,8 +186,8 @@ class Image:
                 self._lose(frame.frame)
         return self._pixels
 
-    def missed(self) -> list[int]:
-        """Numbers of the frames lost since the last call; the recording has them, so that a replay loses the same."""
+    def _take_missed(self) -> list[int]:
+        """Returns the numbers of frames lost since the last call; a replay loses the same frames."""
         taken, self._missed = self._missed, []
         return taken
 
@@ -197,23 +199,3 @@ class Image:
                 f"{self.announcement.channel}: frame {number} was overwritten before it was read "
                 f"({self.lost} lost so far)"
             )
-
-
-class ImagesEach(Mapping[str, Image]):
-    """The frames of many cameras, by namespace, in alphabetical order; nobody of them is needed for a start."""
-
-    def __init__(self, images: Mapping[str, Image]) -> None:
-        self._images = dict(sorted(images.items()))
-
-    def __getitem__(self, key: str) -> Image:
-        return self._images[key]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._images)
-
-    def __len__(self) -> int:
-        return len(self._images)
-
-    def items(self) -> ItemsView[str, Image]:
-        """Pairs of namespace and camera."""
-        return self._images.items()

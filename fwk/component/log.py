@@ -1,4 +1,4 @@
-"""The logging aspect: lines of text that carry component, tick, times and place."""
+"""The logging aspect: lines of text with component, tick, times and source line."""
 
 import sys
 import sysconfig
@@ -15,13 +15,13 @@ LEVELS = {"debug": log_t.DEBUG, "info": log_t.INFO, "warning": log_t.WARNING, "e
 LEVEL_NAMES = {number: name for name, number in LEVELS.items()}
 
 Text = str | Callable[[], str]
-"""What is logged, or what makes it when the level is on: `log.debug(lambda: f"{len(found)} points")`."""
+"""Text to log, or a function that makes it if the level is on: `log.debug(lambda: f"{len(found)} points")`."""
 
-_BEGIN, _END = 12_000, 4_000  # characters kept of a text too long for one datagram, in UTF-8 at most 64 kB
+_BEGIN, _END = 12_000, 4_000  # characters kept of a text that is too long for one datagram (64 kB in UTF-8)
 _BREATH_S = 0.001
 _LIBRARIES = [sysconfig.get_path(name) + "/" for name in ("stdlib", "purelib", "platlib")]
 _NOT_OWN = ("<", str(Path(__file__).parent.parent) + "/", *_LIBRARIES)
-"""Beginnings of files whose lines are not a component's own: generated code, the framework, libraries."""
+"""Path prefixes of code that is not a component's own: generated code, the framework, libraries."""
 
 
 def own_frame(error: BaseException) -> traceback.FrameSummary | None:
@@ -35,11 +35,10 @@ def own_frame(error: BaseException) -> traceback.FrameSummary | None:
 
 
 class Logger:
-    """Writes lines to wherever the system's log goes: console, files, buses.
+    """Writes lines to the targets of the run's log: console, files, buses.
 
-    Lines below `level` cost next to nothing. Lines above the `limit` are dropped and counted; when that second is over,
-    a line says how many they were. Errors are never dropped: who has too many of them is slowed down to a thousand a
-    second instead.
+    Lines below `level` cost next to nothing. Lines above the `limit` are dropped; at the end of that second a line
+    gives their number. Errors are never dropped: too many of them slow the component down to a thousand a second.
     """
 
     def __init__(
@@ -58,38 +57,38 @@ class Logger:
         self._dropped_at = ("", 0)
 
     def debug(self, text: Text) -> None:
-        """For whoever works on this component."""
+        """Logs a detail that helps to develop the component."""
         if self.level <= log_t.DEBUG:
             self._write(log_t.DEBUG, text)
 
     def info(self, text: Text) -> None:
-        """Worth knowing in normal operation, rare."""
+        """Logs a rare event of normal operation."""
         if self.level <= log_t.INFO:
             self._write(log_t.INFO, text)
 
     def warning(self, text: Text) -> None:
-        """Not as it should be; the component goes on."""
+        """Logs an abnormal condition that the component can handle."""
         if self.level <= log_t.WARNING:
             self._write(log_t.WARNING, text)
 
     def error(self, text: Text) -> None:
-        """Something the component should do failed."""
+        """Logs the failure of something that the component should do."""
         self._write(log_t.ERROR, text)
 
     def exception(self, text: str, error: BaseException) -> None:
-        """As `error`, with the traceback.
+        """Logs an error with its traceback.
 
-        The line's place is the innermost line of the traceback outside the framework and the libraries, such as a
-        component's own `write()` of a value that the message cannot hold.
+        The source line is the innermost one outside the framework and the libraries, such as the component's `write()`
+        of a value that the message cannot hold.
         """
         frame = own_frame(error)
         place = (short_path(frame.filename), frame.lineno or 0) if frame else ("", 0)
         self.write(log_t.ERROR, f"{text}\n{''.join(traceback.format_exception(error)).rstrip()}", *place)
 
     def write(self, level: int, text: str, file: str, line_number: int) -> None:
-        """A line with a place of its own, such as `stdout:7`."""
+        """Logs a line with a given source line, such as `stdout:7`."""
         passes = self._limit.passes()
-        self.tell_dropped()
+        self._report_dropped()
         if not passes:
             if level < log_t.ERROR:
                 self._dropped_at = (file, line_number)
@@ -99,11 +98,11 @@ class Logger:
         self._emit(level, text, file, line_number)
 
     def named(self, component: str) -> "Logger":
-        """One that writes for somebody else who has no own, without a limit."""
+        """Returns a logger without a limit for another component, which has none of its own."""
         return Logger(component, self._clock, self._sink)
 
-    def tell_dropped(self, at_the_end: bool = False) -> None:
-        """Says how many lines were dropped, if that second is over, or `at_the_end`."""
+    def _report_dropped(self, at_the_end: bool = False) -> None:
+        """Logs how many lines were dropped, once that second is over or `at_the_end`."""
         dropped = self._limit.rest() if at_the_end else self._limit.dropped()
         if dropped:
             text = f"{dropped} lines dropped in the last second, the newest from here: more than {self._limit.per_s}"
@@ -127,7 +126,7 @@ class Logger:
 
 
 def _sendable(text: object) -> str:
-    """The text as it travels: in one datagram, and nothing in it that is no text."""
+    """Returns the text as it is sent: small enough for one datagram, without zero bytes and lone surrogates."""
     made = str(text)
     if len(made) > _BEGIN + _END:
         left_out = len(made) - _BEGIN - _END
@@ -137,6 +136,6 @@ def _sendable(text: object) -> str:
 
 @cache
 def short_path(path: str) -> str:
-    """A source file as it is imported: `drivers/camera.py`."""
+    """Returns the path of a source file below the folder it is imported from: `drivers/camera.py`."""
     folders = [folder for folder in sys.path if folder and path.startswith(f"{folder.rstrip('/')}/")]
     return path[len(max(folders, key=len).rstrip("/")) + 1 :] if folders else path.rpartition("/")[2]

@@ -1,4 +1,4 @@
-"""The aspect of a log target: the lines of everybody, for a component that does something with them."""
+"""The log-target aspect: log lines of the whole run for a component."""
 
 from collections.abc import Sequence
 
@@ -8,10 +8,10 @@ from lcmtypes.core import log_t
 
 
 class LogLines:
-    """What components and framework log, whatever the levels of the other targets; its own lines it does not get.
+    """Log lines of the other components and of the framework, whatever the levels of the other targets.
 
-    A line is there from a tick after the one in which it was written on. Lines carry wall time and come when they
-    come, so what a component makes of them differs from run to run; a replay gives it the same again.
+    A line becomes visible in a tick after the one in which it was written. Lines carry wall time, and their arrival
+    depends on it, so a component's use of them differs between runs; a replay gives it the same lines again.
     """
 
     def __init__(self, reader: Reads[log_t], component: str) -> None:
@@ -20,15 +20,15 @@ class LogLines:
 
     @property
     def fresh(self) -> Sequence[log_t]:
-        """The lines since the last iteration, oldest first."""
+        """Lines since the last iteration, oldest first."""
         return [line for line in self._reader.fresh if line.component != self._component]
 
     def of(self, level: str) -> Sequence[log_t]:
-        """Those of `fresh` that are of a level or worse: debug, info, warning or error.
+        """Returns the lines of `fresh` of at least a level: debug, info, warning or error.
 
         Raises:
             ValueError: there is no such level.
         """
         if level not in LEVELS:
-            raise ValueError(f"no level '{level}'; there are {', '.join(LEVELS)}")
+            raise ValueError(f"no level '{level}'; the levels are {', '.join(LEVELS)}")
         return [line for line in self.fresh if line.level >= LEVELS[level]]

@@ -1,97 +1,98 @@
-"""The main-loop aspect: a component decides which stages the following ticks run, in which order and how often."""
+"""The main-loop aspect: a component determines the schedule of the following ticks."""
 
 from collections.abc import Mapping, Sequence
 
-RUNS_MAX = 1000
-"""Stages that a tick can run, repeated ones counted each time."""
+STEPS_MAX = 1000
+"""Longest schedule of a tick, in steps."""
 
 
 class MainLoop:
-    """Lets a component take over the main loop and give it back; both count from the next tick on.
+    """Takes over the main loop and gives it back; both take effect at the next tick.
 
-    One component has it at a time. Who asks while another has it is refused: the log says so, and `holder` is the
-    other's name. Whoever has it may ask again, for another order. It is given back when the component's process ends.
+    One component holds the main loop at a time. While another component holds it, a take-over is refused: the log says
+    so, and `holder` names the other component. The holder may take over again with another schedule. The main loop is
+    given back when the process of its holder ends.
     """
 
     def __init__(self, name: str, stages: Sequence[str]) -> None:
         self.stages = tuple(stages)
-        """Those of the plan, in their usual order."""
+        """Stages of the plan, in the plan's order."""
         self.holder = ""
-        """Full name of the component that has the main loop in this tick; empty: nobody."""
+        """Full name of the component that holds the main loop in this tick; empty if there is none."""
         self._name = name
-        self._wish: tuple[str, ...] | None = None
+        self._request: tuple[str, ...] | None = None
 
     @property
     def mine(self) -> bool:
-        """Whether this component has the main loop in this tick."""
+        """Whether this component holds the main loop in this tick."""
         return self.holder == self._name
 
     def take_over(self, order: Sequence[str]) -> None:
-        """From the next tick on these stages run, in this order; one that stands here twice runs twice a tick.
+        """Sets the schedule from the next tick on; a stage may occur in it several times.
 
-        A stage of the component itself has to be among them, unless it is continuous, or it could never give the main
-        loop back.
+        The schedule must contain a stage of this component, unless it is continuous; otherwise the component could
+        never give the main loop back.
 
         Raises:
-            ValueError: the plan has no such stage, or the order is empty or too long.
+            ValueError: the plan has no such stage, or the schedule is empty or too long.
         """
         unknown = [stage for stage in order if stage not in self.stages]
         if unknown:
             raise ValueError(f"{self._name}: no stage '{unknown[0]}'; the stages are {', '.join(self.stages)}")
-        if not 1 <= len(order) <= RUNS_MAX:
-            raise ValueError(f"{self._name}: a tick runs 1 to {RUNS_MAX} stages, not {len(order)}")
-        self._wish = tuple(order)
+        if not 1 <= len(order) <= STEPS_MAX:
+            raise ValueError(f"{self._name}: a schedule has 1 to {STEPS_MAX} stages, not {len(order)}")
+        self._request = tuple(order)
 
     def give_back(self) -> None:
-        """From the next tick on the plan's stages run as usual."""
-        self._wish = ()
+        """Restores the plan's schedule from the next tick on."""
+        self._request = ()
 
-    def take(self) -> tuple[str, ...] | None:
-        """For the framework: what was asked in this iteration; empty: to give it back; None: nothing."""
-        wish, self._wish = self._wish, None
-        return wish
+    def _take(self) -> tuple[str, ...] | None:
+        """Returns the iteration's request: a schedule; empty to give the main loop back; None for no request."""
+        request, self._request = self._request, None
+        return request
 
 
 class Holding:
-    """Who has the main loop, and the order of its ticks; wishes are granted between two ticks.
+    """Decides which component holds the main loop, and with which schedule; requests are decided at boundaries.
 
-    `stages` are the stages of each component that may ask; a continuous one has none.
+    `stages` are the stages of each component that may request the main loop; a continuous component has none.
     """
 
     def __init__(self, stages: Mapping[str, Sequence[str]]) -> None:
         self.holder = ""
         self.order: tuple[str, ...] = ()
-        """Stages of a tick; empty: as usual."""
+        """Schedule of the holder; empty: the plan's schedule."""
         self.refused: list[str] = []
-        """Sentences about wishes that were not granted at the last boundary."""
+        """Messages about requests that were refused at the last boundary."""
         self._stages = stages
-        self._wishes: list[tuple[tuple[int, int, str], tuple[str, ...]]] = []
+        self._requests: list[tuple[tuple[int, int, str], tuple[str, ...]]] = []
         self._left = False
 
-    def ask(self, tick: int, place: int, name: str, order: Sequence[str]) -> None:
-        """A component asks, in its iteration at that place of that tick; an empty order gives back."""
-        self._wishes.append(((tick, place, name), tuple(order)))
+    def ask(self, tick: int, step: int, name: str, order: Sequence[str]) -> None:
+        """Adds a component's request, made at a step of a tick; an empty order gives the main loop back."""
+        self._requests.append(((tick, step, name), tuple(order)))
 
     def left(self, names: Sequence[str]) -> None:
-        """The process of these components ended: what they held is given back, what they asked before is void."""
+        """Gives back what components held whose process ended, and drops their requests."""
         self._left = self._left or self.holder in names
-        self._wishes = [wish for wish in self._wishes if wish[0][2] not in names]
+        self._requests = [request for request in self._requests if request[0][2] not in names]
 
     def decide(self) -> bool:
-        """Between two ticks: grants what can be granted, the earlier before the later; whether anything changed."""
+        """Decides the requests of a boundary in their order; returns whether holder or schedule changed."""
         before = (self.holder, self.order)
         self.refused = []
         if self._left:
             self.holder, self.order, self._left = "", (), False
-        for (_, _, name), order in sorted(self._wishes):
+        for (_, _, name), order in sorted(self._requests):
             self._grant(name, order)
-        self._wishes = []
+        self._requests = []
         return (self.holder, self.order) != before
 
     @property
     def asked(self) -> bool:
         """Whether there is something to decide."""
-        return self._left or bool(self._wishes)
+        return self._left or bool(self._requests)
 
     def _grant(self, name: str, order: tuple[str, ...]) -> None:
         if not order:

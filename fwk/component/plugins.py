@@ -1,35 +1,35 @@
-"""The plugin-control aspect: a component starts, stops and exchanges others."""
+"""The plugin-control aspect: a component starts, stops and reloads other components."""
 
 from collections.abc import Sequence
 
 from fwk.model.selection import matches, nearest
 
-WISHES_MAX = 64
-"""That a component may have in an iteration; more is taken for a mistake."""
+REQUESTS_MAX = 64
+"""Requests that a component may make in one iteration; more are refused as a mistake."""
 
-PluginWish = tuple[str, tuple[str, ...]]
+PluginRequest = tuple[str, tuple[str, ...]]
 """Action, and names or patterns."""
 
 
 class PluginControl:
-    """Lets a component do what `fwk start`, `stop`, `restart`, `reload`, `load` and `unload` do.
+    """Does what the commands `fwk start`, `stop`, `restart`, `reload`, `load` and `unload` do.
 
-    It happens between this tick and the next, and is recorded. What cannot be, such as unloading a camera that has
-    users, is refused: the log says so, with who stands against it. Names may be patterns: `cyan1/*`, `cyan1`.
+    Requests take effect at the next boundary and are recorded. A request that cannot be granted, such as unloading a
+    camera that has users, is refused, and the log gives the reason. Names may be patterns: `cyan1/*`, `cyan1`.
     """
 
     def __init__(self, name: str, components: Sequence[str]) -> None:
         self.components = tuple(components)
-        """All of the run, those too that do not run now."""
+        """All components of the plan, running or not."""
         self._name = name
-        self._wishes: list[PluginWish] = []
+        self._requests: list[PluginRequest] = []
 
     def start(self, *names: str) -> None:
-        """Starts components whose needs run."""
+        """Starts components whose needs are running."""
         self._ask("start", names)
 
     def stop(self, *names: str) -> None:
-        """Stops components, whoever uses them."""
+        """Stops components, also those that others use."""
         self._ask("stop", names)
 
     def restart(self, *names: str) -> None:
@@ -37,28 +37,29 @@ class PluginControl:
         self._ask("restart", names)
 
     def reload(self, *names: str) -> None:
-        """As `restart`, with the code as it is in the files now."""
+        """Restarts components with the present code in their files."""
         self._ask("reload", names)
 
     def load(self, *names: str) -> None:
-        """Starts components with everything that they need."""
+        """Starts components together with everything that they need."""
         self._ask("load", names)
 
     def unload(self, *names: str) -> None:
-        """Stops components that nobody else needs."""
+        """Stops components that no other component needs."""
         self._ask("unload", names)
 
-    def take(self) -> list[PluginWish]:
-        """For the framework: what was asked in this iteration."""
-        taken, self._wishes = self._wishes, []
+    def _take(self) -> list[PluginRequest]:
+        """Ends an iteration; returns its requests."""
+        taken, self._requests = self._requests, []
         return taken
 
     def _ask(self, action: str, names: tuple[str, ...]) -> None:
         if not names:
-            raise ValueError(f"{self._name}: {action} what? name components")
-        for pattern in names if self.components else ():  # on a test bench there are no others
+            raise ValueError(f"{self._name}: {action}() needs names of components")
+        for pattern in names if self.components else ():  # a test bench has no other components
             if not any(matches(name, pattern) for name in self.components):
                 raise ValueError(f"{self._name}: no component '{pattern}'; {nearest(pattern, self.components)}")
-        if len(self._wishes) >= WISHES_MAX:
-            raise ValueError(f"{self._name}: more than {WISHES_MAX} wishes in one iteration; name several in one")
-        self._wishes.append((action, names))
+        if len(self._requests) >= REQUESTS_MAX:
+            limit = f"more than {REQUESTS_MAX} requests in one iteration"
+            raise ValueError(f"{self._name}: {limit}; name several components in one request")
+        self._requests.append((action, names))

@@ -1,4 +1,4 @@
-"""A limit to lines a second, which counts what it holds back."""
+"""Limit on lines per second, which counts the lines that it drops."""
 
 from collections.abc import Callable
 
@@ -6,7 +6,7 @@ from fwk.clock import US_PER_S, monotonic_us
 
 
 class RateLimit:
-    """Room for `per_s` lines in each second; 0: for all. It decides nothing but what is logged."""
+    """Admits `per_s` lines in each second of wall time; 0: all lines. It affects nothing but the log."""
 
     def __init__(self, per_s: int, now_us: Callable[[], int] = monotonic_us) -> None:
         self.per_s = per_s
@@ -17,32 +17,32 @@ class RateLimit:
         self._dropped_before = 0
 
     def passes(self) -> bool:
-        """Whether there is room for one more line."""
+        """Counts a line; returns whether it is within the limit."""
         if not self.per_s:
             return True
-        self._look_at_the_clock()
+        self._update()
         self._lines += 1
         return self._lines <= self.per_s
 
     def drop(self, lines: int = 1) -> None:
-        """Counts lines that were held back in this second."""
+        """Counts lines that were dropped in this second."""
         self._dropped_now += lines
 
     def dropped(self) -> int:
-        """How many lines were held back in seconds that are over; each is told once."""
+        """Returns the number of lines dropped in seconds that are over; each line is counted once."""
         if not (self._dropped_now or self._dropped_before):
             return 0
-        self._look_at_the_clock()
+        self._update()
         found, self._dropped_before = self._dropped_before, 0
         return found
 
     def rest(self) -> int:
-        """As `dropped`, at the end: those of this second too."""
+        """Returns the number of dropped lines including those of the running second."""
         found = self._dropped_before + self._dropped_now
         self._dropped_before = self._dropped_now = 0
         return found
 
-    def _look_at_the_clock(self) -> None:
+    def _update(self) -> None:
         second = self._now_us() // US_PER_S
         if second != self._second:
             self._second, self._lines = second, 0

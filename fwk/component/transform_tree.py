@@ -1,4 +1,4 @@
-"""Frames of reference and how they stand in each other: a tree with a history, and lookups with their errors."""
+"""Tree of frames of reference with a history, and lookups in it."""
 
 import math
 from bisect import bisect_left
@@ -16,33 +16,33 @@ HISTORY_US = 10 * US_PER_S
 
 
 class TransformError(Exception):
-    """A lookup that cannot be answered, or a frame that does not fit into the tree; names the frames."""
+    """A lookup has no answer, or a frame does not fit into the tree; the text names the frames."""
 
 
 class UnknownFrameError(TransformError):
-    """There is no frame of this name."""
+    """No frame has this name."""
 
 
 class DisconnectedError(TransformError):
-    """No way leads from one frame to the other."""
+    """Two frames have no common ancestor."""
 
 
 class ExtrapolationError(TransformError):
-    """The frames are known, but not for that time."""
+    """A frame is not known at the time of the lookup."""
 
 
 @dataclass(frozen=True)
 class Transform:
-    """Takes coordinates of a child frame to its parent: a rotation, then a translation."""
+    """Transform from coordinates of a child frame to its parent: a rotation, then a translation."""
 
     translation_m: Floats
-    """Origin of the child in the parent: x, y, z."""
+    """Origin of the child in the parent, x, y, z, in m; shape (3,)."""
     rotation: Floats
-    """Axes of the child in the parent as a unit quaternion: w, x, y, z."""
+    """Axes of the child in the parent as a unit quaternion w, x, y, z; shape (4,)."""
 
     @classmethod
     def of(cls, translation_m: tuple[float, float, float], yaw_rad: float = 0.0) -> "Transform":
-        """A child frame that is shifted and turned about the vertical."""
+        """Returns the transform of a child frame that is turned about its parent's z axis and shifted."""
         turn = np.array([math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2)])
         return cls(np.array(translation_m, float), turn)
 
@@ -50,7 +50,7 @@ class Transform:
     def of_angles(
         cls, translation_m: tuple[float, float, float], roll_rad: float, pitch_rad: float, yaw_rad: float
     ) -> "Transform":
-        """A child frame that is turned about its parent's x axis, then y, then z, and shifted."""
+        """Returns the transform of a child that is turned about its parent's x axis, then y, then z, and shifted."""
         axes = np.eye(3)
         parts = [
             np.array([math.cos(angle / 2), *(math.sin(angle / 2) * axis)])
@@ -60,17 +60,17 @@ class Transform:
 
     @property
     def yaw_rad(self) -> float:
-        """Turn about the vertical."""
+        """Rotation about the z axis, in rad, -pi to pi."""
         w, x, y, z = self.rotation
         return math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
 
     def apply(self, points_m: Floats) -> Floats:
-        """Points (..., 3) of the child frame in the parent frame."""
+        """Returns points of the child frame, shape (..., 3), in m, in the parent frame."""
         return np.asarray(points_m @ self.matrix.T + self.translation_m)
 
     @property
     def matrix(self) -> Floats:
-        """The rotation as a matrix (3, 3)."""
+        """The rotation as a matrix of shape (3, 3)."""
         w, x, y, z = self.rotation
         return np.array(
             [
@@ -82,15 +82,15 @@ class Transform:
 
     @property
     def inverse(self) -> "Transform":
-        """From the parent to the child."""
+        """Transform from the parent to the child."""
         return Transform(-self.translation_m @ self.matrix, self.rotation * np.array([1.0, -1.0, -1.0, -1.0]))
 
     def __matmul__(self, inner: "Transform") -> "Transform":
-        """First `inner`, then this."""
+        """Returns the transform that applies `inner` first, then this one."""
         return Transform(self.apply(inner.translation_m), _product(self.rotation, inner.rotation))
 
     def towards(self, other: "Transform", part: float) -> "Transform":
-        """In between: 0 is this, 1 the other; along the straight line and the shorter turn."""
+        """Interpolates linearly and along the shorter rotation; `part` 0 is this transform, 1 the other."""
         translation = (1 - part) * self.translation_m + part * other.translation_m
         cosine = float(self.rotation @ other.rotation)
         end = other.rotation if cosine >= 0 else -other.rotation
@@ -115,7 +115,7 @@ def _product(left: Floats, right: Floats) -> Floats:
 
 
 class _Edge:
-    """A frame in its parent, over time."""
+    """Pose of a frame in its parent over time."""
 
     def __init__(self, parent: str, fixed: bool) -> None:
         self.parent = parent
@@ -134,7 +134,7 @@ class _Edge:
             self.transforms.popleft()
 
     def at(self, time_us: int) -> Transform | None:
-        """The transform then; None: it is not known for that time."""
+        """Returns the transform at a time; None if it is not known."""
         if self.fixed:
             return self.transforms[0]
         place = bisect_left(self.times_us, time_us)
@@ -148,16 +148,16 @@ class _Edge:
 
 
 class TransformTree:
-    """Frames, each in its parent, over the last ten seconds."""
+    """Poses of frames in their parents over the last ten seconds."""
 
     def __init__(self) -> None:
         self._edges: dict[str, _Edge] = {}  # by child
 
     def put(self, parent: str, child: str, time_us: int, transform: Transform, *, fixed: bool = False) -> None:
-        """Says where a frame stands in its parent at a time; `fixed`: always.
+        """Adds the pose of a frame in its parent at a logical time; a `fixed` frame never moves.
 
         Raises:
-            TransformError: the frame has another parent already, or would be its own ancestor.
+            TransformError: the frame has another parent, would be its own ancestor, or is known at a later time.
         """
         edge = self._edges.get(child)
         if edge is None:
@@ -175,16 +175,18 @@ class TransformTree:
 
     @property
     def frames(self) -> list[str]:
-        """All names, in alphabetical order."""
+        """Names of all frames, in alphabetical order."""
         return sorted({*self._edges, *(edge.parent for edge in self._edges.values())})
 
     def lookup(self, target: str, source: str, time_us: int | None = None) -> Transform:
-        """Takes coordinates of the source frame to the target frame; by default at the newest time known of all.
+        """Returns the transform from coordinates of the source frame to the target frame.
+
+        Without a time it is the newest at which all frames between the two are known.
 
         Raises:
-            UnknownFrameError: there is no such frame.
-            DisconnectedError: the two have no common ancestor.
-            ExtrapolationError: a frame on the way is not known for that time.
+            UnknownFrameError: a frame does not exist.
+            DisconnectedError: the two frames have no common ancestor.
+            ExtrapolationError: a frame between the two is not known at that time.
         """
         frames = self.frames
         for name in (target, source):

@@ -1,4 +1,4 @@
-"""The transforms aspect: where frames of reference stand in each other, now and a while ago."""
+"""The transforms aspect: poses of frames of reference in each other, now and in the last seconds."""
 
 import numpy as np
 
@@ -9,9 +9,9 @@ from lcmtypes.core import transform_t, transforms_t
 
 
 class Transforms(Aspect):
-    """`self.tf.lookup("world", "base").apply(points_m)`; provided by whoever writes the tree.
+    """Tree of frames, provided by the component that writes it: `self.tf.lookup("world", "base").apply(points_m)`.
 
-    What it knows is what became visible up to this iteration, of the last ten seconds.
+    It holds the transforms of the last ten seconds that are visible to the iteration.
     """
 
     transforms: Reads[transforms_t]
@@ -26,22 +26,27 @@ class Transforms(Aspect):
 
     @property
     def frames(self) -> list[str]:
-        """All names, in alphabetical order."""
+        """Names of all frames, in alphabetical order."""
         return self.tree.frames
 
     def lookup(self, target: str, source: str, time_us: int | None = None) -> Transform:
-        """Takes coordinates of the source frame to the target frame, at a logical time or the newest that is known.
+        """Returns the transform from coordinates of the source frame to the target frame.
+
+        Args:
+            target: Name of the frame of the result.
+            source: Name of the frame of the given points.
+            time_us: Logical time; by default the newest at which all frames between the two are known.
 
         Raises:
-            UnknownFrameError: there is no such frame, or none yet.
-            DisconnectedError: no way leads from one to the other.
-            ExtrapolationError: a frame on the way is not known for that time.
+            UnknownFrameError: a frame does not exist, or not yet.
+            DisconnectedError: the two frames have no common ancestor.
+            ExtrapolationError: a frame between the two is not known at that time.
         """
         return self.tree.lookup(target, source, time_us)
 
 
 def transform_of(message: transform_t) -> Transform:
-    """As it is calculated with."""
+    """Returns the transform of a message."""
     return Transform(
         np.array([message.x_m, message.y_m, message.z_m]),
         np.array([message.qw, message.qx, message.qy, message.qz]),
@@ -51,7 +56,7 @@ def transform_of(message: transform_t) -> Transform:
 def transform_message(
     parent: str, child: str, time_us: int, transform: Transform, *, fixed: bool = False
 ) -> transform_t:
-    """As it is sent."""
+    """Returns the message of a transform, to be written in a `transforms_t`."""
     made = transform_t()
     made.parent, made.child, made.time_us, made.fixed = parent, child, time_us, fixed
     made.x_m, made.y_m, made.z_m = map(float, transform.translation_m)

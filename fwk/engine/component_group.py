@@ -105,7 +105,7 @@ class ComponentGroup:
                 if runner.has_main_loop:
                     self._with_main_loop.append(runner)
                 if self.table:
-                    runner.blackboard.first(self.table)
+                    runner.blackboard._first(self.table)
                 # In lockstep no frame is overwritten before its readers have seen it.
                 loses_frames = runner.images and self._plan.clock == "wall"
                 if runner.has_main_loop or runner.has_plugins or runner.has_blackboard or loses_frames:
@@ -146,7 +146,7 @@ class ComponentGroup:
         for component in self.plans:
             if component.opens:
                 runner = self.runners[component.name]
-                done = runner.blackboard.take_over(self.table, component.index, fact, events)
+                done = runner.blackboard._take_over(self.table, component.index, fact, events)
                 if fact.opening and done == "opened":
                     self._begin_reading(component.name, fact.opening)
                 elif fact.opening and done == "closed":
@@ -160,7 +160,7 @@ class ComponentGroup:
         newest: list[bytes] = []
         if readers:
             other = readers[0]
-            before = self.runners[other].readers[channel].raw
+            before = self.runners[other].readers[channel]._raw
             newest = [*([before] if before else []), *self._views[other].waiting(channel)][-1:]
         self._views[name].join(channel, newest)
         readers.append(name)
@@ -201,7 +201,7 @@ class ComponentGroup:
             end_us = self._now_us()
             self.metrics[name].ran(end_us - start_us)
             start_us = end_us
-            next_us = max(next_us, runner.time_source.said_us)
+            next_us = max(next_us, runner.time_source.next_us)
         if self._marker:
             self._mark(NOBODY)
         return Ran(written, next_us, start_us - began_us)

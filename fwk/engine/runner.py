@@ -9,21 +9,20 @@ import numpy as np
 
 from fwk.clock import Clock, TimeSource
 from fwk.component.blackboard import Blackboard
-from fwk.component.channels import Reads, ReadsEach, ReadsHistory, Stamp, Writes, WritesEach, WritesPlain
-from fwk.component.commands import ANSWERS, Commands, Queue, Source
+from fwk.component.calls import Calls
+from fwk.component.channels import Reads, ReadsHistory, Stamp, Writes, WritesPlain
 from fwk.component.component import DEFAULT_STAGES, Component
 from fwk.component.config import LOG_LEVEL, Config
 from fwk.component.declaration import Declaration
-from fwk.component.images import Frames, Image, ImagesEach, Ring, VisionMaster
+from fwk.component.each import Each
+from fwk.component.images import Frames, Image, Ring, VisionMaster
 from fwk.component.log import LEVELS, Logger
 from fwk.component.log_lines import LogLines
 from fwk.component.main_loop import MainLoop
 from fwk.component.plugins import PluginControl
 from fwk.component.port import Port
 from fwk.component.rate_limit import RateLimit
-from fwk.component.requests import Calls, CallsEach, Serves
-from fwk.component.sending import Outbox, Sends, SendsEach
-from fwk.component.services_each import CommandsEach, ServesEach
+from fwk.component.services import ANSWERS, RequestReader, Serves
 from fwk.lcm import envelope
 from fwk.lcm.messages import Message, has_header
 from lcmtypes.core import header_t, log_t
@@ -71,7 +70,7 @@ class Runner:
         self.readers: dict[str, Reads[Any]] = {}
         self.writers: dict[str, Writes[Any]] = {}
         self.images: dict[str, Image] = {}
-        self._command_ports: list[Queue[Any] | Outbox[Any, Any] | _Early] = []
+        self._services: list[Serves[Any, Any] | Calls[Any, Any] | _Early] = []
         self.clock = Clock(section.period_us)
         self.time_source = TimeSource()
         self._is_time_source = "time_source" in declaration.aspects.values()
@@ -103,10 +102,10 @@ class Runner:
         self.blackboard = Blackboard(name, self.stamp, self.readers, self.writers)
         self.has_blackboard = "blackboard" in declaration.aspects.values()
         """Whether the component may open channels while it runs."""
-        self._begin = [port.begin for port in self._command_ports]  # what has to be done before an iteration
+        self._begin = [port._begin for port in self._services]  # what has to be done before an iteration
         self._begin += [aspect.begin for aspect in self._provided]
         if self.has_blackboard:
-            self._begin.append(self.blackboard.begin)
+            self._begin.append(self.blackboard._begin)
         for attribute, aspect in declaration.aspects.items():
             self._put(attribute, self._aspect(aspect, section.seed))
 
@@ -118,18 +117,18 @@ class Runner:
         early = [
             (writer, envelope.decode(writer.message_type, data, writer.channel))
             for writer in self.writers.values()
-            for data in writer.written
+            for data in writer._pending
         ]
         if early:
             for writer in self.writers.values():
-                writer.drop()
+                writer._drop()
             written = _Early(early)
-            self._begin.insert(len(self._command_ports), written.begin)
-            self._command_ports.append(written)
+            self._begin.insert(len(self._services), written._begin)
+            self._services.append(written)
 
     def configure(self, settings: Mapping[str, Any]) -> None:
         """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
-        changed = self._config.take_over(type(self._config).model_validate(settings))
+        changed = self._config._take_over(type(self._config).model_validate(settings))
         self.log.level = self._log_level
         if changed - {LOG_LEVEL}:
             self.component.changed_settings = changed - {LOG_LEVEL}
@@ -148,18 +147,18 @@ class Runner:
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
         for reader in self._refreshed:
-            reader.freeze(NOTHING)
+            reader._freeze(NOTHING)
         self._refreshed = [self.readers[channel] for channel in fresh]
         for reader, arrived in zip(self._refreshed, fresh.values(), strict=True):
-            reader.freeze(arrived)
-        self.time_source.said_us = -1
+            reader._freeze(arrived)
+        self.time_source._next_us = -1
         try:
             for begin in self._begin:
                 begin()
             self.component.loop()
         except BaseException:
             for writer in self.writers.values():
-                writer.drop()
+                writer._drop()
             raise
         if self._is_time_source and (mistake := self.time_source._mistake(time_us)):
             self.log.warning(mistake)
@@ -171,15 +170,15 @@ class Runner:
         self.clock.now_us = self.stamp.time_us = time_us
         self.stamp.stage = header_t.FINAL
         self.component.finalize()
-        for port in self._command_ports:
-            port.end()
+        for port in self._services:
+            port._end()
         return self._written()
 
     def _written(self) -> list[tuple[str, bytes]]:
         written = []
         for channel, writer in self.writers.items():
-            if writer.pending:
-                written += [(channel, data) for data in writer.take()]
+            if writer._pending:
+                written += [(channel, data) for data in writer._take()]
         return written
 
     @property
@@ -188,10 +187,10 @@ class Runner:
 
     def requests(self) -> dict[str, Any]:
         """Returns what the iteration requested of the run, by aspect, and the frames that it missed."""
-        order = self.main_loop.take()
+        order = self.main_loop._take()
         asked = {
-            "plugins": self.plugins.take(),
-            "blackboard": self.blackboard.take(),
+            "plugins": self.plugins._take(),
+            "blackboard": self.blackboard._take(),
             LOST_FRAMES: self.missed_frames(),
         }
         made: dict[str, Any] = {aspect: request for aspect, request in asked.items() if request}
@@ -199,7 +198,7 @@ class Runner:
 
     def missed_frames(self) -> dict[str, list[int]]:
         """Frames that were overwritten before the component read them, by channel; mostly nothing."""
-        return {channel: numbers for channel, image in self.images.items() if (numbers := image.missed())}
+        return {channel: numbers for channel, image in self.images.items() if (numbers := image._take_missed())}
 
     def _put(self, attribute: str, value: Any) -> None:
         """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
@@ -220,33 +219,25 @@ class Runner:
 
     def _port(self, port: Port, channels: Sequence[str]) -> Any:
         if port.owns:
-            queues = [self._queue(port, *row) for row in _rows(channels)]
-            if not port.each:
-                return queues[0]
-            return (ServesEach if port.kind == "serves_each" else CommandsEach)(
-                _by_namespace({queue.name: queue for queue in queues})
+            return _one_or_each(
+                port, [(each.name, each) for each in (self._serves(port, *row) for row in _rows(channels))]
             )
         if port.sends:
-            pairs = list(zip(channels[::2], channels[1::2], strict=True))
-            made_each = {sent: self._outbox(port, sent, answers) for sent, answers in pairs}
-            if port.each:
-                each = {channel.partition("@")[0]: outbox for channel, outbox in made_each.items()}
-                return (CallsEach if port.kind == "calls_each" else SendsEach)(_by_namespace(each))
-            return made_each[channels[0]]
+            pairs = zip(channels[::2], channels[1::2], strict=True)
+            return _one_or_each(port, [(each.name, each) for each in (self._calls(port, *pair) for pair in pairs)])
         if port.writes:
             kind: type[Writes[Any]] = Writes if has_header(port.message_type) else WritesPlain
             made = {name: kind(name, port.message_type, self.stamp) for name in channels}
             self.writers.update(made)
             if port.kind == "vision_master":
                 return VisionMaster(made[channels[0]], self._rings[channels[0]])
-            return WritesEach(_by_namespace(made)) if port.each else made[channels[0]]
+            return _one_or_each(port, list(made.items()))
         read = {channel: self._reader(channel, port.message_type) for channel in channels}
         if port.kind == "lines":
             return LogLines(read[channels[0]], self.name)
         if port.images:
-            looked_at = {channel: self._image(channel, read[channel]) for channel in channels}
-            return ImagesEach(_by_namespace(looked_at)) if port.each else looked_at[channels[0]]
-        return ReadsEach(_by_namespace(read)) if port.each else read[channels[0]]
+            return _one_or_each(port, [(channel, self._image(channel, read[channel])) for channel in channels])
+        return _one_or_each(port, list(read.items()))
 
     def _image(self, channel: str, announcement: Reads[Any]) -> Image:
         """The one view of a camera, whichever ports stand for it."""
@@ -262,24 +253,26 @@ class Runner:
             self.readers[channel] = made
         return self.readers[channel]
 
-    def _queue(self, port: Port, answers: str, *sources: str) -> Queue[Any]:
+    def _serves(self, port: Port, answers: str, *sources: str) -> Serves[Any, Any]:
         assert port.reply_type
-        made: dict[str, Source[Any]] = {name: Source(name, port.message_type) for name in sources}
+        made: dict[str, RequestReader[Any]] = {name: RequestReader(name, port.message_type) for name in sources}
         self.readers.update(made)
         self.writers[answers] = Writes(answers, port.reply_type, self.stamp)
-        kind: type[Queue[Any]] = Serves if port.kind.startswith("serves") else Commands
-        queue = kind(answers.partition("@")[0], self.name, self.clock, made, self.writers[answers])
-        self._command_ports.append(queue)
-        return queue
+        service: Serves[Any, Any] = Serves(
+            answers.partition("@")[0], self.name, self.clock, made, self.writers[answers]
+        )
+        self._services.append(service)
+        return service
 
-    def _outbox(self, port: Port, sent: str, answers: str) -> Outbox[Any, Any]:
+    def _calls(self, port: Port, sent: str, answers: str) -> Calls[Any, Any]:
         assert port.reply_type
         self.writers[sent] = Writes(sent, port.message_type, self.stamp)
         self.readers[answers] = Reads(answers, port.reply_type)
-        kind: type[Outbox[Any, Any]] = Calls if port.kind in ("calls", "calls_each") else Sends
-        outbox = kind(sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers])
-        self._command_ports.append(outbox)
-        return outbox
+        client: Calls[Any, Any] = Calls(
+            sent.partition("@")[0], self.name, self.clock, self.writers[sent], self.readers[answers]
+        )
+        self._services.append(client)
+        return client
 
 
 class _Early:
@@ -288,7 +281,7 @@ class _Early:
     def __init__(self, written: Sequence[tuple[Writes[Any], Any]]) -> None:
         self._written = written
 
-    def begin(self) -> None:
+    def _begin(self) -> None:
         """The first iteration begins; later ones have nothing more to do here."""
         for writer, value in self._written:
             own, writer.value = writer.value, value
@@ -296,7 +289,7 @@ class _Early:
             writer.value = own
         self._written = ()
 
-    def end(self) -> None:
+    def _end(self) -> None:
         """The component was stopped; if there was no iteration, nobody has seen any of it."""
 
 
@@ -306,8 +299,9 @@ def _rows(channels: Sequence[str]) -> list[Sequence[str]]:
     return [channels[begin:end] for begin, end in zip(begins, [*begins[1:], len(channels)], strict=True)]
 
 
-def _by_namespace(channels: Mapping[str, Any]) -> dict[str, Any]:
-    return {channel.rpartition("/")[0]: port for channel, port in channels.items()}
+def _one_or_each(port: Port, ports: Sequence[tuple[str, Any]]) -> Any:
+    """Returns the only port, or an `Each` of all of them by the namespaces of their names."""
+    return Each({name.rpartition("/")[0]: made for name, made in ports}) if port.each else ports[0][1]
 
 
 def seed_of(seed: int, name: str) -> int:

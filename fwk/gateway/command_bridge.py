@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from fwk.clock import US_PER_S, Clock
-from fwk.component.commands import ANSWERS, QUEUE_MAX, CommandState
-from fwk.component.sending import state_of
+from fwk.component.calls import state_of
+from fwk.component.services import ANSWERS, QUEUE_MAX, RequestState
 from fwk.control.requests import Call, RequestError
 from fwk.control.server import Connection
 from fwk.gateway.ingress import WRITER, Full
@@ -60,7 +60,7 @@ class Calls:
         except (MessageError, Full, ValueError) as error:
             raise RequestError(str(error)) from error
         owner.waiting[sequence] = connection
-        connection.reply({"ok": True, "name": request.name, "sequence": sequence, "state": CommandState.SENT})
+        connection.reply({"ok": True, "name": request.name, "sequence": sequence, "state": RequestState.SENT})
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
         """Takes a message; answers to tools are passed on."""
@@ -89,7 +89,7 @@ class Calls:
         if connection is None:
             return
         state = state_of(message.answer)
-        if state is not CommandState.ACCEPTED:
+        if state is not RequestState.ACCEPTED:
             del owner.waiting[number]
         told = {"name": target, "sequence": number, "state": state, "reason": message.answer.reason}
         value = messages.to_dict(message)

@@ -118,7 +118,7 @@ class Host:
         finally:
             self._report()
             for runner in self.group.runners.values():
-                runner.log.tell_dropped(at_the_end=True)
+                runner.log._report_dropped(at_the_end=True)
 
     def _init(self) -> None:
         self.group.init(self._report)
@@ -277,7 +277,7 @@ class Host:
         first.fetched, first.strangers = self.inputs.fetched, self._complaints.total
         self._sender.publish(b"fwk/actual", actual.encode(), self._sync_port)
         for runner in runners.values():
-            runner.log.tell_dropped()
+            runner.log._report_dropped()
 
     def _send_log(self, line: log_t) -> None:
         if not line.tick:

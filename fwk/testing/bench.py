@@ -3,11 +3,11 @@
 from typing import Any
 
 from fwk.clock import US_PER_S
-from fwk.component.commands import ANSWERS
 from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.images import Ring, VisionMaster
 from fwk.component.port import Port
+from fwk.component.services import ANSWERS
 from fwk.engine.runner import Runner, RunSection
 from fwk.lcm import envelope
 from fwk.testing.opening import Opening
@@ -112,7 +112,7 @@ class Bench:
         return owner
 
     def show(self, attribute: str, pixels: Any, namespace: str = "") -> None:
-        """Makes a frame visible to the next iteration of an `Image` port, or of one of an `ImagesEach` port."""
+        """Makes a frame visible to the next iteration of an `Image` port, or of one of an `Each[Image]` port."""
         port = self.port(attribute, namespace)
         if port.channel not in self._camera:
             from fwk.component.channels import Writes
@@ -121,7 +121,7 @@ class Bench:
             self._camera[port.channel] = VisionMaster(writer, self._rings[port.channel])
         master = self._camera[port.channel]
         master.publish(pixels)
-        port.waiting += master.announcement.take()
+        port.waiting += master._announcement._take()
 
     def iterate(self, times: int = 1, stage: str = "") -> None:
         """Runs that many ticks; logical time goes on by the period each."""

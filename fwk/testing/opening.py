@@ -22,11 +22,11 @@ class Opening:
         for component in plan.components:
             self._openings.came(component.index, 1)
         for runner in self._runners.values():
-            runner.blackboard.first(self._table)
+            runner.blackboard._first(self._table)
 
     def ask(self, tick: int, place: int, runner: Runner) -> None:
         """Takes what an iteration asked for."""
-        wishes = runner.blackboard.take()
+        wishes = runner.blackboard._take()
         if wishes:
             self._openings.ask(tick, place, runner.name, wishes)
 
@@ -38,7 +38,7 @@ class Opening:
         for fact in map(self._numbered, facts):
             events = self._table.apply([fact])
             for index, runner in self._runners.items():
-                done = runner.blackboard.take_over(self._table, index, fact, events)
+                done = runner.blackboard._take_over(self._table, index, fact, events)
                 if done and fact.opening:
                     sent, begins = self._sent[fact.opening.name], fact.opening.begins
                     alike = [place for place, data in enumerate(sent) if data.startswith(begins)]

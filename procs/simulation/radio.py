@@ -3,7 +3,7 @@
 import numpy as np
 from pydantic import Field
 
-from fwk import Clock, Component, Config, ReadsEach, WritesEach
+from fwk import Clock, Component, Config, Each, Reads, Writes
 from lcmtypes.soccer import team_inbox_t, team_message_t
 from procs.simulation.radio_links import RadioLinks, RadioSettings
 
@@ -27,8 +27,8 @@ class Radio(Component):
 
     stage = "post_loop"
 
-    messages: ReadsEach[team_message_t]
-    inboxes: WritesEach[team_inbox_t]
+    messages: Each[Reads[team_message_t]]
+    inboxes: Each[Writes[team_inbox_t]]
     config: RadioConfig
     clock: Clock
     rng: np.random.Generator

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
-from fwk import Clock, Component, Config, Logger, Reads, ReadsEach, TimeSource, Writes, WritesEach, channel
+from fwk import Clock, Component, Config, Each, Logger, Reads, TimeSource, Writes, channel
 from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
 from lcmtypes.soccer import ball_placement_t, ground_truth_t, match_events_t
 from procs.model.field import Field
@@ -42,14 +42,14 @@ class Simulator(Component):
 
     stage = "pre_loop"
 
-    wheel_command: ReadsEach[wheel_command_t] = channel("*/wheel_command")
-    kicker_drive: ReadsEach[kicker_drive_t] = channel("*/kicker_drive")
+    wheel_command: Each[Reads[wheel_command_t]] = channel("*/wheel_command")
+    kicker_drive: Each[Reads[kicker_drive_t]] = channel("*/kicker_drive")
     ball_placement: Reads[ball_placement_t] = channel("world/ball_placement")
     ground_truth: Writes[ground_truth_t]
     match_events: Writes[match_events_t]
-    wheel_state: WritesEach[wheel_state_t] = channel("*/wheel_state")
-    kicker_sensor: WritesEach[kicker_sensor_t] = channel("*/kicker_sensor")
-    imu: WritesEach[imu_t] = channel("*/imu")
+    wheel_state: Each[Writes[wheel_state_t]] = channel("*/wheel_state")
+    kicker_sensor: Each[Writes[kicker_sensor_t]] = channel("*/kicker_sensor")
+    imu: Each[Writes[imu_t]] = channel("*/imu")
     config: SimulatorConfig
     clock: Clock
     time_source: TimeSource

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk import Clock, Component, Config, ImagesEach, Writes
+from fwk import Clock, Component, Config, Each, Image, Writes
 from lcmtypes.core import picture_t
 from procs.model.units import US_PER_S
 from procs.vision.colours import Picture
@@ -30,7 +30,7 @@ class Pictures(Component):
 
     stage = "post_loop"
 
-    image: ImagesEach
+    image: Each[Image]
     pictures: Writes[picture_t]
     config: PicturesConfig
     clock: Clock

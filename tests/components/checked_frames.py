@@ -30,7 +30,7 @@ class Camera(Component):
             body = self.rng.integers(0, 256, 399_996, np.uint8)
             head = np.frombuffer(zlib.crc32(body.tobytes()).to_bytes(4, "big"), np.uint8)
             self.image.publish(np.concatenate([head, body]).reshape(400, 1000))
-        leave("camera.frame", self.image.announcement.sequence + self.image.announcement.pending)
+        leave("camera.frame", self.image._announcement.sequence + len(self.image._announcement._pending))
 
 
 class FinderConfig(Config):

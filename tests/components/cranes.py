@@ -1,13 +1,14 @@
 """One crane for all."""
 
-from fwk import Clock, CommandsEach, Component, Future, Sends, Writes, channel
+from fwk import Call, Calls, Clock, Component, Each, Serves, Writes, channel
+from lcmtypes.core import acknowledgement_t
 from lcmtypes.crane import haul_t, tally_t
 
 
 class Crane(Component):
     stage = "act"
     clock: Clock
-    hauls: CommandsEach[haul_t] = channel("*/haul")
+    hauls: Each[Serves[haul_t]] = channel("*/haul")
 
     def loop(self) -> None:
         for hauls in self.hauls.values():
@@ -19,11 +20,11 @@ class Crane(Component):
 
 class Robot(Component):
     stage = "think"
-    haul: Sends[haul_t]
+    haul: Calls[haul_t]
     tally: Writes[tally_t]
 
     def init(self) -> None:
-        self.future: Future | None = None
+        self.future: Call[acknowledgement_t] | None = None
 
     def loop(self) -> None:
         tally = self.tally.value
@@ -31,5 +32,5 @@ class Robot(Component):
             tally.done += self.future.done
             tally.failed += not self.future.done
         if not self.future or self.future.finished:
-            self.future = self.haul.send()
+            self.future = self.haul.call()
         self.tally.write()

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from fwk import Clock, Component, Config, Reads, ReadsEach, Writes, WritesEach, channel
+from fwk import Clock, Component, Config, Each, Reads, Writes, channel
 from lcmtypes.devices import joy_t, motor_t
 from lcmtypes.robot import imu_t
 
@@ -21,7 +21,7 @@ class Driver(Component):
     clock: Clock
     joy: Reads[joy_t] = channel("/JOYSTICK", history=3)
     motor: Writes[motor_t] = channel("/MOTORS")
-    parts: WritesEach[motor_t]
+    parts: Each[Writes[motor_t]]
     seen: Writes[imu_t]
 
     def init(self) -> None:
@@ -45,7 +45,7 @@ class Listener(Component):
     """Adds up what the parts are told."""
 
     stage = "act"
-    parts: ReadsEach[motor_t]
+    parts: Each[Reads[motor_t]]
     one: Reads[motor_t] = channel("left/parts")
     other: Reads[motor_t] = channel("right/parts")
     heard: Writes[imu_t]

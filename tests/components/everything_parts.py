@@ -4,7 +4,7 @@ import zlib
 
 import numpy as np
 
-from fwk import Component, Config, Reads, ReadsEach, Writes, channel
+from fwk import Component, Config, Each, Reads, Writes, channel
 from fwk.clock import sleep_s
 from lcmtypes.play import note_t
 from lcmtypes.robot import imu_t, motor_command_t
@@ -23,7 +23,7 @@ class Planner(Component):
     rate_hz = 0
     config: PlannerConfig
     rng: np.random.Generator
-    notes: ReadsEach[note_t] = channel("*/note")
+    notes: Each[Reads[note_t]] = channel("*/note")
     plan: Writes[imu_t]
 
     def init(self) -> None:

@@ -1,6 +1,6 @@
 import numpy as np
 
-from fwk import Component, Logger, Reads, Sends, VisionMaster, Writes, channel
+from fwk import Calls, Component, Logger, Reads, VisionMaster, Writes, channel
 from lcmtypes.lift import lift_t
 from lcmtypes.robot import imu_t
 
@@ -10,7 +10,7 @@ class Flooder(Component):
     log: Logger
     image: VisionMaster
     imu: Writes[imu_t]
-    lift: Sends[lift_t] = channel("r/lift")
+    lift: Calls[lift_t] = channel("r/lift")
 
     def loop(self) -> None:
         self.image.publish(np.zeros((4, 4), np.uint8))
@@ -18,7 +18,7 @@ class Flooder(Component):
             self.log.info("much too much " + str(number))
             self.imu.value.heading_rad += 1.0
             self.imu.write()
-            self.lift.send()
+            self.lift.call()
 
 
 class Listener(Component):

@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 
 import weather  # noqa: F401 - loses datagrams if asked to
-from fwk import Calls, Clock, Commands, Component, Config, Future, Sends, Serves, Writes, channel
+from fwk import Call, Calls, Clock, Component, Config, Serves, Writes, channel
+from lcmtypes.core import acknowledgement_t
 from lcmtypes.lift import lift_t, lifted_t, sum_request_t, sum_t, tally_t
 
 
@@ -30,7 +31,7 @@ class Lifter(Component):
     stage = "act"
     config: LifterConfig
     clock: Clock
-    lift: Commands[lift_t]
+    lift: Serves[lift_t]
     lifted: Writes[lifted_t]
 
     def init(self) -> None:
@@ -90,13 +91,13 @@ class Worker(Component):
     config: WorkerConfig
     clock: Clock
     rng: np.random.Generator
-    lift: Sends[lift_t] = channel("r/lift")
+    lift: Calls[lift_t] = channel("r/lift")
     sum: Calls[sum_request_t, sum_t] = channel("r/sum")
     tally: Writes[tally_t]
 
     def init(self) -> None:
         leave_trace(self.name, "pid", os.getpid())
-        self.futures: list[Future] = []
+        self.futures: list[Call[acknowledgement_t] | Call[sum_t]] = []
         self.reasons: set[str] = set()
 
     def loop(self) -> None:
@@ -106,13 +107,13 @@ class Worker(Component):
             self.futures.remove(future)
             tally.ended += 1
             tally.done += future.done
-            if future.done and hasattr(future, "reply"):
+            if future.done and isinstance(future.reply, sum_t):
                 tally.sum += future.reply.sum
             if not future.done:
                 self.reasons.add(f"{future.state}: {future.reason}")
         for _ in range(self.config.flood or int(self.rng.integers(3))):
             self.lift.value.height_m = round(float(self.rng.uniform(-1.0, 5.0)), 3)
-            self.futures.append(self.lift.send(timeout_s=self.config.timeout_s))
+            self.futures.append(self.lift.call(timeout_s=self.config.timeout_s))
         if self.rng.random() < 0.7:
             self.sum.value.numbers = [int(each) for each in self.rng.integers(100, size=self.rng.integers(4))]
             self.futures.append(self.sum.call())

@@ -9,7 +9,7 @@ import numpy as np
 
 import trouble
 import weather  # noqa: F401 - loses datagrams if asked to
-from fwk import Clock, Component, Config, Reads, ReadsEach, TimeSource, Writes, channel
+from fwk import Clock, Component, Config, Each, Reads, TimeSource, Writes, channel
 from lcmtypes.play import burst_t, heard_t, note_t
 
 
@@ -40,8 +40,8 @@ class Player(Component):
     config: PlayerConfig
     clock: Clock
     rng: np.random.Generator
-    notes: ReadsEach[note_t] = channel("*/note")
-    bursts: ReadsEach[burst_t] = channel("*/burst")
+    notes: Each[Reads[note_t]] = channel("*/note")
+    bursts: Each[Reads[burst_t]] = channel("*/burst")
     note: Writes[note_t]
     burst: Writes[burst_t]
 

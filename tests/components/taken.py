@@ -4,7 +4,7 @@ import os
 import signal
 from pathlib import Path
 
-from fwk import Clock, Component, Config, MainLoop, ReadsEach, Writes, channel
+from fwk import Clock, Component, Config, Each, MainLoop, Reads, Writes, channel
 from lcmtypes.robot import imu_t
 
 
@@ -19,7 +19,7 @@ class Player(Component):
     """Sums up what it hears."""
 
     stage = "act"
-    all: ReadsEach[imu_t] = channel("*/imu")
+    all: Each[Reads[imu_t]] = channel("*/imu")
     imu: Writes[imu_t]
 
     def loop(self) -> None:

@@ -9,16 +9,14 @@ from lcmtypes.simulation import burst_t, call_t, heard_t, note_t, order_t, quest
 
 from fwk import (
     Blackboard,
-    CallsEach,
+    Calls,
     Clock,
-    Commands,
     Component,
     Config,
+    Each,
     MainLoop,
     PluginControl,
     Reads,
-    ReadsEach,
-    SendsEach,
     Serves,
     TimeSource,
     Writes,
@@ -68,8 +66,8 @@ class Player(Component):
     config: PlayerConfig
     clock: Clock
     rng: np.random.Generator
-    notes: ReadsEach[note_t] = channel("*/note")
-    bursts: ReadsEach[burst_t] = channel("*/burst")
+    notes: Each[Reads[note_t]] = channel("*/note")
+    bursts: Each[Reads[burst_t]] = channel("*/burst")
     note: Writes[note_t]
     burst: Writes[burst_t]
 
@@ -163,8 +161,8 @@ class Conductor(Player):
 class Boss(Player):
     """Gives orders to all workers and asks them questions."""
 
-    order: SendsEach[order_t]
-    question: CallsEach[question_t, reply_t]
+    order: Each[Calls[order_t]]
+    question: Each[Calls[question_t, reply_t]]
 
     def init(self) -> None:
         super().init()
@@ -176,7 +174,7 @@ class Boss(Player):
         for name, orders in self.order.items():
             for _ in range(int(self.rng.integers(3)) if self.moved() else 0):
                 orders.value.number += 1
-                self.futures.append((name, orders.send(timeout_s=float(self.rng.choice([0.1, 1.0])))))
+                self.futures.append((name, orders.call(timeout_s=float(self.rng.choice([0.1, 1.0])))))
         for name, questions in self.question.items():
             if self.moved():
                 questions.value.number += 1
@@ -186,7 +184,7 @@ class Boss(Player):
 class Worker(Player):
     """Carries out orders and answers questions."""
 
-    order: Commands[order_t]
+    order: Serves[order_t]
     question: Serves[question_t, reply_t]
 
     def act(self) -> None:
@@ -325,7 +323,7 @@ def taken_of(kind: str, command: Any) -> taken_t:
 
 def raw_of(reader: Reads[Any]) -> list[bytes]:
     """Returns the messages that are new for this iteration, and the newest, as they were sent."""
-    return [*reader._fresh, reader.raw or b""]
+    return [*reader._fresh, reader._raw or b""]
 
 
 def heard_of(reader: Reads[Any]) -> heard_t:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 from unittest.mock import patch
 
-from fwk.component import commands
+from fwk.component import services
 from fwk.component.main_loop import Holding
 from fwk.engine.boundary import BoundaryRequest, BoundaryRequests
 from fwk.engine.catch_up import CatchUp
@@ -116,7 +116,7 @@ def _as_they_arrive(_right: Any) -> Any:
 
 def _first_come(right: Any) -> Any:
     def ask(self: Holding, _tick: int, _step: int, name: str, order: Sequence[str]) -> None:
-        right(self, 0, len(self._wishes), name, order)
+        right(self, 0, len(self._requests), name, order)
 
     return ask
 
@@ -174,7 +174,7 @@ MUTATIONS = (
     Mutation("void ignored", "messages of the dead stay", ChannelBuffer, "void", _nothing),
     Mutation("repeated tick runs", "a repeated tick runs an iteration again", Host, "_answer", _runs_again),
     Mutation("done not repeated", "a lost done is not sent again", Host, "_answer", _answers_once),
-    Mutation("command order", "commands come by sender, not by time", commands, "Header", _timeless),
+    Mutation("command order", "commands come by sender, not by time", services, "Header", _timeless),
     Mutation(
         "request order",
         "the main loop goes to the first done that arrives",

@@ -9,18 +9,28 @@ SUBJECTS = {
     "component": ("Components and settings", ["Component", "Config", "Field"]),
     "channels": (
         "Channels",
-        ["Reads", "ReadsEach", "Writes", "WritesEach", "channel", "Blackboard", "BlackboardEvent", "NotOpen"],
-    ),
-    "services": (
-        "Commands and services",
         [
-            *("Commands", "CommandsEach", "Command", "CommandState", "CommandError", "Sends", "SendsEach", "Future"),
-            *("Serves", "ServesEach", "Request", "Calls", "CallsEach", "Call"),
+            "Reads",
+            "Writes",
+            "Each",
+            "channel",
+            "Header",
+            "MessageError",
+            "Blackboard",
+            "BlackboardEvent",
+            "NotOpenError",
         ],
     ),
-    "images": ("Images", ["Image", "ImagesEach", "VisionMaster"]),
+    "services": (
+        "Commands and requests",
+        ["Serves", "Request", "RequestState", "Calls", "Call", "ServiceError"],
+    ),
+    "images": ("Images", ["Image", "VisionMaster", "FrameError"]),
     "run": ("Time, log and control", ["Clock", "TimeSource", "Logger", "LogLines", "MainLoop", "PluginControl"]),
-    "aspects": ("Aspects of your own", ["Aspect"]),
+    "aspects": (
+        "Provided aspects",
+        ["Aspect", "Transforms", "Transform", "TransformTree", "TransformError", "transform_message"],
+    ),
 }
 """File name of a page to its title and its names; a name of the public API that stands here nowhere goes to `more`."""
 

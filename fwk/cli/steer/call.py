@@ -10,7 +10,7 @@ from fwk.cli.arguments import seconds
 from fwk.cli.look.bb import field_lines
 from fwk.cli.run_options import FAILED, Json, RunChoice, ask, asking
 from fwk.cli.steer.send import made
-from fwk.component.commands import ANSWERS
+from fwk.component.services import ANSWERS
 from fwk.control import client
 from fwk.control.client import RefusedError
 from fwk.lcm import messages

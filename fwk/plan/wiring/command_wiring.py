@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 
-from fwk.component.commands import ANSWERS
 from fwk.component.port import Port
+from fwk.component.services import ANSWERS
 from fwk.lcm import messages
 from fwk.model.errors import hint
 from fwk.model.names import CHANNEL_BYTES

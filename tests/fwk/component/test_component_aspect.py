@@ -2,7 +2,7 @@
 
 import pytest
 
-from fwk import Aspect, Clock, Component, Logger, Reads, ReadsEach, VisionMaster, Writes
+from fwk import Aspect, Clock, Component, Each, Logger, Reads, VisionMaster, Writes
 from fwk.component.declaration import declaration
 from fwk.component.port import DeclarationError
 from fwk.engine.runner import Runner
@@ -13,7 +13,7 @@ from lcmtypes.robot import imu_t, odometry_t
 
 class Compass(Aspect):
     imu: Reads[imu_t]
-    others: ReadsEach[imu_t]
+    others: Each[Reads[imu_t]]
     clock: Clock
     log: Logger
 
@@ -137,7 +137,7 @@ class Photographer(Painter):
     ("component", "says"),
     [
         (Asker, r"Talkative\.said: an aspect that a component provides has Reads, .*, not Writes; what a component wr"),
-        (Nothing, r"Nothing: it provides <class 'int'>, which is no aspect; derive it from fwk\.Aspect"),
+        (Nothing, r"Nothing: it provides <class 'int'>, not an aspect; derive it from fwk\.Aspect"),
         (Mute, r"Mute: it provides Compass, which reads 'imu' of it; add imu: Writes\[imu_t\]"),
         (Mistyped, r"Mistyped: it provides Compass, which reads 'imu' of it; add imu: Writes\[imu_t\]"),
         (Painter, r"Painter: it provides Pictures, which reads 'image' of it; add image: VisionMaster"),

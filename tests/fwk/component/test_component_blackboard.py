@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from fwk import Blackboard, Clock, Component, NotOpen, Reads, Writes
+from fwk import Blackboard, Clock, Component, NotOpenError, Reads, Writes
 from fwk.lcm import envelope
 from fwk.testing.bench import Bench
 from fwk.testing.memory import MemorySystem
@@ -43,7 +43,7 @@ def bench() -> Bench:
 def test_what_is_asked_is_open_from_the_next_tick_on() -> None:
     made = bench()
     spot = made.component.blackboard.open_for_writing(imu_t, "spot")
-    with pytest.raises(NotOpen, match="a/spot is not open for writing; ask 'is_open' before"):
+    with pytest.raises(NotOpenError, match="a/spot is not open for writing; check 'is_open' first"):
         spot.write()
     made.iterate(2)
     assert spot.is_open
@@ -66,7 +66,7 @@ def test_a_reader_opened_at_run_time_shows_what_comes_and_closes() -> None:
     made.opened("b/imu").put(heading_rad=2.0)
     made.iterate()
     assert reader.value.heading_rad == 1.0
-    with pytest.raises(ValueError, match="a/opener: this was not opened here at run time, or is closed already"):
+    with pytest.raises(ValueError, match="a/opener: this was not opened by this component, or is already closed"):
         made.component.blackboard.close(reader)
 
 
@@ -74,7 +74,7 @@ def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
     made = Bench(Reader, "a/reader")
     board = made.component.blackboard
     assert board.open_for_reading(imu_t, "imu") is made.component.imu
-    with pytest.raises(ValueError, match="not opened here"):
+    with pytest.raises(ValueError, match="not opened by this component"):
         board.close(made.component.imu)
 
 
@@ -83,7 +83,7 @@ def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
     [
         (imu_t, "a/ball!", "'a/ball!' is no name"),
         (imu_t, "fwk/tick", "names that begin with 'fwk/' are the framework's own"),
-        (int, "a/ball", "is no LCM type; import it from lcmtypes"),
+        (int, "a/ball", "is not an LCM type; import it from lcmtypes"),
         (header_t, "a/ball", "core.header_t is the framework's own and does not begin with 'core.header_t header;'"),
     ],
 )
@@ -96,7 +96,7 @@ def test_an_iteration_that_asks_for_too_much_is_refused() -> None:
     board = bench().component.blackboard
     for number in range(64):
         board.open_for_reading(imu_t, f"a/imu{number}")
-    with pytest.raises(ValueError, match="more than 64 openings and closings in one iteration"):
+    with pytest.raises(ValueError, match="more than 64 channels opened and closed in one iteration"):
         board.open_for_reading(imu_t, "a/more")
 
 

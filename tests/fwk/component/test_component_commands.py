@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from fwk import CommandsEach, Component, ServesEach, channel
-from fwk.component.commands import QUEUE_MAX, CommandError
+from fwk import Component, Each, Serves, channel
+from fwk.component.services import QUEUE_MAX, ServiceError
 from fwk.lcm.type_registry import use_types_of
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.core import answer_t
+from lcmtypes.core import acknowledgement_t, answer_t
 from tests.harness.runs import write_files
 from tests.programs.command_system import command_system
 
@@ -81,10 +81,10 @@ def test_a_command_is_answered_once(parts: Any) -> None:
     bench.port("lift").put(height_m=1.0)
     bench.iterate()
     (command,) = bench.component.lift.open
-    with pytest.raises(CommandError, match="command 1 of test/sender is accepted already and cannot be accepted"):
+    with pytest.raises(ServiceError, match="request 1 of test/sender is already accepted and cannot be accepted"):
         command.accept()
     command.done()
-    with pytest.raises(CommandError, match="robot/lift: command 1 of test/sender is done already and cannot be failed"):
+    with pytest.raises(ServiceError, match="robot/lift: request 1 of test/sender is already done and cannot be failed"):
         command.fail("too late")
 
 
@@ -148,7 +148,7 @@ def sender(parts: Any, **settings: Any) -> tuple[Bench, Any]:
     """A worker that has sent one command, and its future."""
     bench = Bench(parts.Worker, name="s/worker", flood=1, **settings)
     bench.iterate()
-    future = next(each for each in bench.component.futures if not hasattr(each, "reply"))
+    future = next(each for each in bench.component.futures if isinstance(each.reply, acknowledgement_t))
     assert (future.state, future.finished, future.done) == ("sent", False, False)
     return bench, future
 
@@ -173,8 +173,8 @@ def test_a_time_that_cannot_be_is_refused(parts: Any, name: str, seconds: float)
     bench = Bench(parts.Worker, flood=1)
     bench.iterate()
     before = len(bench.port("lift").sent)
-    with pytest.raises(CommandError, match=f"lift: {name} is {seconds}".replace("+", "[+]")):
-        bench.component.lift.send(**{name: seconds})
+    with pytest.raises(ServiceError, match=f"lift: {name} is {seconds}".replace("+", "[+]")):
+        bench.component.lift.call(**{name: seconds})
     bench.iterate()
     assert len(bench.port("lift").sent) == before + 1
 
@@ -182,9 +182,9 @@ def test_a_time_that_cannot_be_is_refused(parts: Any, name: str, seconds: float)
 def test_nothing_is_sent_in_init(parts: Any) -> None:
     class Eager(parts.Worker):  # type: ignore[misc]
         def init(self) -> None:
-            self.lift.send()
+            self.lift.call()
 
-    with pytest.raises(CommandError, match=r"lift: robot/component has no time yet in init\(\); send in loop\(\)"):
+    with pytest.raises(ServiceError, match=r"lift: robot/component has no time yet in init\(\); call in loop\(\)"):
         Bench(Eager)
 
 
@@ -255,8 +255,8 @@ def test_a_call_has_its_reply(parts: Any) -> None:
 def test_one_carries_out_for_many_and_answers_each(parts: Any) -> None:
     class Crane(Component):
         stage = "act"
-        lifts: CommandsEach[parts.lift_t] = channel("*/lift")
-        sums: ServesEach[parts.sum_request_t, parts.sum_t] = channel("*/sum")
+        lifts: Each[Serves[parts.lift_t]] = channel("*/lift")
+        sums: Each[Serves[parts.sum_request_t, parts.sum_t]] = channel("*/sum")
 
         def loop(self) -> None:
             for robot, lifts in self.lifts.items():

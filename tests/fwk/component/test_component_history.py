@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from fwk import Component, Reads, ReadsEach, Writes, channel
+from fwk import Component, Each, Reads, Writes, channel
 from fwk.component.declaration import declaration
 from fwk.component.port import DeclarationError
 from fwk.testing import Bench, MemorySystem
@@ -15,7 +15,7 @@ class Remembers(Component):
     stage = "think"
     imu: Reads[imu_t] = channel(history=3)
     plain: Reads[imu_t]
-    others: ReadsEach[imu_t] = channel("imu", history=2)
+    others: Each[Reads[imu_t]] = channel("imu", history=2)
     seen: Writes[imu_t]
 
     def loop(self) -> None:
@@ -111,7 +111,7 @@ def test_ports_of_one_channel_share_the_longest() -> None:
     ("length", "kind", "error"),
     [
         (-1, Reads[imu_t], "Wrong.imu: history=-1: a history has at least 1 message"),
-        (2, Writes[imu_t], "Wrong.imu: history=2: only Reads and ReadsEach keep a history"),
+        (2, Writes[imu_t], "Wrong.imu: history=2: only Reads keeps a history"),
     ],
 )
 def test_a_history_that_cannot_be_is_refused(length: int, kind: Any, error: str) -> None:

@@ -18,7 +18,7 @@ def test_first_frame_of_a_restarted_camera_is_new() -> None:
         writer = Writes("r/image", frame_t)
         writer.sequence = sequence
         VisionMaster(writer, ring).publish(np.full((4, 4), shade, np.uint8))
-        announcements.freeze(writer.take())
+        announcements._freeze(writer._take())
         sequence = writer.sequence
         assert image.pixels is not None
         assert (image.pixels == shade).all()

@@ -50,11 +50,11 @@ def test_a_flood_is_cut_off_and_counted_when_its_second_is_over() -> None:
     log = logger(lines, wall)
     for number in range(10):
         log.info(f"flood {number}")
-    log.tell_dropped()
+    log._report_dropped()
     assert [line.text for line in lines] == ["flood 0", "flood 1", "flood 2"]
     wall.now_us += US_PER_S
-    log.tell_dropped()
-    log.tell_dropped()
+    log._report_dropped()
+    log._report_dropped()
     log.info("calm")
     told, calm = lines[3:]
     assert told.text.startswith("7 lines dropped in the last second")
@@ -68,7 +68,7 @@ def test_lasting_flood_is_reported_each_second_and_at_the_end() -> None:
     for number in range(15):
         wall.now_us = number // 5 * US_PER_S
         log.info("flood")
-    log.tell_dropped(at_the_end=True)
+    log._report_dropped(at_the_end=True)
     told = [line.text for line in lines if line.text != "flood"]
     assert [text.split()[0] for text in told] == ["2", "2", "2"]
     assert len(lines) == 9 + 3

@@ -59,7 +59,7 @@ def test_log_lines_arrive_from_the_requested_level_on() -> None:
 
 def test_a_level_that_does_not_exist_is_refused() -> None:
     bench = Bench(Alarm)
-    with pytest.raises(ValueError, match="no level 'loud'; there are debug, info, warning, error"):
+    with pytest.raises(ValueError, match="no level 'loud'; the levels are debug, info, warning, error"):
         bench.component.lines.of("loud")
 
 

@@ -13,8 +13,8 @@ STAGES = {"r/a": ["think"], "r/b": ["think", "act"]}
 @pytest.mark.parametrize(
     ("order", "error"),
     [
-        ([], "r/driver: a tick runs 1 to 1000 stages, not 0"),
-        (["think"] * 1001, "r/driver: a tick runs 1 to 1000 stages, not 1001"),
+        ([], "r/driver: a schedule has 1 to 1000 stages, not 0"),
+        (["think"] * 1001, "r/driver: a schedule has 1 to 1000 stages, not 1001"),
         (["think", "thikn"], "r/driver: no stage 'thikn'; the stages are think, act"),
     ],
 )
@@ -22,7 +22,7 @@ def test_an_order_that_cannot_be_is_refused_at_once(order: list[str], error: str
     main_loop = MainLoop("r/driver", ("think", "act"))
     with pytest.raises(ValueError, match=error):
         main_loop.take_over(order)
-    assert main_loop.take() is None
+    assert main_loop._take() is None
 
 
 def test_the_first_gets_it_and_the_second_is_told_who_has_it() -> None:
@@ -86,7 +86,7 @@ def test_an_order_of_unknown_stages_or_of_none_is_a_mistake() -> None:
         loop.take_over(["act", "thnk"])
     with pytest.raises(ValueError, match="1 to 1000 stages, not 0"):
         loop.take_over([])
-    assert loop.take() is None
+    assert loop._take() is None
 
 
 class Conducts(Component):

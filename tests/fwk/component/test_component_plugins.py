@@ -27,20 +27,22 @@ def test_names_that_do_not_exist_are_refused_at_once() -> None:
     plugins = PluginControl("r/director", ["r/director", "r/one"])
     with pytest.raises(ValueError, match=r"r/director: no component 'r/oen'; did you mean 'r/one'\?"):
         plugins.start("r/oen")
-    with pytest.raises(ValueError, match=r"r/director: reload what\? name components"):
+    with pytest.raises(ValueError, match=r"r/director: reload\(\) needs names of components"):
         plugins.reload()
     plugins.unload("r/*")
     plugins.restart("r")
-    assert plugins.take() == [("unload", ("r/*",)), ("restart", ("r",))]
+    assert plugins._take() == [("unload", ("r/*",)), ("restart", ("r",))]
 
 
 def test_an_iteration_that_wishes_too_much_is_refused() -> None:
     plugins = PluginControl("r/director", ["r/director", "r/one"])
     for _ in range(64):
         plugins.restart("r/one")
-    with pytest.raises(ValueError, match="r/director: more than 64 wishes in one iteration; name several in one"):
+    with pytest.raises(
+        ValueError, match="r/director: more than 64 requests in one iteration; name several components in one"
+    ):
         plugins.restart("r/one")
-    assert len(plugins.take()) == 64
+    assert len(plugins._take()) == 64
 
 
 def test_a_system_in_memory_has_no_processes_to_control() -> None:

@@ -152,6 +152,6 @@ def test_an_unknown_setting_is_named_with_the_nearest(settings: RunSettings, pat
 def test_a_config_takes_over_in_place() -> None:
     config = TurnerConfig()
     inner = config.inner
-    config.take_over(TurnerConfig(gain=2, inner=Inner(deep=5), names=["x"]))
+    config._take_over(TurnerConfig(gain=2, inner=Inner(deep=5), names=["x"]))
     assert (config.gain, config.names, inner.deep) == (2.0, ["x"], 5)
     assert config.inner is inner

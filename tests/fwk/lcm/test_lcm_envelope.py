@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk import Component, Reads, ReadsEach, Writes, WritesEach, channel
+from fwk import Component, Each, Reads, Writes, channel
 from fwk.gateway.unwrap import Unwrap
 from fwk.lcm import envelope
 from fwk.lcm.envelope import STAMP
@@ -27,7 +27,7 @@ class Driver(Component):
     stage = "think"
     stick: Reads[obstacle_t] = channel("/STICK", history=2)
     motor: Writes[obstacle_t]
-    parts: WritesEach[obstacle_t]
+    parts: Each[Writes[obstacle_t]]
     total: Writes[imu_t]
 
     def loop(self) -> None:
@@ -43,7 +43,7 @@ class Driver(Component):
 
 class Listener(Component):
     stage = "act"
-    parts: ReadsEach[obstacle_t]
+    parts: Each[Reads[obstacle_t]]
     one: Reads[obstacle_t] = channel("left/parts")
 
 

@@ -4,19 +4,7 @@ from typing import Literal
 
 from pydantic import Field as Setting
 
-from fwk import (
-    Aspect,
-    Component,
-    Config,
-    Image,
-    Reads,
-    ReadsEach,
-    TimeSource,
-    VisionMaster,
-    Writes,
-    WritesEach,
-    channel,
-)
+from fwk import Aspect, Component, Config, Each, Image, Reads, TimeSource, VisionMaster, Writes, channel
 from lcmtypes.core import frame_t
 from lcmtypes.robot import motor_command_t, odometry_t
 
@@ -83,14 +71,14 @@ class Watcher(Component):
     """Reads every odometry."""
 
     stage = "post_loop"
-    odometries: ReadsEach[odometry_t] = channel("*/odometry")
+    odometries: Each[Reads[odometry_t]] = channel("*/odometry")
 
 
 class Feeder(Component):
     """Writes the odometry of everybody who reads one."""
 
     stage = "pre_loop"
-    feeds: WritesEach[odometry_t] = channel("*/odometry")
+    feeds: Each[Writes[odometry_t]] = channel("*/odometry")
 
 
 class Reader(Component):

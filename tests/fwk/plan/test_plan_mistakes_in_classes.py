@@ -8,7 +8,7 @@ from fwk.model.errors import PlanError
 from fwk.plan.load import load_plan
 
 HEAD = """
-from fwk import Aspect, Clock, Component, Config, MainLoop, Reads, ReadsEach, Serves, Writes, channel
+from fwk import Aspect, Clock, Component, Config, Each, MainLoop, Reads, Serves, VisionMaster, Writes, channel
 from lcmtypes.core import command_t
 from lcmtypes.robot import odometry_t
 class Settings(Config):
@@ -17,40 +17,50 @@ class Levelled(Config):
     log_level: str = "all"
 class Greedy(Aspect):
     ball: Writes[odometry_t]
+class Feeds(Aspect):
+    balls: Each[Writes[odometry_t]]
 class Odd(Component):
     stage = "think"
 """
 ROWS = {
-    "stage = 5": """Odd: stage is 5; it should be text such as "think", or a tuple of it""",
-    "stage = ('think', 3)": """Odd: stage is ('think', 3); it should be text such as "think", or a tuple of it""",
-    "loop: Reads[odometry_t]": "Odd.loop: every component has 'loop'; call this one otherwise",
-    "finalize: Clock": "Odd.finalize: every component has 'finalize'; call this one otherwise",
-    "settings: Settings": "Odd.settings: settings are called 'config'",
-    "config: Levelled": "Odd: every component has a setting 'log_level'; call its own otherwise",
+    "stage = 5": """Odd: stage is 5; it should be text such as "think", or a tuple of texts""",
+    "stage = ('think', 3)": """Odd: stage is ('think', 3); it should be text such as "think", or a tuple of texts""",
+    "loop: Reads[odometry_t]": "Odd.loop: every component has 'loop'; choose another name",
+    "finalize: Clock": "Odd.finalize: every component has 'finalize'; choose another name",
+    "settings: Settings": "Odd.settings: the attribute of the settings is called 'config'",
+    "config: Levelled": "Odd: every component has a setting 'log_level'; choose another name",
     "ball: 'Reads[odometry_t'": "Odd: an annotation cannot be read: Forward reference must be an expression -- got "
     "'Reads[odometry_t'",
     "ball: 'Reads[ball_t]'": "Odd: an annotation cannot be read: name 'ball_t' is not defined",
     "def lop(self) -> None: ...": "Odd.lop: the framework calls no method 'lop'; did you mean 'loop'?",
     "def Finalise(self) -> None: ...": "Odd.Finalise: the framework calls no method 'Finalise'; "
     "did you mean 'finalize'?",
-    "ball: Reads": "Odd.ball: Reads of which messages? name its type: ball: Reads[message_t]",
-    "way: Serves": "Odd.way: Serves of which messages? name its type: way: Serves[request_t, reply_t]",
-    "ball: int": "Odd.ball: int is not an aspect; annotate with Reads, Writes, ReadsEach, WritesEach, Commands, "
-    "CommandsEach, Sends, SendsEach, Serves, ServesEach, Calls, CallsEach, Image, ImagesEach, "
+    "ball: Reads": "Odd.ball: Reads has no message type; write ball: Reads[message_t]",
+    "way: Serves": "Odd.way: Serves has no message type; write way: Serves[command_t] or Serves[request_t, reply_t]",
+    "ways: Each[Reads]": "Odd.ways: Reads has no message type; write ways: Each[Reads[message_t]]",
+    "ways: Each": "Odd.ways: Each of nothing; Each is for Reads, Writes, Serves, Calls and Image, such as "
+    "Each[Reads[ball_t]]",
+    "ways: Each[Clock]": "Odd.ways: Each of Clock; Each is for Reads, Writes, Serves, Calls and Image, such as "
+    "Each[Reads[ball_t]]",
+    "ways: Each[VisionMaster]": "Odd.ways: Each of VisionMaster; Each is for Reads, Writes, Serves, Calls and Image, "
+    "such as Each[Reads[ball_t]]",
+    "ball: int": "Odd.ball: int is not an aspect; annotate with Reads, Writes, Serves, Calls, Image, Each, "
     "VisionMaster, a Config, Clock, Logger, LogLines, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
-    "ball: Reads[int]": "Odd.ball: <class 'int'> is no LCM type; import it from lcmtypes",
+    "ball: Reads[int]": "Odd.ball: <class 'int'> is not an LCM type; import one from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
     "does not begin with 'core.header_t header;'",
-    "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) names no channel; write = channel('cyan1/ball'), "
-    "or nothing for 'ball'",
-    "ball: Reads[odometry_t] = 'world/ball'": "Odd.ball: 'world/ball' names no channel; write = "
+    "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) does not name a channel; write = "
+    "channel('cyan1/ball'), or nothing for 'ball'",
+    "ball: Reads[odometry_t] = 'world/ball'": "Odd.ball: 'world/ball' does not name a channel; write = "
     "channel('cyan1/ball'), or nothing for 'ball'",
     "ball: Reads[odometry_t] = channel(history=-1)": "Odd.ball: history=-1: a history has at least 1 message",
-    "ball: Writes[odometry_t] = channel(history=3)": "Odd.ball: history=3: only Reads and ReadsEach keep a history",
-    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, ReadsEach, Image, Clock and Logger, "
-    "not Writes; what a component writes stands in its own class",
-    "provides = Settings": "Odd: it provides <class 'odd{}.Settings'>, which is no aspect; derive it from fwk.Aspect",
+    "ball: Writes[odometry_t] = channel(history=3)": "Odd.ball: history=3: only Reads keeps a history",
+    "greedy: Greedy": "Greedy.ball: an aspect that a component provides has Reads, Each[Reads[...]], Image, Clock and "
+    "Logger, not Writes; what a component writes is declared in its own class",
+    "feeds: Feeds": "Feeds.balls: an aspect that a component provides has Reads, Each[Reads[...]], Image, Clock and "
+    "Logger, not Each[Writes]; what a component writes is declared in its own class",
+    "provides = Settings": "Odd: it provides <class 'odd{}.Settings'>, not an aspect; derive it from fwk.Aspect",
 }
 
 

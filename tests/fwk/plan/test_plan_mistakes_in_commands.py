@@ -14,7 +14,7 @@ struct dig_t { core.header_t header; core.command_t command; double depth_m; }
 struct sow_t { core.header_t header; core.command_t command; string seed; }
 struct seen_t { core.header_t header; core.answer_t answer; double height_m; }
 --- garden_parts.py
-from fwk import Calls, CallsEach, Commands, CommandsEach, Component, Sends, SendsEach, Serves
+from fwk import Calls, Component, Each, Serves
 from lcmtypes.core import acknowledgement_t
 from lcmtypes.garden import dig_t, seen_t, sow_t
 from lcmtypes.robot import odometry_t
@@ -22,28 +22,28 @@ from lcmtypes.soccer import obstacle_t
 
 class Digger(Component):
     stage = "act"
-    dig: Commands[dig_t]
+    dig: Serves[dig_t]
 
 class Boss(Component):
     stage = "think"
-    dig: Sends[dig_t]
+    dig: Calls[dig_t]
 
 class Sower(Component):
     stage = "think"
-    dig: Sends[sow_t]
+    dig: Calls[sow_t]
 
 class Bosses(Component):
     stage = "think"
-    digs: SendsEach[dig_t]
+    digs: Each[Calls[dig_t]]
 
 class Diggers(Component):
     stage = "act"
-    digs: CommandsEach[dig_t]
+    digs: Each[Serves[dig_t]]
 
 class Twice(Component):
     stage = "think"
-    dig: Sends[dig_t]
-    digs: SendsEach[dig_t]
+    dig: Calls[dig_t]
+    digs: Each[Calls[dig_t]]
 
 class Asker(Component):
     stage = "think"
@@ -51,11 +51,11 @@ class Asker(Component):
 
 class Plain(Component):
     stage = "think"
-    dig: Sends[odometry_t]
+    dig: Calls[odometry_t]
 
 class Device(Component):
     stage = "think"
-    dig: Sends[obstacle_t]
+    dig: Calls[obstacle_t]
 
 class Devices(Component):
     stage = "think"
@@ -134,7 +134,7 @@ def garden(broken: Broken) -> Broken:
         """,
     ),
     Broken(
-        "it.yaml:2: a/plain: garden_parts.Plain.dig: robot.odometry_t is no command: "
+        "it.yaml:2: a/plain: garden_parts.Plain.dig: robot.odometry_t is not a request: "
         "its second member is not 'core.command_t command;'",
         """
         components:
@@ -142,23 +142,23 @@ def garden(broken: Broken) -> Broken:
         """,
     ),
     Broken(
-        "it.yaml:2: a/device: garden_parts.Device.dig: soccer.obstacle_t is no command: it does not begin with "
-        "'core.header_t header;'; types of devices go with Reads, ReadsEach, Writes and WritesEach",
+        "it.yaml:2: a/device: garden_parts.Device.dig: soccer.obstacle_t is not a request: it does not begin with "
+        "'core.header_t header;'; types of devices go with Reads, Writes and Each of them",
         """
         components:
           a/device: {use: garden_parts:Device}
         """,
     ),
     Broken(
-        "it.yaml:2: a/device: garden_parts.Devices.dig: soccer.obstacle_t is no reply: it does not begin with "
-        "'core.header_t header;'; types of devices go with Reads, ReadsEach, Writes and WritesEach",
+        "it.yaml:2: a/device: garden_parts.Devices.dig: soccer.obstacle_t is not a reply: it does not begin with "
+        "'core.header_t header;'; types of devices go with Reads, Writes and Each of them",
         """
         components:
           a/device: {use: garden_parts:Devices}
         """,
     ),
     Broken(
-        "it.yaml:2: a/x: garden_parts.Replyless.dig: garden.dig_t is no reply: "
+        "it.yaml:2: a/x: garden_parts.Replyless.dig: garden.dig_t is not a reply: "
         "its second member is not 'core.answer_t answer;'",
         """
         components:

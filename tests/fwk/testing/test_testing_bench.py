@@ -2,7 +2,7 @@
 
 import pytest
 
-from fwk import Component, Reads, ReadsEach, Writes
+from fwk import Component, Each, Reads, Writes
 from fwk.testing import Bench
 from lcmtypes.robot import odometry_t
 
@@ -10,7 +10,7 @@ from lcmtypes.robot import odometry_t
 class Tracker(Component):
     stage = "think"
     sighting: Reads[odometry_t]
-    robots: ReadsEach[odometry_t]
+    robots: Each[Reads[odometry_t]]
     ball: Writes[odometry_t]
 
     def loop(self) -> None:

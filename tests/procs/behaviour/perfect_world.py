@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from fwk import Clock, Component, Config, Reads, ReadsEach, Writes, channel
+from fwk import Clock, Component, Config, Each, Reads, Writes, channel
 from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
 from procs.model.robot import team_of
 
@@ -25,7 +25,7 @@ class PerfectWorldModel(Component):
     clock: Clock
     rng: np.random.Generator
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
-    role: ReadsEach[role_t] = channel("*/role")
+    role: Each[Reads[role_t]] = channel("*/role")
     world_model: Writes[world_model_t]
 
     def loop(self) -> None:
