@@ -50,10 +50,11 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
 def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Steering) -> None:
     """Prints log lines as they come, and the state of the run in one line every few seconds while it advances.
 
-    A run that stands still for a second says whom it waits for, and says so again every ten seconds. Of many lines that
-    say the same, the first are printed and the others counted.
+    A run that stands still for a second prints the components that it waits for, and again every ten seconds. A run
+    that is slower than asked prints once what helps. Of many lines that say the same, the first are printed and the
+    others counted.
     """
-    due_us, shown, waiting_due_us = 0, "", 0
+    due_us, shown, waiting_due_us, slowness = 0, "", 0, ""
     gate, tracebacks = FloodGate(), Tracebacks()
     for packet in _packets(connection, _LOOK_S):
         with contextlib.suppress(MessageError):
@@ -69,6 +70,9 @@ def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Ste
                 headline = view.headline
                 print(status_line(view.status), *([headline] if headline else []), sep="   ", file=out, flush=True)
             shown = progress
+        if view.slowness and not slowness:
+            slowness = view.slowness
+            print(slowness, file=out, flush=True)
         if not view.standing_s:
             waiting_due_us = 0
         elif monotonic_us() >= waiting_due_us:

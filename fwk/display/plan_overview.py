@@ -32,3 +32,10 @@ def value_at(config: object, dotted: str) -> object:
 def counted(number: int, one: str, many: str = "") -> str:
     """Returns a number with its noun in the right form."""
     return f"{number} {one if number == 1 else many or f'{one}s'}"
+
+
+def fewer_processes(plan: Plan) -> str:
+    """Returns the option of `fwk-launch` with which the plan needs fewer processes, or else fewer components."""
+    hosts = len(plan.hosts)
+    namespaces = len({component.name.rpartition("/")[0] for component in plan.components})
+    return "--hosting robot" if namespaces < hosts else "--hosting single" if hosts > 1 else "--only NAME..."

@@ -17,6 +17,7 @@ from lcmtypes.core import component_state_t, status_t
 
 _STATE_STYLES = {"running": "", "failed": "red", "late": "yellow", "held": "yellow", "stopped": "dim"}
 _LEVEL_STYLES = {"debug": "dim", "info": "", "warning": "yellow", "error": "bold red"}
+_GAP = "   "
 _FRAME_ROWS = 6  # headline with its frame, figures, keys, one row for the cursor
 _LEAST_LOG_ROWS = 3
 _DRAWING_LEAST = (26, 9)  # columns and rows
@@ -35,7 +36,7 @@ def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> Ren
     if status is None:
         parts.append(Text("starting ...", style="dim"))
     else:
-        worries = _worries(status, view.waiting, columns)[: max(1, rows // 8)]
+        worries = _worries(view, status, columns)[: max(1, rows // 8)]
         room -= len(worries) + _LEAST_LOG_ROWS
         body = _body(view, status, columns, room)
         parts += [*_figures(view, status, columns), *body, *worries]
@@ -47,18 +48,16 @@ def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> Ren
 
 
 def _figures(view: View, status: status_t, columns: int) -> list[Text]:
+    """Returns the line of figures, without the last ones where the terminal is too narrow for all."""
     sums = figures.totals(figures.components(status))
-    text = Text(no_wrap=True, overflow="ellipsis")
-    text.append(f" tick {status.tick}   {status.time_us / US_PER_S:.2f} s   {pace(status)}   ")
-    text.append(f"{status.ticks_per_s:.1f} ticks/s   ")
-    clean = not sums.lost and not status.late
-    text.append(losses(status), style="dim" if clean else "yellow")
     used = sum(view.cpu.percent.values())
-    if used:
-        text.append(f"   CPU {used:.0f} %", style="dim")
-    if view.is_slow:
-        text.append("   slower than asked: fewer processes may help, --hosting robot", style="yellow")
-    text.truncate(columns, overflow="ellipsis")
+    parts = [f"tick {status.tick}", f"{status.time_us / US_PER_S:.2f} s", pace(status)]
+    parts += [f"{status.ticks_per_s:.1f} ticks/s", *([f"CPU {used:.0f} %"] if used else [])]
+    text = Text(" " + _GAP.join(parts), no_wrap=True)
+    style = "yellow" if sums.lost or status.late else "dim"
+    for part in losses(status).split(_GAP):
+        if text.cell_len + len(_GAP) + cells(part) < columns:
+            text.append(_GAP + part, style=style)
     return [text]
 
 
@@ -148,8 +147,9 @@ def _marked(view: View, name: str) -> str:
     return f"> {name}" if name == view.selected else name
 
 
-def _worries(status: status_t, waiting: str, columns: int) -> list[Text]:
-    lines = [_line(f" {waiting}", "bold yellow", columns)] if waiting else []
+def _worries(view: View, status: status_t, columns: int) -> list[Text]:
+    said = view.waiting or view.slowness
+    lines = [_line(f" {said}", "bold yellow" if view.waiting else "yellow", columns)] if said else []
     for component in figures.components(status):
         if component.state not in figures.WELL:
             style = _LEVEL_STYLES["error"] if component.state == "failed" else "yellow"

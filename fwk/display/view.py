@@ -7,6 +7,7 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.display.cpu import CpuMeter
 from fwk.display.figures import LoopTime, loop_times
 from fwk.display.floods import LineGroup, LineGroups
+from fwk.display.plan_overview import fewer_processes
 from fwk.display.scoreboard import Drawing, Scoreboard
 from fwk.lcm import envelope, messages
 from fwk.model.plan import Plan
@@ -93,9 +94,11 @@ class View:
         return f"waits for {names or 'the end of the tick'}, {self.standing_s:.0f} s"
 
     @property
-    def is_slow(self) -> bool:
-        """Whether the run has been slower than asked for some seconds."""
-        return self._slow >= _SLOW_STATUSES
+    def slowness(self) -> str:
+        """Returns what helps a run that has been slower than asked for some seconds; empty for all others."""
+        if self._slow < _SLOW_STATUSES:
+            return ""
+        return f"slower than asked; on a machine of so few cores, start it with {fewer_processes(self.plan)}"
 
     @property
     def loop_times(self) -> dict[str, LoopTime]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import GROUP, LOOPBACK
 from fwk.control.address import gateway_address, supervisor_address
+from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 
@@ -65,8 +66,7 @@ def advice(plan: Plan, cores: int | None = None, free_bytes: int | None = None) 
     cores = cores or len(os.sched_getaffinity(0))
     free_bytes = free_bytes or _free_bytes()
     hosts = len(plan.hosts)
-    together = len({component.name.rpartition("/")[0] for component in plan.components})
-    remedy = "--hosting robot" if together < hosts else "--hosting single" if hosts > 1 else "--only NAME..."
+    remedy = fewer_processes(plan)
     lines = []
     if hosts > _HOSTS_A_CORE * cores:
         core_word = "core" if cores == 1 else "cores"

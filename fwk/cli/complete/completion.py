@@ -36,7 +36,8 @@ _fwk_complete() {
     local -a found
     found=(${(f)"$(command fwk __complete "${(@)words[1,CURRENT]}" 2>/dev/null)"})
     if (( ${#found} )); then
-        compadd -Q -- "${found[@]}"
+        compadd -Q -S '' -- "${(M@)found:#*=}"
+        compadd -Q -- "${(@)found:#*=}"
     else
         _files
     fi
@@ -46,10 +47,15 @@ compdef _fwk_complete fwk fwk-launch
 """,
     Shell.FISH: """\
 function __fwk_complete
-    command fwk __complete (commandline -opc) (commandline -ct) 2>/dev/null
+    set -l found (command fwk __complete (commandline -opc) (commandline -ct) 2>/dev/null)
+    if set -q found[1]
+        printf '%s\\n' $found
+    else
+        __fish_complete_path (commandline -ct)
+    end
 end
-complete -c fwk -a '(__fwk_complete)'
-complete -c fwk-launch -a '(__fwk_complete)'
+complete -c fwk -f -a '(__fwk_complete)'
+complete -c fwk-launch -f -a '(__fwk_complete)'
 """,
 }
 

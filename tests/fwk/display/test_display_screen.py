@@ -131,9 +131,21 @@ def test_a_run_that_stands_still_names_the_component(monkeypatch: pytest.MonkeyP
     assert view.waiting == ""
 
 
-def test_a_run_slower_than_asked_names_the_flag() -> None:
-    assert not any("slower" in line for line in drawn(*[status(TRACKER, 1, speed=0.3)] * 3))
-    assert "--hosting robot" in row(drawn(*[status(TRACKER, 1, speed=0.3)] * 9, columns=160), "tick")
+@pytest.mark.parametrize("columns", [80, 120])
+def test_a_run_slower_than_asked_names_the_flag(columns: int) -> None:
+    def shown(statuses: int) -> list[str]:
+        return drawn(*[status(TRACKER, 1, speed=0.3)] * statuses, columns=columns)
+
+    assert not any("slower" in line for line in shown(3))
+    assert row(shown(9), "slower").endswith("start it with --only NAME...")
+
+
+@pytest.mark.parametrize("columns", [40, 60, 80, 120])
+def test_the_line_of_figures_is_never_cut(columns: int) -> None:
+    busy = status(MATCH, 100, late=3, repeated=12345)
+    figures = row(drawn(busy, columns=columns), "tick")
+    assert "…" not in figures
+    assert figures.startswith(" tick 100   5.00 s")
 
 
 def test_cpu_of_a_process_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
