@@ -1,5 +1,6 @@
 """Errors of the robots' beliefs about ball, robots and themselves, sample by sample."""
 
+import itertools
 import math
 from collections import defaultdict
 from collections.abc import Iterator
@@ -21,11 +22,13 @@ SETTLED_S = 0.3
 _CONTACT_S = 0.1
 _INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
 _START_S = 4.0  # until all robots know their places
+_PLACED_S = 0.5  # the crew puts the ball down in no time, which no ball in play does
 _WRONG_M, _WRONG_RAD = 1.0, 0.5
 _SAME_M = 1.0  # an opponent further from all robots is not one of them
 _DRIVING_M_S = 0.5
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 _KICK_M_S = 2.0
+_JUMP_M = 0.2
 _KNOWN_SHARE = 0.1
 
 Samples = dict[str, Floats]
@@ -61,9 +64,10 @@ def _models(piece: Piece) -> Iterator[tuple[str, int, world_model_t, ground_trut
 def _ball_samples(piece: Piece) -> Samples:
     seen: list[_Ball] = []
     known: list[bool] = []
+    placed = _placed(piece)
     for robot, tick, model, truth in _models(piece):
         known.append(model.ball.known)
-        if model.ball.known:
+        if model.ball.known and tick not in placed:
             seen.append(_ball(piece, robot, tick, model, truth))
 
     def of(value: str, *, case: list[bool]) -> Floats:
@@ -89,6 +93,17 @@ def _ball_samples(piece: Piece) -> Samples:
     }
 
 
+def _placed(piece: Piece) -> set[int]:
+    """Returns the ticks in which, or shortly before which, the crew put the ball elsewhere."""
+    ticks: set[int] = set()
+    for (_, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
+        way_m = math.dist((before.ball_x_m, before.ball_y_m), (truth.ball_x_m, truth.ball_y_m))
+        speed_m_s = max(math.hypot(each.ball_vx_m_s, each.ball_vy_m_s) for each in (before, truth))
+        if way_m > _JUMP_M + speed_m_s * piece.period_s:
+            ticks.update(range(tick, tick + round(_PLACED_S / piece.period_s)))
+    return ticks
+
+
 def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: ground_truth_t) -> _Ball:
     own, ball = piece.robot(tick, robot), model.ball
     error = np.array((ball.x_m - truth.ball_x_m, ball.y_m - truth.ball_y_m))
@@ -110,8 +125,9 @@ def _fusion(piece: Piece) -> Samples:
     best: list[tuple[float, float]] = []
     average: list[tuple[float, float]] = []
     fused: dict[tuple[str, int], list[float]] = defaultdict(list)
+    placed = _placed(piece)
     for robot, tick, model, truth in _models(piece):
-        if model.ball.known:
+        if model.ball.known and tick not in placed:
             error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
             fused[team_of(robot), tick].append(error_m2)
     sightings = _sightings(piece)

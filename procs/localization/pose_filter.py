@@ -3,8 +3,8 @@
 import math
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
+from procs.model.estimation import KalmanFilter
 from procs.model.frames import Floats, rotation, wrap
 
 _TICK_S = 0.05  # the errors below are those that add up in this time

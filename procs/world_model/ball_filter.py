@@ -1,101 +1,204 @@
-"""Kalman filter of the ball: position and velocity on the ground, slowed down by friction."""
+"""Interacting multiple models of the ball: it rests, rolls, slides, is handled by a robot, or was hit just now.
+
+Five Kalman filters with one state each (x, y in m, vx, vy in m/s, world frame) run side by side; after each step the
+filters exchange what they believe, by the probabilities of passing from one model to another (Blom and Bar-Shalom,
+1988). Robots near the ball make hits and handling probable; elsewhere the ball keeps rolling, and its velocity becomes
+precise.
+"""
 
 import math
+from enum import IntEnum
 
 import numpy as np
-from filterpy.kalman import KalmanFilter
 
 from procs.model.ball import ROLLING_SHARE, SLIDING_M_S2
 from procs.model.frames import Floats
 
-_UNKNOWN_SPEED_M_S = 4.0
-_STEADY_M_S2 = 0.25  # unmodelled acceleration of a ball at rest
-_UNSTEADY_1_S = 0.4  # its growth with speed: sliding after a kick, unknown friction
-_KICK_SPEED_SD = 0.15  # relative error of a kick's speed
-_KICK_DIRECTION_SD = 0.05  # rad
-_KICK_TIME_SD_S = 0.03  # the kick lies somewhere in the tick before its report
-_STRAIN_MEMORY_S = 0.2  # time constant of the mean surprise
-_STRAIN_MOST = 6.0
+
+class Mode(IntEnum):
+    """Motion models."""
+
+    RESTS = 0
+    ROLLS = 1
+    SLIDES = 2
+    HANDLED = 3
+    HIT = 4
+
+
+_MODES = len(Mode)
+_NOISE_M2_S3 = np.array((0.0002, 0.01, 0.3, 5.0, 0.3))
+"""Spectral density of the acceleration that each model leaves open."""
+_HIT_M_S = 8.0  # deviation of the velocity that a hit adds
+_SLOW_M_S = 0.15  # a rolling ball this slow is about to rest
+_UNKNOWN_SPEED_M_S = 3.0
+_CLUTTER_1_M2 = 1e-4  # density of false sightings; a sighting that is less probable does not fit
+_BOUNCE = 0.5  # share of the speed that a wall leaves
+_LEAST = 1e-6  # probability that every model keeps
+_KICK_SPEED_SD = 0.06  # relative error of a kick's speed
+_KICK_DIRECTION_SD = 0.03  # rad
+_KICK_TIME_SD_S = 0.02  # the kick lies somewhere in the tick before its report
+_FREE_1_S = np.array(
+    (
+        (0.0, 0.02, 0.0, 0.01, 0.01),
+        (0.3, 0.0, 0.0, 0.01, 0.01),
+        (0.0, 1.5, 0.0, 0.01, 0.01),
+        (0.5, 6.0, 2.0, 0.0, 0.5),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+    )
+)
+"""Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
+_CONTACT_1_S = np.array(
+    (
+        (0.0, 0.1, 0.0, 1.5, 1.0),
+        (0.3, 0.0, 0.0, 3.0, 2.0),
+        (0.0, 1.5, 0.0, 3.0, 2.0),
+        (0.3, 1.0, 0.5, 0.0, 2.0),
+        (0.0, 0.0, 0.0, 0.0, 0.0),
+    )
+)
+"""The same with a robot near."""
+_AFTER_HIT = np.array((0.0, 0.02, 0.83, 0.15, 0.0))
+_FIRST = np.array((0.3, 0.3, 0.15, 0.2, 0.05))
 
 
 class BallFilter:
-    """State: x, y (m), vx, vy (m/s) in the world frame.
-
-    Sightings that are further from the prediction than their covariances allow, one after the other, raise the process
-    noise for a short time: the ball slides, was deflected, or is carried.
-    """
+    """Mixture of the models; `state` and `covariance` are those of the mixture."""
 
     def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
-        self._filter = KalmanFilter(dim_x=4, dim_z=2)
-        self._filter.x[:2, 0] = position_m
-        self._filter.P[:2, :2] = covariance_m2
-        self._filter.P[2:, 2:] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
-        self._strain = 1.0
-        self._since_update_s = 0.0
-        self._rolls_below_m_s = math.inf  # after a kick the ball slides until it is slower
+        self._x = np.zeros((_MODES, 4))
+        self._x[:, :2] = position_m
+        self._p = np.zeros((_MODES, 4, 4))
+        self._p[:, :2, :2] = covariance_m2
+        self._p[:, 2:, 2:] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
+        self._p[Mode.RESTS, 2:, 2:] = np.eye(2) * 1e-4
+        self._weights = _FIRST.copy()
+        self._rolls_below_m_s = 0.0  # after a known kick the ball slides until it is slower
 
     @property
     def state(self) -> Floats:
         """(4): x, y, vx, vy."""
-        return np.asarray(self._filter.x[:, 0])
+        return np.asarray(self._weights @ self._x)
 
     @property
     def covariance(self) -> Floats:
         """(4, 4) of the state."""
-        return np.asarray(self._filter.P)
+        apart = self._x - self.state
+        return np.asarray(
+            (self._weights @ self._p.reshape(_MODES, 16)).reshape(4, 4) + (apart.T * self._weights) @ apart
+        )
 
-    def predict(self, duration_s: float, rolling_m_s2: float) -> None:
-        """Lets the ball roll for `duration_s`; friction, a deceleration, stops it and never reverses it."""
-        self._since_update_s += duration_s
-        speed_m_s = float(np.hypot(*self._filter.x[2:, 0]))
-        loss_m_s2 = SLIDING_M_S2 if speed_m_s > self._rolls_below_m_s else rolling_m_s2
-        kept = max(0.0, 1.0 - loss_m_s2 * duration_s / max(speed_m_s, 1e-9))
-        motion = np.eye(4)
-        motion[0, 2] = motion[1, 3] = duration_s
-        deviation_m_s2 = (_STEADY_M_S2 + _UNSTEADY_1_S * speed_m_s) * self._strain
-        push = np.array((duration_s**2 / 2, duration_s))
-        noise = np.kron(np.outer(push, push), np.eye(2)) * deviation_m_s2**2
-        self._filter.predict(F=motion, Q=noise)
-        mean_loss = (1.0 - kept) / 2 * duration_s
-        self._filter.x[:2] -= mean_loss * self._filter.x[2:]
-        self._filter.x[2:] *= kept
+    @property
+    def weights(self) -> Floats:
+        """(5): probability of each `Mode`."""
+        return self._weights
 
-    def surprise(self, position_m: Floats, covariance_m2: Floats, age_s: float = 0.0) -> float:
-        """Returns the squared Mahalanobis distance of a sighting (2) captured `age_s` ago."""
-        seen_as = _seen_as(age_s)
-        innovation = position_m - seen_as @ self.state
-        spread = seen_as @ self._filter.P @ seen_as.T + covariance_m2
-        return float(innovation @ np.linalg.solve(spread, innovation))
+    def predict(self, duration_s: float, rolling_m_s2: float, contact: bool = False) -> None:
+        """Moves the ball on by `duration_s`.
 
-    def see(self, position_m: Floats, covariance_m2: Floats, age_s: float = 0.0) -> None:
-        """Takes a sighting (2) with its covariance (2, 2), captured `age_s` ago."""
-        surprise = self.surprise(position_m, covariance_m2, age_s) / 2  # 1 on average for an honest filter
-        share = 1.0 - math.exp(-max(self._since_update_s, 0.01) / _STRAIN_MEMORY_S)
-        self._strain += share * (min(_STRAIN_MOST, max(1.0, surprise)) - self._strain)
-        self._since_update_s = 0.0
-        self._filter.update(position_m[:, None], R=covariance_m2, H=_seen_as(age_s))
+        Args:
+            duration_s: the step.
+            rolling_m_s2: deceleration of the rolling ball.
+            contact: a robot, a post or a wall is near the ball.
+        """
+        self._mix(duration_s, contact)
+        x, p = self._x, self._p
+        speeds_m_s = np.sqrt((x[:, 2:] ** 2).sum(axis=1)) + 1e-9
+        losses_m_s2 = np.array((0.0, rolling_m_s2, SLIDING_M_S2, 0.0, 0.0))
+        kept = np.maximum(0.0, 1.0 - losses_m_s2 * duration_s / speeds_m_s)
+        kept[Mode.RESTS] = 0.0
+        x[:, :2] += x[:, 2:] * (duration_s * (1.0 + kept) / 2)[:, None]
+        x[:, 2:] *= kept[:, None]
+        p[Mode.RESTS, 2:] = p[Mode.RESTS, :, 2:] = 0.0
+        p[:, :2] += duration_s * p[:, 2:]
+        p[:, :, :2] += duration_s * p[:, :, 2:]
+        along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
+        noise = _NOISE_M2_S3[:, None] * along
+        hit = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
+        noise[Mode.HIT] += hit
+        noise[Mode.RESTS] = (_NOISE_M2_S3[Mode.RESTS] * duration_s, 0.0, 1e-4)
+        for axis in (0, 1):
+            p[:, axis, axis] += noise[:, 0]
+            p[:, axis, axis + 2] += noise[:, 1]
+            p[:, axis + 2, axis] += noise[:, 1]
+            p[:, axis + 2, axis + 2] += noise[:, 2]
+
+    def stay_within(self, x_m: float, y_m: float) -> None:
+        """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them."""
+        limits_m = np.array((x_m, y_m))
+        beyond = np.abs(self._x[:, :2]) > limits_m
+        if beyond.any():
+            self._x[:, :2] = np.clip(self._x[:, :2], -limits_m, limits_m)
+            self._x[:, 2:][beyond] *= -_BOUNCE
+
+    def see(self, position_m: Floats, covariance_m2: Floats, age_s: float = 0.0) -> bool:
+        """Takes a sighting (2) with its covariance (2, 2), captured `age_s` ago; returns False if it does not fit."""
+        gain = self._p[:, :, :2] - age_s * self._p[:, :, 2:]  # P H'
+        spread = gain[:, :2] - age_s * gain[:, 2:] + covariance_m2
+        determinants = spread[:, 0, 0] * spread[:, 1, 1] - spread[:, 0, 1] * spread[:, 1, 0]
+        inverse = np.empty_like(spread)
+        inverse[:, 0, 0], inverse[:, 1, 1] = spread[:, 1, 1], spread[:, 0, 0]
+        inverse[:, 0, 1], inverse[:, 1, 0] = -spread[:, 0, 1], -spread[:, 1, 0]
+        inverse /= determinants[:, None, None]
+        innovations = position_m - self._x[:, :2] + age_s * self._x[:, 2:]
+        weighted = (inverse @ innovations[:, :, None])[:, :, 0]
+        surprises = (innovations * weighted).sum(axis=1)
+        likely = self._weights * np.exp(-surprises / 2) / (2 * math.pi * np.sqrt(determinants))
+        evidence = float(likely.sum())
+        if evidence < _CLUTTER_1_M2:
+            return False
+        self._x += (gain @ weighted[:, :, None])[:, :, 0]
+        self._p -= gain @ inverse @ gain.transpose(0, 2, 1)
+        self._p = (self._p + self._p.transpose(0, 2, 1)) / 2  # rounding errors would grow
+        self._weights = np.maximum(likely / evidence, _LEAST)
+        self._weights /= self._weights.sum()
+        return True
 
     def hold(self, state: Floats, covariance: Floats) -> None:
-        """Takes a ball in the mouth: its state (4) with the covariance (4, 4)."""
-        self._strain, self._since_update_s, self._rolls_below_m_s = 1.0, 0.0, math.inf
-        self._filter.update(state[:, None], R=covariance, H=np.eye(4))
+        """Takes the ball in a mouth: its state (4) with the covariance (4, 4), which replace the track's.
+
+        The error of a robot's pose stays from tick to tick, so several ticks tell no more than one.
+        """
+        self._x[:], self._p[:] = state, covariance
+        self._become(Mode.HANDLED)
+        self._rolls_below_m_s = 0.0
 
     def kick(self, velocity_m_s: Floats) -> None:
         """Takes a kick that gave the ball about this velocity (2), world frame."""
         speed_m_s = float(np.hypot(*velocity_m_s))
         along = velocity_m_s / max(speed_m_s, 1e-9)
         across = np.array((-along[1], along[0]))
-        self._rolls_below_m_s = ROLLING_SHARE * speed_m_s
-        self._filter.x[2:, 0] = velocity_m_s
-        self._filter.P[2:, :2] = self._filter.P[:2, 2:] = 0.0
-        self._filter.P[:2, :2] += np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
-        self._filter.P[2:, 2:] = (
-            np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.3) ** 2
+        position_m, covariance_m2 = self.state[:2], self.covariance[:2, :2]
+        self._x[:, :2], self._x[:, 2:] = position_m, velocity_m_s
+        self._p[:] = 0.0
+        self._p[:, :2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
+        self._p[:, 2:, 2:] = (
+            np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
         )
+        self._become(Mode.SLIDES)
+        self._rolls_below_m_s = ROLLING_SHARE * speed_m_s
 
+    def _become(self, mode: Mode) -> None:
+        self._weights = np.full(_MODES, _LEAST)
+        self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
 
-def _seen_as(age_s: float) -> Floats:
-    """Measurement matrix (2, 4) of a position that was seen `age_s` ago."""
-    return np.array(((1.0, 0.0, -age_s, 0.0), (0.0, 1.0, 0.0, -age_s)))
+    def _mix(self, duration_s: float, contact: bool) -> None:
+        """Lets the models exchange their beliefs; a fast ball does not rest, a slow one does not slide."""
+        rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
+        slow = float(np.hypot(*self._x[Mode.ROLLS, 2:])) < _SLOW_M_S
+        rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
+        if self._rolls_below_m_s:
+            slides = float(np.hypot(*self._x[Mode.SLIDES, 2:])) > self._rolls_below_m_s
+            rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
+        moves = -np.expm1(-rates_1_s * duration_s)
+        moves[np.arange(_MODES), np.arange(_MODES)] = 1.0 - moves.sum(axis=1)
+        moves[Mode.HIT] = _AFTER_HIT
+        joint = self._weights[:, None] * moves
+        weights = np.maximum(joint.sum(axis=0), 1e-12)
+        shares = (joint / weights).T  # (new, old)
+        mixed = shares @ self._x
+        apart = self._x[None] - mixed[:, None]
+        spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
+        self._p = (shares @ self._p.reshape(_MODES, 16)).reshape(_MODES, 4, 4) + spread
+        self._x, self._weights = mixed, weights / weights.sum()

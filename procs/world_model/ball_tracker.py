@@ -18,7 +18,6 @@ import numpy as np
 from procs.model.frames import Floats
 from procs.world_model.ball_filter import BallFilter
 
-_GATE = 13.8  # chi-square, 2 degrees of freedom, 99.9 %
 _SECOND_SIGHT_S = 0.3
 _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
@@ -56,6 +55,7 @@ class BallTracker:
         """Robot to (exposure of its newest sighting in the track, weakness)."""
         self._seen_s = -np.inf
         self._held_s = -np.inf
+        self._moved_s = -np.inf  # a known kick, or a ball in the own mouth: exposures before it tell nothing
 
     @property
     def known(self) -> bool:
@@ -83,25 +83,27 @@ class BallTracker:
         """Number of robots with a sighting in the last half second."""
         return sum(self._now_s - seen_s < _OBSERVER_S for seen_s, _ in self._confirmed.values())
 
-    def advance(self, duration_s: float, timeout_s: float, rolling_m_s2: float) -> None:
-        """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`."""
+    def advance(self, duration_s: float, timeout_s: float, rolling_m_s2: float, contact: bool = False) -> None:
+        """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
+
+        `contact` says that a robot or a wall is near the ball.
+        """
         self._rolling_m_s2 = rolling_m_s2
         self._now_s += duration_s
         self._doubts = [doubt for doubt in self._doubts if self._now_s - doubt[0] <= _SECOND_SIGHT_S]
         if self._track is not None:
-            self._track.predict(duration_s, rolling_m_s2)
+            self._track.predict(duration_s, rolling_m_s2, contact)
             if self.age_s > timeout_s:
                 self.forget()
 
     def see(self, sighting: Sighting) -> bool:
         """Takes a sighting; returns False if it does not fit."""
-        if self._now_s == self._held_s:
+        if self._now_s == self._held_s or self._now_s - sighting.age_s < self._moved_s - 1e-6:
             return False
         if self._track is None:
             self._begin(sighting)
             return True
-        if self._track.surprise(sighting.position_m, sighting.covariance_m2, sighting.age_s) <= _GATE:
-            self._track.see(sighting.position_m, sighting.covariance_m2, sighting.age_s)
+        if self._track.see(sighting.position_m, sighting.covariance_m2, sighting.age_s):
             self._confirm(sighting)
             return True
         if self._overruled(sighting):
@@ -120,7 +122,7 @@ class BallTracker:
             self._track = BallFilter(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
         self._track.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
         self._confirmed = {robot: (self._now_s, 0.0)}
-        self._seen_s = self._held_s = self._now_s
+        self._seen_s = self._held_s = self._moved_s = self._now_s
         self._doubts = []
 
     def kick(self, velocity_m_s: Floats, age_s: float = 0.0) -> None:
@@ -134,6 +136,7 @@ class BallTracker:
                 return
             self._track.kick(velocity_m_s)
             self._track.predict(age_s, self._rolling_m_s2)
+        self._moved_s = self._now_s - age_s
         self._confirmed = {}
         self._doubts = []
 

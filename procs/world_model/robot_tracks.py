@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from filterpy.kalman import predict, update
-from scipy.optimize import linear_sum_assignment
 
+from procs.model.estimation import linear_sum_assignment, predict, update
 from procs.model.frames import Flags, Floats, Indices
 
 _ACCELERATION_M_S2 = 2.5

@@ -19,6 +19,7 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
+from procs.model.ball import RADIUS_M
 from procs.model.field import Field
 from procs.model.frames import plausible
 from procs.model.units import US_PER_S
@@ -32,6 +33,7 @@ from procs.world_model.told import ball_of, held_ball_of, mate_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
+_TOUCH_M = 0.9  # a robot this near to the ball may touch it within a tick
 
 
 class WorldModelConfig(Config):
@@ -59,13 +61,13 @@ class WorldModelConfig(Config):
     """Use the sightings of mates."""
     message_period_s: float = Setting(default=0.1, gt=0.0)
     """Time from one message to the team to the next."""
-    sight_correlation: float = Setting(default=1.5, ge=1.0)
+    sight_correlation: float = Setting(default=1.0, ge=1.0)
     """Frames that share one error of the camera; the filters widen sightings by it."""
     shake_s_m: float = Setting(default=0.7, ge=0.0)
     """Growth of the camera's deviation with speed, as a share of the percepts' deviation for each m/s."""
-    pose_correlation: float = Setting(default=6.0, ge=1.0)
+    pose_correlation: float = Setting(default=2.0, ge=1.0)
     """Frames that share one error of the own pose."""
-    team_correlation: float = Setting(default=2.0, ge=1.0)
+    team_correlation: float = Setting(default=1.0, ge=1.0)
     """Messages of a mate that share one error."""
 
 
@@ -96,6 +98,7 @@ class WorldModel(Component):
         self._last_us = 0
         self._sent_us = 0
         self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
+        self._untold_frame = False
 
     def loop(self) -> None:
         config, now_s = self.config, self.clock.now_s
@@ -104,12 +107,11 @@ class WorldModel(Component):
         view = OwnView(self.pose.value, self.odometry.value, self.pose.refreshed, config.shake_s_m)
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
-        self._follow_ball(view, told, passed_s)
+        self._follow_ball(view, mates, told, passed_s)
         self._follow_opponents(view, mates, told, passed_s)
         fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
         self.world_model.write()
-        # Half a tick early is nearer to the period than half a tick late.
-        if self.clock.since_s(self._sent_us) + self.clock.period_s / 2 >= config.message_period_s:
+        if self._message_due():
             self._tell_team(view)
 
     def _listen(self, now_s: float) -> list[tuple[team_message_t, Mate]]:
@@ -121,7 +123,9 @@ class WorldModel(Component):
                 told.append((message, mate))
         return told if self.config.use_team_sight else []
 
-    def _follow_ball(self, view: OwnView, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
+    def _follow_ball(
+        self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
+    ) -> None:
         config, kicker = self.config, self.kicker_state.value
         kicked = kicker.kicks != self._kicks
         if kicked:
@@ -132,13 +136,17 @@ class WorldModel(Component):
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told)
-        self._ball.advance(passed_s, config.ball_timeout_s, config.ball_rolling_m_s2)
+        contact = self._in_contact(view, mates)
+        self._ball.advance(passed_s, config.ball_timeout_s, config.ball_rolling_m_s2, contact)
+        if self._ball.known:
+            self._ball.track.stay_within(*self._arena_m())
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(config.mouth_m))
         if self.ball_percept.refreshed:
             percept = self.ball_percept.value
             age_s = self._age_s(percept.capture_us)
             seen = self._untold_ball = view.ball(percept, age_s)
+            self._untold_frame = True
             self.team_message.value.ball_capture_us = self.clock.now_us - round(age_s * US_PER_S)
             self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
         for message, mate in told:
@@ -146,6 +154,26 @@ class WorldModel(Component):
             self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
             held = held_ball_of(message, mate, config.mouth_m)
             self._see(mate.name, held, self.clock.since_s(message.header.time_us))
+
+    def _arena_m(self) -> tuple[float, float]:
+        """Returns how far along x and y the middle of the ball can get: to the wall, or to the net of a goal."""
+        field, (_, y_m) = self.config.field, self._ball.track.state[:2]
+        depth_m = field.goal_depth_m if abs(y_m) < field.goal_width_m / 2 else field.border_m
+        return field.half_length_m + depth_m - RADIUS_M, field.half_width_m + field.border_m - RADIUS_M
+
+    def _in_contact(self, view: OwnView, mates: list[Mate]) -> bool:
+        """Returns whether a robot, or the wall around the field, is near the ball."""
+        if not self._ball.known:
+            return False
+        field, ball_m = self.config.field, self._ball.track.state[:2]
+        if (np.abs(ball_m) > (field.half_length_m - _TOUCH_M, field.half_width_m + field.border_m - _TOUCH_M)).any():
+            return True
+        robots_m = [mate.position_at(self.clock.now_s) for mate in mates]
+        if view.localized:
+            robots_m.append(view.pose[:2])
+        if len(self._opponents):
+            robots_m.extend(self._opponents.states[:, :2])
+        return any(abs(x_m - ball_m[0]) + abs(y_m - ball_m[1]) < _TOUCH_M for x_m, y_m in robots_m)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
         """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
@@ -184,6 +212,18 @@ class WorldModel(Component):
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
+    def _message_due(self) -> bool:
+        """Returns whether to send now: about once a period, and rather in a tick with a new sighting.
+
+        Half a tick early is nearer to the period than half a tick late. A message without a sighting waits one tick for
+        the camera; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
+        """
+        half_tick_s = self.clock.period_s / 2
+        passed_s = self.clock.since_s(self._sent_us) + half_tick_s
+        if not self._untold_frame:
+            passed_s -= self.clock.period_s
+        return passed_s >= self.config.message_period_s
+
     def _tell_team(self, view: OwnView) -> None:
         """Sends the own state with the newest own sightings, each once."""
         message = self.team_message.value
@@ -192,6 +232,7 @@ class WorldModel(Component):
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
         self._untold_ball = self._untold_obstacles = Seen.NOTHING
+        self._untold_frame = False
         self._sent_us = self.clock.now_us
         self.team_message.write()
 

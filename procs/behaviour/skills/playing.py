@@ -98,17 +98,26 @@ class _Kick(_WithBall):
         known = not math.isnan(self._heading_rad)
         turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
         self._heading_rad = own.heading_rad
-        ball = ahead(own.place, own.heading_rad, _MOUTH_M)
-        way_rad = bearing_rad(ball, scene.place)
-        mouth_m_s = _mouth_velocity_m_s(own, turn_rad_s)
-        missing = Point(speed_m_s * math.cos(way_rad) - mouth_m_s.x_m, speed_m_s * math.sin(way_rad) - mouth_m_s.y_m)
-        wanted_rad, kick_m_s = math.atan2(missing.y_m, missing.x_m), max(_LEAST_KICK_M_S, math.hypot(*missing))
+        wanted_rad, kick_m_s = self._aim(scene, speed_m_s, _mouth_velocity_m_s(own, turn_rad_s))
         off_rad = wrap_rad(wanted_rad - own.heading_rad - turn_rad_s * self._LEAD_S)
         patience = 1.0 + self._running_s  # a poor kick is better than none
         if abs(off_rad) < self._tolerance_rad(distance_m) * patience and scene.charged and scene.holds_ball:
             self._kick = scene.kicks_asked + 1
             return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
         return Step(self._turn(scene, wanted_rad), dribble=True)
+
+    def _aim(self, scene: Scene, speed_m_s: float, mouth_m_s: Point) -> tuple[float, float]:
+        """Returns the heading at which a kick sends the ball to the place with `speed_m_s`, and the kick's speed.
+
+        The ball moves with the mouth while the robot turns; after two rounds heading and place of the ball agree.
+        """
+        heading_rad, missing = bearing_rad(scene.view.own.place, scene.place), Point(0.0, 0.0)
+        for _ in range(2):
+            ball = ahead(scene.view.own.place, heading_rad, _MOUTH_M)
+            way_rad = bearing_rad(ball, scene.place)
+            missing = ahead(Point(-mouth_m_s.x_m, -mouth_m_s.y_m), way_rad, speed_m_s)
+            heading_rad = math.atan2(missing.y_m, missing.x_m)
+        return heading_rad, max(_LEAST_KICK_M_S, math.hypot(*missing))
 
     def _turn(self, scene: Scene, heading_rad: float) -> Drive:
         if self._stand is None:
