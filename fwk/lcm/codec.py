@@ -159,7 +159,7 @@ class _EncoderSource(_Source):
             return
         if isinstance(first, int):
             self._line(f"if len({values}) != {first}:")
-            self._line(f"    raise ValueError('{values.rpartition('.')[2]} is no array of {first}')")
+            self._line(f"    raise ValueError('{values.rpartition('.')[2]} is not an array of {first}')")
         if kind == "byte":
             self._chunk(f"bytes({values})")
             return

@@ -39,7 +39,7 @@ def is_plain(type_name: str) -> bool:
 
 
 def mistake_in(message_type: type[Message]) -> str:
-    """Why a type can have no channel; empty if it can. Parts of our own messages are no device's."""
+    """Returns why a type cannot have a channel; empty if it can. Parts of the framework's own messages cannot."""
     name = messages.type_name(message_type)
     if name.startswith("core.") and not messages.has_header(message_type):
         return f"{name} is the framework's own and does not begin with 'core.header_t header;'"

@@ -100,7 +100,7 @@ class Assembler:
             return datagram[8:end], datagram[end + 1 :]
         if magic == _LONG_MAGIC and len(datagram) >= _LONG.size:
             return self._fragment(datagram, source_port)
-        raise MessageError(f"datagram of {len(datagram)} bytes that is no LCM message")
+        raise MessageError(f"datagram of {len(datagram)} bytes that is not an LCM message")
 
     def _fragment(self, datagram: bytes, source_port: int) -> tuple[bytes, bytes] | None:
         _, number, size, offset, part, count = _LONG.unpack_from(datagram)

@@ -14,7 +14,8 @@ from fwk.logs.rotating import RotatingFile
 from fwk.logs.syslog import Syslog
 from fwk.logs.text_file import TextLog
 from fwk.model.names import LINES
-from fwk.model.plan import LogPlan, Plan
+from fwk.model.plan import Plan
+from fwk.model.sections import LogPlan
 
 _MB = 1_000_000
 _LEVEL_AT = 8  # of an encoded log_t; the type's fingerprint stands before it

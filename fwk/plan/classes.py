@@ -56,7 +56,7 @@ def find_object(use: str, folders: Sequence[str] = ()) -> object:
     """
     name, _, wanted = use.partition(":")
     if not wanted or not _USE.fullmatch(use):
-        raise UnusableError(f"'{use}' is no function; write module:function")
+        raise UnusableError(f"'{use}' is not a function; write module:function")
     module = imported(name, folders)
     if not hasattr(module, wanted):
         raise UnusableError(f"module '{name}' has no '{wanted}'; {hint(wanted, _public(module))}")
@@ -196,5 +196,5 @@ def _named(module: ModuleType, wanted: str) -> type[Component]:
         known = components_in(module)
         raise UnusableError(f"module '{module.__name__}' has no component '{wanted}'; {hint(wanted, known)}")
     if not inspect.isclass(found) or not issubclass(found, Component):
-        raise UnusableError(f"{module.__name__}:{wanted} is no component; derive it from fwk.Component")
+        raise UnusableError(f"{module.__name__}:{wanted} is not a component; derive it from fwk.Component")
     return found

@@ -6,8 +6,9 @@ from typing import Any
 
 from fwk.clock import US_PER_S
 from fwk.model.errors import Problems
-from fwk.model.plan import ComponentPlan, Plan, RecordPlan, RestartPolicy
+from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
+from fwk.model.sections import RecordPlan
 from fwk.model.selection import chosen, groups_of
 from fwk.plan.files.folders import folders_of, join
 from fwk.plan.files.launch_file import Files, find_launch_file, lay_over, read_files
@@ -155,7 +156,7 @@ class _Loading:
             "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": function_of(files, "video", self.folders, problems),
-            "log": log_of(files),
+            "log": log_of(files, problems),
             "runs": runs_of(files),
             **bus_port,
         }
@@ -187,7 +188,7 @@ def _component_plans(
             origins=each.origins,
             channels=wiring.ports[index],
             host=host_of[index],
-            restart=RestartPolicy(**each.asked.entry.restart.model_dump()),
+            restart=each.asked.entry.restart,
             ready_timeout_s=each.asked.entry.ready_timeout_s,
             stop_timeout_s=each.asked.entry.stop_timeout_s,
             rate_hz=each.rate_hz,

@@ -1,5 +1,6 @@
-"""What a launch file says of the run as a whole: time, buses, what programs outside may write, display."""
+"""Reads the sections of a launch file about the run as a whole: time, buses, outside, log, recording, display."""
 
+import ipaddress
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -8,8 +9,9 @@ import lcmtypes
 from fwk.lcm import envelope, messages
 from fwk.model.errors import Problems, hint
 from fwk.model.names import mistake_in
-from fwk.model.plan import ChannelPlan, LogPlan, Plan, RecordPlan, RunsPlan
+from fwk.model.plan import ChannelPlan, Plan
 from fwk.model.public_url import UrlError, parse_url
+from fwk.model.sections import LogPlan, RecordPlan, RunsPlan
 from fwk.model.selection import matches
 from fwk.plan.classes import UnusableError, find_object, imported
 from fwk.plan.files.launch_file import Files
@@ -21,14 +23,14 @@ _PORTS = range(1024, 65536)
 
 
 def last(files: Files, key: str, default: Any) -> Any:
-    """What the last layer that says something of a key says of it."""
+    """Returns the value of a key in the last layer that sets it."""
     return next(
         (value for layer in reversed(files.layers) if (value := getattr(layer.content, key)) is not None), default
     )
 
 
 def merged(files: Files, key: str) -> tuple[dict[str, Any], dict[str, str]]:
-    """A mapping that all layers add to, and where each of its keys stands; later layers win."""
+    """Returns a mapping merged from all layers, and the place of each of its keys; later layers win."""
     values: dict[str, Any] = {}
     places: dict[str, str] = {}
     for layer in files.layers:
@@ -38,7 +40,7 @@ def merged(files: Files, key: str) -> tuple[dict[str, Any], dict[str, str]]:
 
 
 def outside_of(files: Files, problems: Problems) -> dict[str, type[messages.Message]]:
-    """Channels that programs outside may write, with their types."""
+    """Returns the channels that programs outside may write, with their types."""
     names, places = merged(files, "outside")
     found = {}
     for channel, type_name in names.items():
@@ -63,15 +65,15 @@ def _types() -> list[str]:
 
 
 def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str:
-    """The URL of the public bus; a receive buffer large enough for bursts is added where it is missing.
+    """Returns the URL of the public bus, with a receive buffer that is large enough for bursts.
 
-    Where no file names one, the usual port moves by as much as the bus port does, so that two runs keep apart.
+    Where no file sets the URL, its port moves with the bus port, so that two runs do not hear each other.
     """
     moved = 0 if bus_port is None else bus_port - Plan.bus_port
-    port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # below the lowest comes the highest
+    port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # wraps around
     url: str = last(files, "public_url", Plan.public_url.replace(f":{_PUBLIC_PORT}", f":{port}"))
     if not url.startswith(_URL):
-        text = f"'{url}' is no public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
+        text = f"'{url}' is not a public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
         problems.add(_place(files, "public_url"), "", text)
     else:
         try:
@@ -84,7 +86,7 @@ def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str
 
 
 def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Problems) -> str:
-    """The `module:function` behind a key, which is there and can be called; empty if the files do not name one."""
+    """Returns the `module:function` of a key after checking that it can be called; empty if no file sets it."""
     use: str = last(files, key, "")
     if use:
         _try(lambda: find_object(use, folders), lambda text: problems.add(_place(files, key), "", f"{key}: {text}"))
@@ -92,10 +94,10 @@ def function_of(files: Files, key: str, folders: tuple[str, ...], problems: Prob
 
 
 def scoreboard_channels_of(use: str, channels: Sequence[ChannelPlan], folders: tuple[str, ...]) -> tuple[str, ...]:
-    """Names of the channels that the scoreboard `use` reads: those that fit `CHANNELS` of its module, or else all.
+    """Returns the channels that the scoreboard `use` reads: those that match `CHANNELS` of its module, or else all.
 
     Raises:
-        UnusableError: there is no such module.
+        UnusableError: the module cannot be imported.
     """
     if not use:
         return ()
@@ -103,18 +105,35 @@ def scoreboard_channels_of(use: str, channels: Sequence[ChannelPlan], folders: t
     return tuple(each.name for each in channels if any(matches(each.name, pattern) for pattern in patterns))
 
 
-def log_of(files: Files) -> LogPlan:
-    """Where lines of text go."""
-    return LogPlan(**_key_by_key(files, "log"))
+def log_of(files: Files, problems: Problems) -> LogPlan:
+    """Returns the targets of the log."""
+    log = LogPlan(**_key_by_key(files, "log"))
+    if not _is_syslog(log.syslog_to):
+        right = "it should be a socket's path, or an address and port such as 10.0.0.7:514"
+        place = next(
+            node.place for layer in reversed(files.layers) if (node := layer.node.at("log").child("syslog_to"))
+        )
+        problems.add(place, "", f"'log.syslog_to' is '{log.syslog_to}'; {right}")
+    return log
+
+
+def _is_syslog(to: str) -> bool:
+    """Returns whether a text is the path of a socket, or an IPv4 address and a port."""
+    address, _, port = to.rpartition(":")
+    try:
+        ipaddress.IPv4Address(address)
+    except ValueError:
+        return to.startswith("/")
+    return port.isdecimal() and 0 < int(port) < 1 << 16
 
 
 def runs_of(files: Files) -> RunsPlan:
-    """How many run directories stay."""
+    """Returns how many run directories are kept."""
     return RunsPlan(**_key_by_key(files, "runs"))
 
 
 def record_of(files: Files, channels: Sequence[ChannelPlan], problems: Problems) -> RecordPlan:
-    """Which cameras' frames are recorded; `channels` are those of the whole system."""
+    """Returns the cameras whose frames are recorded; `channels` are those of the whole system."""
     layers = [layer for layer in files.layers if layer.content.record.frames is not None]
     if not layers:
         return RecordPlan()
@@ -123,21 +142,23 @@ def record_of(files: Files, channels: Sequence[ChannelPlan], problems: Problems)
     for pattern in patterns:
         if not any(matches(name, pattern) for name in cameras) and not files.gaps:
             place = layers[-1].node.at("record", "frames").place
-            problems.add(place, "", f"record: no camera gives out '{pattern}'; {hint(pattern, cameras)}")
+            problems.add(place, "", f"record: no camera publishes '{pattern}'; {hint(pattern, cameras)}")
     return RecordPlan(tuple(name for name in cameras if any(matches(name, pattern) for pattern in patterns)))
 
 
 def _key_by_key(files: Files, key: str) -> dict[str, Any]:
-    said: dict[str, Any] = {}
+    """Returns the values that the layers set in a section; later layers win."""
+    values: dict[str, Any] = {}
     for layer in files.layers:
-        said |= getattr(layer.content, key).model_dump(exclude_none=True)
-    return said
+        section, node = getattr(layer.content, key), layer.node.child(key)
+        values |= {name: getattr(section, name) for name in node.plain()} if node else {}
+    return values
 
 
 def _try(find: Callable[[], object], report: Callable[[str], None]) -> None:
     try:
         if not callable(found := find()):
-            report(f"{found!r} is no function")
+            report(f"{found!r} is not a function")
     except UnusableError as error:
         report(str(error))
 

@@ -10,6 +10,7 @@ from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.lcm.event_log import LogWriter
 from fwk.model.plan import Plan
+from fwk.model.plan_document import document_of
 from lcmtypes.core import plan_t, protocol_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
@@ -22,7 +23,7 @@ class Recorder:
         self._writer = LogWriter(path, report)
         first = plan_t()
         first.version = protocol_t.VERSION
-        first.json = json.dumps(plan.to_json())
+        first.json = json.dumps(document_of(plan))
         self._writer.append("fwk/plan", first.encode(), 0)
         self._report = report
         self._due_us = 0

@@ -4,10 +4,11 @@ import json
 import struct
 from typing import Any
 
-from fwk.lcm.messages import current_name, fingerprint
+from fwk.lcm.messages import fingerprint
 from fwk.model.channel_table import Fact, change_message, facts_of
 from fwk.model.plain_values import value_messages
 from fwk.model.plan import NOBODY, Plan
+from fwk.model.plan_document import plan_from
 from fwk.model.tick_events import (
     ChannelsChanged,
     FinalDone,
@@ -46,23 +47,14 @@ def read_plan(data: bytes) -> tuple[Plan, int]:
             version that this program does not know.
     """
     if data[:8] == fingerprint(core_v1.plan_t):
-        return _plan(core_v1.plan_t.decode(data).json), 1
+        return plan_from(json.loads(core_v1.plan_t.decode(data).json)), 1
     message = core.plan_t.decode(data)
     if message.version != protocol_t.VERSION:
         raise ValueError(
             f"protocol version {message.version}; this program reads versions 1 to {protocol_t.VERSION}, "
             "so a newer one wrote the recording"
         )
-    return _plan(message.json), message.version
-
-
-def _plan(text: str) -> Plan:
-    """Reads a plan in which types may have their former names."""
-    content = json.loads(text)
-    for channel in content["channels"]:
-        channel["type_name"] = current_name(channel["type_name"])
-    content["outside"] = {name: current_name(kind) for name, kind in content.get("outside", {}).items()}
-    return Plan.from_json(content)
+    return plan_from(json.loads(message.json)), message.version
 
 
 def record_type(version: int) -> type[Any]:

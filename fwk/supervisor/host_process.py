@@ -8,7 +8,8 @@ from enum import StrEnum
 from fwk.clock import US_PER_S
 from fwk.host.debugger import LEFT
 from fwk.model.channel_table import Fact
-from fwk.model.plan import Plan, RestartPolicy
+from fwk.model.plan import Plan
+from fwk.model.sections import RestartPolicy
 from lcmtypes.core import component_state_t, histogram_t
 
 REAL_TIME_STOP_US = 3 * US_PER_S

@@ -20,8 +20,9 @@ from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import change_message
 from fwk.model.names import LINES
-from fwk.model.plan import NOBODY, ComponentPlan, LogPlan
+from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.requests import channel_request_of
+from fwk.model.sections import LogPlan
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t, log_t
 

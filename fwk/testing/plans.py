@@ -7,7 +7,8 @@ from fwk.clock import US_PER_S
 from fwk.component.component import DEFAULT_STAGES, Component
 from fwk.component.declaration import declaration
 from fwk.lcm.messages import type_named
-from fwk.model.plan import ComponentPlan, HostPlan, Plan, RestartPolicy
+from fwk.model.plan import ComponentPlan, HostPlan, Plan
+from fwk.model.sections import RestartPolicy
 from fwk.plan.load import SPARE_CHANNELS
 from fwk.plan.wiring.component_spec import Wish
 from fwk.plan.wiring.needs import granted_by

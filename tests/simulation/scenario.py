@@ -6,7 +6,8 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any, Literal
 
-from fwk.model.plan import NOBODY, Plan, RestartPolicy
+from fwk.model.plan import NOBODY, Plan
+from fwk.model.sections import RestartPolicy
 from fwk.testing.plans import plan_of
 from tests.simulation.components import CALLS, KINDS, STAGES
 from tests.simulation.faults import OUTSIDE, Action, Weather, weather_of

@@ -13,6 +13,7 @@ from fwk.display.plan_overview import counted, overview, value_at
 from fwk.display.table import Column, Table
 from fwk.model.errors import PlanError, Problem
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
+from fwk.model.plan_document import document_of
 from fwk.plan.load import LaunchOptions, load_plan
 
 BAD_INPUT = 2
@@ -55,7 +56,7 @@ def check(
         typer.echo(counted(len(error.problems), "mistake"), err=True)
         raise typer.Exit(BAD_INPUT) from error
     if as_json:
-        say(json.dumps({"ok": True, "mistakes": [], "plan": plan.to_json()}, indent=2))
+        say(json.dumps({"ok": True, "mistakes": [], "plan": document_of(plan)}, indent=2))
         return
     say(*overview(plan))
     if channels:

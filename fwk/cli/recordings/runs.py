@@ -15,7 +15,7 @@ from fwk.cli.run_options import BAD_INPUT, Json
 from fwk.clock import US_PER_S
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
-from fwk.model.plan import RunsPlan
+from fwk.model.sections import RunsPlan
 
 _MB = 1_000_000
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from fwk.cli.run.run_directory import RunDirError
 from fwk.display.plan_overview import value_at
 from fwk.model.plan import Plan
+from fwk.model.plan_document import document_of
 from fwk.plan.files.launch_file import INSTALLED
 
 LIBRARIES = ("fwk", "lcm", "numpy", "opencv-python-headless", "pymunk", "filterpy", "pydantic")
@@ -22,7 +23,7 @@ def write_run_files(folder: Path, plan: Plan) -> None:
     """
     types = folder / "lcmtypes"
     try:
-        (folder / "plan.json").write_text(json.dumps(plan.to_json(), indent=1))
+        (folder / "plan.json").write_text(json.dumps(document_of(plan), indent=1))
         (folder / "config.yaml").write_text("".join(f"{line}\n" for line in _settings(plan)))
         (folder / "versions.json").write_text(json.dumps(_versions(), indent=1) + "\n")
         types.mkdir(exist_ok=True)

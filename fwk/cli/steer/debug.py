@@ -17,6 +17,7 @@ from fwk.host.debugger import LEFT, DebuggerMissing, DebugRequest, check
 from fwk.host.terminal_guard import run_guarded
 from fwk.model.errors import PlanError, Problems, hint
 from fwk.model.plan import ComponentPlan, Plan
+from fwk.model.plan_document import plan_from
 from fwk.plan.files.folders import join
 
 WAIT_S = 60.0  # the component may be in a long iteration
@@ -67,7 +68,7 @@ def _place(run: Mapping[str, Any], port: int, name: str, no_debugger: bool, debu
 
 def _plan(file: Path) -> Plan:
     try:
-        return Plan.from_json(json.loads(file.read_text()))
+        return plan_from(json.loads(file.read_text()))
     except (OSError, ValueError) as error:
         raise ControlError(f"{file}: the plan of the run cannot be read: {error}") from error
 

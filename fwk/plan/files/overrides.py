@@ -20,7 +20,7 @@ def overrides(sets: Sequence[str], problems: Problems) -> Node:
         path, equals, value = text.partition("=")
         component, dot, setting = path.partition(".")
         if not equals or not path or (dot and not setting):
-            problems.add(PLACE, "", f"'{text}' is no PATH=VALUE; write for example cyan1/omni_ball.gain=0.5")
+            problems.add(PLACE, "", f"'{text}' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5")
         elif not dot and path not in RUN_KEYS:
             right = "write NAME.SETTING=VALUE" if "/" in path else hint(path, RUN_KEYS)
             problems.add(PLACE, "", f"no setting '{path}'; {right}")

@@ -78,7 +78,7 @@ def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
         problems.add(shown, "", f"cannot be read: {error.strerror}")
         return None
     except UnicodeDecodeError as error:
-        problems.add(f"{shown}:{data[: error.start].count(10) + 1}", "", "this is no UTF-8 text")
+        problems.add(f"{shown}:{data[: error.start].count(10) + 1}", "", "this is not UTF-8 text")
         return None
     if len(data) > BYTES_MAX:
         text = f"more than {BYTES_MAX:,} bytes are too many for a launch file; split the system, or use templates"
@@ -104,7 +104,7 @@ def read_value(text: str, place: str, problems: Problems) -> Node | None:
     scratch = Problems()
     node = _parse(text, place, scratch)
     if scratch:
-        problems.add(place, "", f"{text!r} is no YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
+        problems.add(place, "", f"{text!r} is not a YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
         return None
     return _replaced(node, place) if node else Node(None, place)
 
@@ -127,10 +127,12 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
         mark = error.problem_mark or error.context_mark
         start = f"{error.context} that begins in line {error.context_mark.line + 1}, " if error.context_mark else ""
         reason = f"{start}{error.problem}"
-        problems.add(f"{shown}:{mark.line + 1 if mark else 1}", "", f"this is no YAML: {reason}")
+        problems.add(f"{shown}:{mark.line + 1 if mark else 1}", "", f"this is not valid YAML: {reason}")
     except yaml.reader.ReaderError as error:
         line = text[: error.position].count("\n") + 1
-        problems.add(f"{shown}:{line}", "", f"this is no YAML: character {chr(error.character)!r} is not allowed")
+        problems.add(
+            f"{shown}:{line}", "", f"this is not valid YAML: character {chr(error.character)!r} is not allowed"
+        )
     except RecursionError:
         problems.add(f"{shown}:1", "", "values lie too deep in each other; a few levels are enough")
     except _TooMuch:
@@ -200,7 +202,7 @@ class _Converter:
             if kind == "float":
                 return float(text.lower().replace(".inf", "inf").replace(".nan", "nan"))
         except (KeyError, ValueError):
-            self._problems.add(place, "", f"'{text}' is no {kind}")
+            self._problems.add(place, "", f"'{text}' is not a valid {kind}")
             return None
         self._problems.add(place, "", f"the tag '{node.tag}' is not known here; leave it out")
         return None
@@ -212,5 +214,5 @@ def _joined(text: str) -> str:
         return text
     try:
         return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
-    except UnicodeDecodeError:  # a half alone is no letter; whoever checks the value says so
+    except UnicodeDecodeError:  # a half alone is not a letter; whoever checks the value says so
         return text

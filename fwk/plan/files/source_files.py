@@ -52,7 +52,7 @@ class Sources:
         return found
 
     def _imported(self, module: str, file: Path) -> list[str]:
-        """What a file imports; while it is no Python, what it did before."""
+        """Returns what a file imports; while the file is not valid Python, what it imported before."""
         changed = file.stat().st_mtime_ns if file.exists() else 0
         before = self._imports.get(file, (-1, []))
         if before[0] == changed:
@@ -106,7 +106,7 @@ def _with_parents(module: str) -> Iterable[str]:
 
 
 def mistakes(files: Iterable[Path]) -> list[str]:
-    """Files that are no Python, each with line and reason."""
+    """Files that are not valid Python, each with line and reason."""
     found = []
     for file in sorted(files):
         try:

@@ -1,5 +1,6 @@
 """Checks values from a file against a pydantic model and words what does not fit, with the line it stands in."""
 
+import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import NoneType, UnionType
@@ -16,7 +17,8 @@ Path = tuple[str | int, ...]
 Report = Callable[[Path, str, str], None]
 """Takes a mistake: path of the value, its place, text."""
 
-_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type")
+_NO_MAPPING = ("dict_type", "model_type", "model_attributes_type", "dataclass_type")
+_UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
 _MAPPING = "it should be a mapping with keys such as 'name: value'"
 
 
@@ -87,9 +89,8 @@ def _path(node: Node, location: Path) -> Path:
 
 def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) -> str:
     location, kind = details["loc"], details["type"]
-    if kind == "extra_forbidden":
-        around = _model_at(model, location[:-1])
-        return f"no {what} '{_dotted(location)}'; {hint(str(location[-1]), around.model_fields if around else ())}"
+    if kind in _UNKNOWN_KEY:
+        return f"no {what} '{_dotted(location)}'; {hint(str(location[-1]), _fields_at(model, location[:-1]))}"
     if kind == "missing" and isinstance(location[-1], int):
         return f"'{_dotted(location[:-1])}' is {_short(node.at(*location[:-1]).plain())}; it should be longer"
     if kind == "missing":
@@ -121,18 +122,26 @@ def _mixed_up(made: Any, node: Node, path: Path) -> list[tuple[Path, str]]:
     return [(path, f"'{_dotted(path)}' is {_short(given)}; it should be {right}")]
 
 
-def _model_at(model: type[BaseModel], location: Path) -> type[BaseModel] | None:
-    """The model whose field is at a location, through optional fields, lists and mappings."""
+def _fields_at(model: type[BaseModel], location: Path) -> list[str]:
+    """Returns the fields of the model at a location, through optional fields, lists and mappings."""
     kind: Any = model
     for key in location:
-        if not (isinstance(kind, type) and issubclass(kind, BaseModel)):
+        fields = _fields(kind)
+        if not fields:
             kind = get_args(kind)[-1] if get_args(kind) else None
-        elif key in kind.model_fields:
-            kind = kind.model_fields[str(key)].annotation
-        elif key != kind.__name__:  # the name of a union's member stands in locations too
-            return None
+        elif key in fields:
+            kind = fields[str(key)]
+        elif key != kind.__name__:  # locations contain the names of union members, too
+            return []
         kind = _unwrapped(kind)
-    return kind if isinstance(kind, type) and issubclass(kind, BaseModel) else None
+    return list(_fields(kind))
+
+
+def _fields(kind: Any) -> dict[str, Any]:
+    """Returns the fields of a model or dataclass with their types; of any other type none."""
+    if isinstance(kind, type) and issubclass(kind, BaseModel):
+        return {name: field.annotation for name, field in kind.model_fields.items()}
+    return {each.name: each.type for each in dataclasses.fields(kind)} if dataclasses.is_dataclass(kind) else {}
 
 
 def _unwrapped(kind: Any) -> Any:

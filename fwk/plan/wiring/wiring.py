@@ -161,5 +161,5 @@ class _Wiring:
                 f"and read by {wish.name} as {messages.type_name(port.message_type)}; use one type",
             )
         elif port.images and not written.images:
-            text = f"'{name}' is no camera: {writer} is not its vision master; read a channel that is an Image"
+            text = f"'{name}' is not a camera: {writer} is not its vision master; read a channel that is an Image"
             self._report(wish.name, port.attribute, text)

@@ -30,7 +30,7 @@ def aliases(levels: int) -> str:
         ("name: x".encode("utf-16"), "no UTF-8"),
         (b"name: a\0b", "is not allowed"),
         (b"name: x\n---\nname: y", "no YAML"),
-        (b"seed: " + b"9" * 6000, "is no int"),
+        (b"seed: " + b"9" * 6000, "is not a valid int"),
         (b'name: "\\ud800"', "name"),
         (b"period_s: 1e400", "period_s"),
         (b"include: [.]", "there is no '.' to include"),

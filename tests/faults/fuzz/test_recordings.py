@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 from fwk import Component, Reads, Writes
 from fwk.cli.commands import app as fwk
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
+from fwk.model.plan_document import document_of
 from fwk.model.tick_events import FrameLost, HostLost, HostStarted, StageBegun, StageDone, TickEvent, events_message
 from fwk.recording.compare import Comparison
 from fwk.recording.log_info import log_info
@@ -57,7 +58,7 @@ def recorded() -> list[tuple[str, bytes]]:
     plan, system = plan_of(PARTS), MemorySystem(PARTS)
     system.tick(TICKS)
     said = plan_t()
-    said.version, said.json = protocol_t.VERSION, json.dumps(plan.to_json())
+    said.version, said.json = protocol_t.VERSION, json.dumps(document_of(plan))
     made = [("fwk/plan", said.encode())]
     for tick in range(TICKS):
         made += [("r/imu", system.sent["r/imu"][tick]), ("r/pose", system.sent["r/pose"][tick])]
@@ -136,7 +137,7 @@ def test_any_bytes_may_stand_on_any_channel_of_a_log(log: Path, junk: bytes, cha
     use(write(log.with_name("broken.lcm"), [*entries[:3], (channel, junk), *entries[3:]]), log)
 
 
-PLAN = plan_of(PARTS).to_json()
+PLAN = document_of(plan_of(PARTS))
 
 
 @pytest.mark.parametrize("key", PLAN)

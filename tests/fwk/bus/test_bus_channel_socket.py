@@ -151,7 +151,7 @@ def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
     ("port", "datagram", "says"),
     [
         (STRANGER, stranger(pose(2)), "port {}, which is not the writer's"),
-        (WRITER, b"rubbish", "no LCM message"),
+        (WRITER, b"rubbish", "not an LCM message"),
         (WRITER, stranger(pose(2))[:30], "not a soccer.pose_t"),
         (WRITER, stranger(imu_t().encode() + bytes(50)), "not a soccer.pose_t"),
         (WRITER, stranger(pose(2), b"cyan1/other"), "channel 'cyan1/other'"),

@@ -81,7 +81,7 @@ def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
 @pytest.mark.parametrize(
     ("kind", "name", "what"),
     [
-        (imu_t, "a/ball!", "'a/ball!' is no name"),
+        (imu_t, "a/ball!", "'a/ball!' is not a valid name"),
         (imu_t, "fwk/tick", "names that begin with 'fwk/' are the framework's own"),
         (int, "a/ball", "is not an LCM type; import it from lcmtypes"),
         (header_t, "a/ball", "core.header_t is the framework's own and does not begin with 'core.header_t header;'"),

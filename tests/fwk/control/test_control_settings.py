@@ -122,8 +122,8 @@ def test_a_restarted_process_is_told_what_differs_from_the_plan(settings: RunSet
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
         (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
         (["speed=2"], "'speed=2' is no NAME.SETTING=VALUE"),
-        (["a/turner.gain"], "'a/turner.gain' is no PATH=VALUE"),
-        (["a/turner.gain=[1"], "'[1' is no YAML value"),
+        (["a/turner.gain"], "'a/turner.gain' is not a PATH=VALUE"),
+        (["a/turner.gain=[1"], "'[1' is not a YAML value"),
         (["a/turner.gain=1", "b/turner.names=[x, 1]"], "b/turner: 'names.1' is 1; it should be a valid string"),
     ],
 )

@@ -11,6 +11,7 @@ import psutil
 import pytest
 
 from fwk.model.plan import Plan
+from fwk.model.plan_document import plan_from
 from fwk.model.ports import Ports
 from tests.harness.fixtures import Launch, folder, launch, orchestra_types
 from tests.harness.runs import Launched, PortBlock
@@ -96,4 +97,4 @@ def host_index(run: Launched, name: str) -> int:
 
 
 def plan_of(run: Launched) -> Plan:
-    return Plan.from_json(json.loads((run.run_dir / "plan.json").read_text()))
+    return plan_from(json.loads((run.run_dir / "plan.json").read_text()))

@@ -10,7 +10,7 @@ import pytest
 from fwk.component.log import LEVELS
 from fwk.logs import targets
 from fwk.logs.syslog import Syslog
-from fwk.model.plan import LogPlan
+from fwk.model.sections import LogPlan
 from lcmtypes.core import log_t
 
 

@@ -8,7 +8,7 @@ from fwk.component.log import LEVELS
 from fwk.logs import targets
 from fwk.logs.reader import read_lines
 from fwk.logs.rotating import read_rotating
-from fwk.model.plan import LogPlan
+from fwk.model.sections import LogPlan
 from lcmtypes.core import log_t
 
 

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from fwk.model.plan import NOBODY, ComponentPlan, Plan, RestartPolicy
+from fwk.model.plan import NOBODY, ComponentPlan, Plan
+from fwk.model.plan_document import document_of, plan_from
+from fwk.model.sections import RestartPolicy
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.plan.wiring.start_order import start_order
 
@@ -269,7 +271,7 @@ def test_a_copy_of_an_installed_type_does_no_harm(load: Load, folder: Path) -> N
 
 def test_a_plan_survives_being_written_down(load: Load) -> None:
     plan = load(ROBOTS, without=["cyan2/wheels"])
-    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan
+    assert plan_from(json.loads(json.dumps(document_of(plan)))) == plan
 
 
 def test_the_same_file_gives_the_same_plan(load: Load) -> None:
@@ -298,4 +300,4 @@ def test_continuous_component_has_its_own_rate_and_process(load: Load, folder: P
     plan = load(RESTLESS, hosting=hosting)
     assert [(each.rate_hz, each.stages) for each in plan.components] == [(20, ()), (0.5, ()), (None, (5,))]
     assert [host.components for host in plan.hosts] == [(0,), (1,), (2,)]
-    assert Plan.from_json(json.loads(json.dumps(plan.to_json()))) == plan
+    assert plan_from(json.loads(json.dumps(document_of(plan)))) == plan

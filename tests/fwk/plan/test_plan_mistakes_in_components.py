@@ -94,10 +94,10 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken(
         """
-        --set: 'it/a.key' is no PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
+        --set: 'it/a.key' is not a PATH=VALUE; write for example cyan1/omni_ball.gain=0.5
         --set: no setting 'seeed'; did you mean 'seed'?
         --set: no setting 'it/a'; write NAME.SETTING=VALUE
-        --set: '[1' is no YAML value; write a number, true, false, text, [a, b] or {a: 1}
+        --set: '[1' is not a YAML value; write a number, true, false, text, [a, b] or {a: 1}
         --set: no component 'it/b'; there is it/a
         --set: it/a: 'key' is 5; it should be a valid string
         --set: it/a: no setting 'kye'; did you mean 'key'?
@@ -164,7 +164,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
     ),
     Broken(
         """
-        it.yaml:3: 'cyan 1' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
+        it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
         it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace
         """,
         """
@@ -176,14 +176,14 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: 'it/\ud800' is no name; use letters, digits, '_' and '-', parts separated by '/', "
+        "it.yaml:1: 'it/\ud800' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', "
         "such as cyan1/ball",
         """
         components: {"it/\\ud800": {use: plan_parts:Odometer}}
         """,
     ),
     Broken(
-        "it.yaml:2: '1/a' is no name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball",
+        "it.yaml:2: '1/a' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball",
         """
         components:
           1/a: {use: plan_parts:Odometer}

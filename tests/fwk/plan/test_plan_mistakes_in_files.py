@@ -7,7 +7,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 
 @rows(
     Broken(
-        "it.yaml:4: this is no YAML: while parsing a flow sequence that begins in line 3, "
+        "it.yaml:4: this is not valid YAML: while parsing a flow sequence that begins in line 3, "
         "expected ',' or ']', but got '<stream end>'",
         """
         components:
@@ -16,7 +16,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         name: x
         """,
     ),
-    Broken("it.yaml:2: this is no YAML: character '\\x07' is not allowed", "name: x\n# \x07"),
+    Broken("it.yaml:2: this is not valid YAML: character '\\x07' is not allowed", "name: x\n# \x07"),
     Broken(
         "it.yaml:4: 'it/a' stands here a second time, first in line 2; keep one",
         """
@@ -48,7 +48,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         "seed: !secret 5\ncomponents: {it/a: {use: plan_parts:Odometer}}",
     ),
     Broken(
-        "it.yaml:1: 'six' is no int",
+        "it.yaml:1: 'six' is not a valid int",
         "seed: !!int six\ncomponents: {it/a: {use: plan_parts:Odometer}}",
     ),
     Broken("it.yaml:1: it should be a mapping with keys such as 'name: value'", "[a, b]"),
@@ -175,7 +175,7 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: 'tcpq://' is no public bus; lcm-spy and Java read only udpm://ADDRESS:PORT, such as "
+        "it.yaml:1: 'tcpq://' is not a public bus; lcm-spy and Java read only udpm://ADDRESS:PORT, such as "
         "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4194304",
         """
         public_url: tcpq://
@@ -185,7 +185,7 @@ def test_yaml(folder: Path, broken: Broken) -> None:
     Broken(
         """
         it.yaml:1: scoreboard: module 'plan_parts' has no 'gret'; did you mean 'greet'?
-        it.yaml:2: video: 42 is no function
+        it.yaml:2: video: 42 is not a function
         """,
         """
         scoreboard: plan_parts:gret
@@ -194,7 +194,7 @@ def test_yaml(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: scoreboard: 'plan_parts' is no function; write module:function",
+        "it.yaml:1: scoreboard: 'plan_parts' is not a function; write module:function",
         """
         scoreboard: plan_parts
         components: {it/a: {use: plan_parts:Odometer}}
@@ -251,7 +251,7 @@ def test_several_files(folder: Path, broken: Broken) -> None:
 
 @rows(
     Broken(
-        "it.yaml:1: 'no-name' is no name of a stage; use letters, digits and '_'",
+        "it.yaml:1: 'no-name' is not a valid name of a stage; use letters, digits and '_'",
         """
         stages: [sensor_acquire, no-name]
         components: {it/a: {use: plan_parts:Odometer}}

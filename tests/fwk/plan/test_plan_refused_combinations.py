@@ -20,7 +20,7 @@ ROWS = [
     ("c/announcer: {use: plan_parts:Announcer}", ""),
     (
         "c/eye: {use: plan_parts:Eye}",
-        "c/eye: 'c/image' is no camera: c/announcer is not its vision master; read a channel that is an Image",
+        "c/eye: 'c/image' is not a camera: c/announcer is not its vision master; read a channel that is an Image",
     ),
     ("d/one: {use: plan_parts:Odometer}", ""),
     ("d/two: {use: plan_parts:Odometer}", "d/two: two writers of 'd/odometry': d/one and d/two; keep one"),

@@ -9,6 +9,7 @@ import pytest
 
 from fwk.lcm.event_log import LogReader, LogWriter
 from fwk.lcm.typegen import generate
+from fwk.model.plan_document import VERSION, document_of, plan_from
 from fwk.model.tick_events import (
     ChannelsChanged,
     FinalDone,
@@ -86,6 +87,22 @@ def test_a_recorded_plan_may_use_former_names_of_types() -> None:
     old = core_v1.plan_t(json=json.dumps(content))
     plan, version = read_plan(old.encode())
     assert (plan.channels[0].type_name, plan.outside, version) == ("core.frame_t", {"a/picture": "core.picture_t"}, 1)
+
+
+def test_a_plan_of_a_newer_version_is_refused() -> None:
+    content = document_of(Recording(OLD / "log.lcm").plan)
+    assert content["version"] == VERSION
+    with pytest.raises(
+        ValueError, match=f"the plan has version {VERSION + 1}; this program reads versions 1 to {VERSION}"
+    ):
+        plan_from({**content, "version": VERSION + 1})
+
+
+@pytest.mark.parametrize("key", ["stages", "components", "channels", "hosts"])
+def test_a_damaged_plan_is_refused(key: str) -> None:
+    content = document_of(Recording(OLD / "log.lcm").plan)
+    with pytest.raises(ValueError, match=key):
+        plan_from({**content, key: 7})
 
 
 def test_a_recording_of_a_newer_version_is_refused(tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from typer.testing import CliRunner
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.recordings.video import video as command
 from fwk.model.plan import Plan
+from fwk.model.plan_document import document_of
 from fwk.recording import video_encoder
 from fwk.recording.video import VideoError, drawing, render_video
 from fwk.recording.video_encoder import Picture, advice, open_encoder
@@ -108,7 +109,7 @@ def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> Non
     assert alone.stderr == f"error: {log}: no readable plan of its run in it; name the drawing with --draw\n"
     plan = Plan("x", "x.yaml", (), (), 50_000, "simulated", 1, (), (), (), video=f"{__name__}:Grey")
     said = plan_t()
-    said.version, said.json = protocol_t.VERSION, json.dumps(plan.to_json())
+    said.version, said.json = protocol_t.VERSION, json.dumps(document_of(plan))
     write(log, [("fwk/plan", said.encode(), 0), *entries(ticks=3)])
     drawn = run(app, [str(tmp_path), "-o", str(out)])
     assert drawn.exit_code == 0

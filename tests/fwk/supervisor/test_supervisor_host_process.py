@@ -2,7 +2,7 @@
 
 import pytest
 
-from fwk.model.plan import RestartPolicy, RestartWhen
+from fwk.model.sections import RestartPolicy, RestartWhen
 from fwk.supervisor.host_process import NEXT_STATES, Change, HostProcess, HostState, HostStateError
 from lcmtypes.core import component_state_t
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from fwk.lcm.event_log import LogWriter
 from fwk.model.plan import Plan
+from fwk.model.plan_document import document_of
 from fwk.model.tick_events import TickEvent, events_message
 from fwk.recording.replay.recording import Recording
 from fwk.recording.replay.replay import Replay
@@ -25,7 +26,7 @@ class HandMadeLog:
         self._log = LogWriter(path, print)
         said = plan_t()
         said.version = protocol_t.VERSION
-        said.json = json.dumps(plan.to_json())
+        said.json = json.dumps(document_of(plan))
         self._log.append("fwk/plan", said.encode(), 0)
 
     def message(self, channel: str, message: Any, writer: str, tick: int, step: int) -> None:

@@ -9,6 +9,7 @@ from fwk.lcm.event_log import LogWriter
 from fwk.lcm.messages import encode
 from fwk.model.plain_values import value_messages
 from fwk.model.plan import Plan
+from fwk.model.plan_document import document_of
 from fwk.model.tick_events import (
     FinalDone,
     HostLate,
@@ -92,7 +93,7 @@ class Made:
         self._tick = 0
         said = plan_t()
         said.version = protocol_t.VERSION
-        said.json = json.dumps(plan.to_json())
+        said.json = json.dumps(document_of(plan))
         self._log.append("fwk/plan", said.encode(), 0)
 
     def sensed(self, number: int) -> None:
