@@ -21,7 +21,7 @@ def mistake_in(name: str) -> str:
     if size > CHANNEL_BYTES:
         return f"'{name}' has {size} bytes, LCM carries {CHANNEL_BYTES}; shorten it"
     if not _NAME.fullmatch(name):
-        return f"'{name}' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball"
+        return f"'{name}' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball"
     if name.startswith(RESERVED):
         return f"'{name}': names that begin with '{RESERVED}' are the framework's own; take another namespace"
     return ""
@@ -30,5 +30,6 @@ def mistake_in(name: str) -> str:
 def mistake_in_pattern(pattern: str) -> str:
     """What is wrong with the pattern of a port of many instances; empty if nothing."""
     if not _PATTERN.fullmatch(pattern):
-        return f"'{pattern}' is not a valid pattern; put '*' for the namespace and a name behind the last '/', such as */ball"
+        right = "put '*' for the namespace and a name after the last '/', such as */ball"
+        return f"'{pattern}' is not a valid pattern; {right}"
     return ""

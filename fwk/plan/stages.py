@@ -23,9 +23,7 @@ def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
         problems.add(node.place, "", f"there are {len(names)} stages; a main loop has 1 to {STAGES_MAX}")
     for index, name in enumerate(names):
         if not _NAME.fullmatch(name):
-            problems.add(
-                node.at(index).place, "", f"'{name}' is not a valid name of a stage; use letters, digits and '_'"
-            )
+            problems.add(node.at(index).place, "", f"'{name}' is not a valid stage name; use letters, digits and '_'")
         elif name in names[:index]:
             problems.add(node.at(index).place, "", f"stage '{name}' stands here twice; keep one")
     return tuple(names)

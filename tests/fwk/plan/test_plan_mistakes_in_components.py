@@ -164,7 +164,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
     ),
     Broken(
         """
-        it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
+        it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
         it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace
         """,
         """
@@ -176,14 +176,13 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: 'it/\ud800' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', "
-        "such as cyan1/ball",
+        "it.yaml:1: 'it/\ud800' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball",
         """
         components: {"it/\\ud800": {use: plan_parts:Odometer}}
         """,
     ),
     Broken(
-        "it.yaml:2: '1/a' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball",
+        "it.yaml:2: '1/a' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball",
         """
         components:
           1/a: {use: plan_parts:Odometer}

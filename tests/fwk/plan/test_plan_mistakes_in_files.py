@@ -251,7 +251,7 @@ def test_several_files(folder: Path, broken: Broken) -> None:
 
 @rows(
     Broken(
-        "it.yaml:1: 'no-name' is not a valid name of a stage; use letters, digits and '_'",
+        "it.yaml:1: 'no-name' is not a valid stage name; use letters, digits and '_'",
         """
         stages: [sensor_acquire, no-name]
         components: {it/a: {use: plan_parts:Odometer}}

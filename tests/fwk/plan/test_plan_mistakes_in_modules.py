@@ -94,8 +94,8 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """
         it.yaml:2: it/a: restless.Both: both a stage and a rate; keep 'stage', or 'rate_hz' to be continuous
         it.yaml:3: it/b: restless.Wrong: rate_hz is 'often'; it should be a number from 0 to 10000
-        it.yaml:4: it/c: restless.Looks.image: a continuous component has no frames: their ring goes on without it; \
-give it a stage, or let a component with a stage look
+        it.yaml:4: it/c: restless.Looks.image: a continuous component cannot use frames, because their ring does not \
+wait for it; give it a stage, or let a component with a stage read the frames
         it.yaml:5: it/d: restless.Times.sun: a continuous component cannot be a time source; give it a stage
         it.yaml:6: it/e: it is continuous and takes part in no stage; leave 'stage' out
         it.yaml:7: it/f: it takes part in stages; leave 'rate_hz' out, or give its class a rate_hz instead of a stage

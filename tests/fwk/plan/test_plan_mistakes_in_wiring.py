@@ -86,9 +86,9 @@ LONG = "x" * 60
     Broken(
         f"""
         it.yaml:2: a/one: port 'odometry': 'a/{LONG}xx' has 64 bytes, LCM carries 63; shorten it
-        it.yaml:3: b/one: port 'odometry': 'b/o.d' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
+        it.yaml:3: b/one: port 'odometry': 'b/o.d' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
         it.yaml:4: c/one: port 'odometry': 'fwk/odometry': names that begin with 'fwk/' are the framework's own; take another namespace
-        it.yaml:5: watcher: port 'odometries': 'cyan*' is not a valid pattern; put '*' for the namespace and a name behind the last '/', such as */ball
+        it.yaml:5: watcher: port 'odometries': 'cyan*' is not a valid pattern; put '*' for the namespace and a name after the last '/', such as */ball
         """,  # noqa: E501 - as people see it
         f"""
         components:
@@ -102,7 +102,7 @@ LONG = "x" * 60
         """
         it.yaml:2: a/b: no LCM type 'robot.odometri_t' in lcmtypes/; did you mean 'robot.odometry_t'?
         it.yaml:3: a/c: core.answer_t is the framework's own and does not begin with 'core.header_t header;'
-        it.yaml:4: 'a d' is not a valid name; use letters, digits, '_' and '-', parts separated by '/', such as cyan1/ball
+        it.yaml:4: 'a d' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
         """,
         """
         outside:
