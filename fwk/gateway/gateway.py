@@ -316,8 +316,8 @@ class Gateway:
         """A host leaves as soon as everything that it has sent is here; it repeats itself until it is."""
         if leaving.run != self._run or not 0 <= leaving.host < len(self._plan.hosts):
             return
-        marks = zip(leaving.channel, leaving.sequence, strict=True)
-        if self._inputs.have([pair for pair in marks if 0 <= pair[0] < len(self._plan.channels)]):
+        marks = [pair for pair in zip(leaving.channel, leaving.sequence, strict=True) if pair[0] in self._inputs]
+        if self._inputs.have(marks, leaving.host):
             taken = taken_t()
             taken.run, taken.taker, taken.incarnation = self._run, self._ports.gateway, leaving.incarnation
             taken.kind, taken.tick = done_t.FINAL, leaving.tick

@@ -14,15 +14,16 @@ from fwk.engine.assignment import Assignment
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.component_group import ComponentGroup, Ran, Written
+from fwk.engine.failures import ComponentFailedError
 from fwk.host.dynamic_channels import DynamicChannels
 from fwk.host.hooks import ProcessHooks
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
-from fwk.host.shutdown import Shutdown
+from fwk.host.shutdown import LOCKSTEP_TIMEOUT_US, TIMEOUT_US, Shutdown
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
 from fwk.model.requests import clear_requests, lost_message
-from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, log_t, protocol_t, tick_t
+from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, protocol_t, tick_t
 
 READY_REPORT_US = 100_000
 """How often a host reports that it is ready until its first tick comes."""
@@ -93,6 +94,7 @@ class Host:
         self._catch_up = CatchUp(assignment.start.incarnation)
         self._answered = (0, -1)  # the newest (tick, step) that was answered
         self._done = b""
+        self._ticks_ignored = False
         self._shutdown: Shutdown | None = None
         self._message = done_t()  # the next done; fields that stay the same are written once
         self._message.run, self._message.host = assignment.run, assignment.host
@@ -110,15 +112,22 @@ class Host:
             ComponentFailedError: a component raised.
         """
         try:
+            yield from self._live()
+        except ComponentFailedError:
+            yield from self._leave(())  # its messages of earlier iterations count
+            raise
+        finally:
+            self._report()
+            for runner in self.group.runners.values():
+                runner.log._report_dropped(at_the_end=True)
+
+    def _live(self) -> Steps[None]:
+        try:
             self._init()
             yield from self._work()
             yield from self._finalize()
         except MemoryError as error:  # between two iterations
             self.group.out_of_memory(error)
-        finally:
-            self._report()
-            for runner in self.group.runners.values():
-                runner.log._report_dropped(at_the_end=True)
 
     def _init(self) -> None:
         self.group.init(self._report)
@@ -143,7 +152,6 @@ class Host:
 
     def _finalize(self) -> Steps[None]:
         """Finalizes the components and sends what they wrote with a final done, which counts if the run goes on."""
-        self._ignore_ticks(True)
         written, tick = self.group.finalize()
         before = self._done
         done = self._message
@@ -151,7 +159,20 @@ class Host:
         done.kind, done.tick, done.step, done.iteration = done_t.FINAL, tick, -1, 0
         self.group.put_lost_frames(done)
         self._publish(written, -1, 0)
-        self._shutdown = Shutdown(self._network, self._ports, self._sender, before, done, self._outputs.sent)
+        yield from self._leave([each for each in (before, self._done) if each])
+
+    def _leave(self, dones: Sequence[bytes]) -> Steps[None]:
+        """Waits until no other process needs this one any more; `dones` are the last ones for the supervisor."""
+        sent = self._outputs.sent
+        if not dones and not sent:
+            return
+        self._ignore_ticks(True)
+        leaving = leaving_t()
+        leaving.run, leaving.host = self._message.run, self._message.host
+        leaving.incarnation, leaving.tick = self._message.incarnation, self._message.tick
+        leaving.n_marks, leaving.channel, leaving.sequence = len(sent), list(sent), list(sent.values())
+        timeout_us = TIMEOUT_US if self._plan.clock == "wall" else LOCKSTEP_TIMEOUT_US
+        self._shutdown = Shutdown(self._network, self._ports, self._sender, leaving, dones, timeout_us)
         yield from self._shutdown.wait(self._handle_own)
 
     def _receive_tick(self, receiver: Receiver) -> tick_t | None:
@@ -170,6 +191,9 @@ class Host:
 
     def _ignore_ticks(self, ignored: bool) -> None:
         """Leaves ticks in their sockets, where repeated ticks would end every wait at once."""
+        if ignored is self._ticks_ignored:
+            return
+        self._ticks_ignored = ignored
         for _, receiver in self._ticks.values():
             (self._network.unwatch if ignored else self._network.watch)(receiver)
 

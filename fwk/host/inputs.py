@@ -175,16 +175,16 @@ class Inputs:
         self.lost += lost
         return lost
 
-    def have(self, marks: Sequence[tuple[int, int]]) -> bool:
-        """Returns whether all messages up to these marks are here, visible or not; fetches missing ones."""
-        lacking = []
+    def have(self, marks: Sequence[tuple[int, int]], host: int) -> bool:
+        """Returns whether all messages up to these marks are here, visible or not; fetches missing ones from `host`."""
+        complete = True
         for index, sequence in marks:
-            missing = self._buffers[index].lacks(sequence)
+            buffer = self._buffers[index]
+            missing = buffer.lacks(sequence)
             if missing:
-                lacking.append((self._buffers[index], missing))
-        for buffer, missing in lacking:
-            self._fetch(buffer, missing, self._writer_host[buffer.plan.index])
-        return not lacking
+                complete = False
+                self._fetch(buffer, missing, host)
+        return complete
 
     def new_losses(self) -> list[tuple[int, int]]:
         """Returns channel and sequence number of visible messages that never came, each once."""

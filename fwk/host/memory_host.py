@@ -23,6 +23,7 @@ from lcmtypes.core import (
     done_t,
     fetch_t,
     gone_t,
+    leaving_t,
     log_t,
     protocol_t,
     settings_change_t,
@@ -254,8 +255,17 @@ class MemoryHost:
                 self._on_log(log_t.decode(data))
         elif channel == b"fwk/fetch":
             self._answer(fetch_t.decode(data))
+        elif channel == sync.LEAVING:
+            self._see_off(sync.decode_leaving(data))
         elif address[1] >= self._ports.channel(0):
             self._written.append((channel.decode(), data))
+
+    def _see_off(self, leaving: leaving_t) -> None:
+        """Answers in the gateway's place that every message has arrived."""
+        taken = taken_t()
+        taken.run, taken.taker, taken.kind = self._run, self._ports.gateway, done_t.FINAL
+        taken.incarnation = leaving.incarnation
+        self._put(sync.TAKEN, taken.encode(), (LOOPBACK, self._own_port), self._ports.host(self._ports.gateway))
 
     def _take_done(self, done: done_t) -> None:
         this = (done.kind, done.tick, done.step, done.iteration)

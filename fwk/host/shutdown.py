@@ -1,6 +1,9 @@
-"""How a host leaves a run that goes on: not before supervisor and gateway have everything that it has sent."""
+"""How a host leaves a run that goes on: not before supervisor and gateway have everything that it has sent.
 
-from collections.abc import Callable, Mapping
+A component that failed takes its process with it, so its host leaves in the same way, but without a final done.
+"""
+
+from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Network, Steps
@@ -10,14 +13,25 @@ from lcmtypes.core import done_t, leaving_t, taken_t
 
 REPEAT_US = 5_000
 TIMEOUT_US = 500_000
-"""A supervisor or gateway that has not answered by then has ended, or will not answer any more."""
+"""In real time: a supervisor or gateway that has not answered by then has ended, or stands still."""
+LOCKSTEP_TIMEOUT_US = 2_500_000
+"""In lockstep, where time is not short; less than hosts have to end when the whole run ends."""
 
 
 class Shutdown:
-    """Repeats the last dones until the supervisor has taken the final one and the gateway holds every message.
+    """Repeats what a leaving host has to say until the supervisor and the gateway have taken it.
 
     No process can be asked again once it has ended. Supervisor and gateway answer with a `taken_t`, each with its own
     number.
+
+    Args:
+        network: the host's network.
+        ports: ports of the run.
+        sender: the host's sender.
+        leaving: names the newest message of each channel that the host has sent; the gateway takes it once it holds
+            all of them.
+        dones: the last two dones of the host for the supervisor; empty: the host has failed and makes no final done.
+        timeout_us: wall time after which the host leaves without an answer.
     """
 
     def __init__(
@@ -25,31 +39,28 @@ class Shutdown:
         network: Network,
         ports: Ports,
         sender: Sender,
-        before: bytes,
-        final: done_t,
-        sent: Mapping[int, int],
+        leaving: leaving_t,
+        dones: Sequence[bytes],
+        timeout_us: int,
     ) -> None:
         self._network = network
         self._ports = ports
         self._sender = sender
-        self._before = before
-        self._final = sync.encode_done(final)
-        everything = leaving_t()
-        everything.run, everything.host, everything.incarnation = final.run, final.host, final.incarnation
-        everything.tick, everything.n_marks = final.tick, len(sent)
-        everything.channel, everything.sequence = list(sent), list(sent.values())
-        self._everything = everything.encode()
-        self._unanswered = {taken_t.SUPERVISOR, ports.gateway}
+        self._dones = dones
+        self._incarnation = leaving.incarnation
+        self._leaving = leaving.encode()
+        self._timeout_us = timeout_us
+        self._unanswered = {ports.gateway, taken_t.SUPERVISOR} if dones else {ports.gateway}
 
     def answered(self, taken: taken_t) -> None:
-        """Takes an answer to the final done."""
-        if taken.kind == done_t.FINAL:
+        """Takes an answer; one to an earlier incarnation does not count."""
+        if taken.kind == done_t.FINAL and taken.incarnation == self._incarnation:
             self._unanswered.discard(taken.taker)
 
     def wait(self, handle_own: Callable[[], object]) -> Steps[None]:
-        """Waits until both have answered; meanwhile `handle_own` answers fetches."""
+        """Waits for all answers; meanwhile `handle_own` answers fetches."""
         network = self._network
-        end_us = network.now_us() + TIMEOUT_US
+        end_us = network.now_us() + self._timeout_us
         repeat_us = 0
         while self._unanswered and (now_us := network.now_us()) < end_us:
             if now_us >= repeat_us:
@@ -62,8 +73,7 @@ class Shutdown:
     def _send(self) -> None:
         gateway = self._ports.gateway
         if gateway in self._unanswered:
-            self._sender.send(sync.LEAVING, self._everything, self._ports.host(gateway))
+            self._sender.send(sync.LEAVING, self._leaving, self._ports.host(gateway))
         if taken_t.SUPERVISOR in self._unanswered:
-            if self._before:  # the supervisor takes dones in their order
-                self._sender.publish(sync.DONE, self._before, self._ports.sync)
-            self._sender.publish(sync.DONE, self._final, self._ports.sync)
+            for done in self._dones:  # the supervisor takes dones in their order
+                self._sender.publish(sync.DONE, done, self._ports.sync)

@@ -230,9 +230,12 @@ class HostProcess:
         self._become(HostState.RUNNING, now_us)
 
     def begin_stop(self, now_us: int) -> None:
-        """Takes it out of the loop; its process has been asked to end."""
+        """Takes it out of the loop; its process has been asked to end.
+
+        A host that was not ready has taken no part: what it writes in `finalize` is void.
+        """
+        self.changes, self.finalizing = [], self.running
         self._become(HostState.STOPPING, now_us)
-        self.changes, self.finalizing = [], True
 
     def drop_told_changes(self) -> None:
         """Drops the changes that the tick which it answered last has told."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
+from fwk.model.plan import NOBODY
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from tests.simulation.oracle import contradictions
@@ -50,7 +51,7 @@ def verdict_of(scenario: Scenario) -> Verdict:
         outcome = run(scenario, folder)
         outcomes = [outcome]
         failures = [*_alone(outcome, scenario)]
-        if not failures and scenario.exact and not outcome.lost:  # what a failed process took along is counted
+        if not failures and scenario.exact:
             failures += _compared(scenario, outcome, folder, outcomes)
     finally:
         shutil.rmtree(folder)
@@ -124,7 +125,7 @@ def _lost(outcome: Outcome, log: Log, scenario: Scenario) -> Iterator[Failure]:
         yield Failure("lost", f"{missing} messages are not in the recording, {outcome.lost} are counted as lost")
     if missing and not any("lost" in line.text for line in log.lines):
         yield Failure("lost", f"{missing} messages are lost and no line names them")
-    if missing and scenario.exact and not scenario.may_fail:
+    if missing and scenario.exact:
         yield Failure("lost", f"{missing} messages are lost in a run that nothing from outside disturbed")
     if not outcome.failed and len(log.records) != outcome.ticks:
         yield Failure("lost", f"{len(log.records)} of {outcome.ticks} ticks are recorded")
@@ -158,8 +159,12 @@ def _replayed(outcome: Outcome) -> Iterator[Failure]:
     except RecordingError as error:
         yield Failure("replay", str(error))
         return
+    written = {channel.name for channel in replay.recording.plan.channels if channel.writer != NOBODY}
+    recorded = sum(len(data) for name, data in outcome.log.messages.items() if name in written)
     if replay.differences:
         yield Failure("replay", str(min(replay.differences, key=lambda difference: difference.key)))
+    elif replay.compared < recorded:
+        yield Failure("replay", f"{replay.compared} of {recorded} messages were compared")
 
 
 def _compared(scenario: Scenario, outcome: Outcome, folder: Path, outcomes: list[Outcome]) -> Iterator[Failure]:

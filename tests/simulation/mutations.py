@@ -166,6 +166,14 @@ def _leaves_unseen(_right: Any) -> Any:
     return until_left
 
 
+def _fails_at_once(right: Any) -> Any:
+    def leave(self: Host, dones: Sequence[bytes]) -> Iterator[int]:
+        if dones:
+            yield from right(self, dones)
+
+    return leave
+
+
 MUTATIONS = (
     Mutation("early marks", "marks are visible one stage early", Visibility, "publish", _visible_at_once),
     Mutation("greedy newcomer", "a newcomer sees every message", CatchUp, "applies", _never_new),
@@ -189,5 +197,6 @@ MUTATIONS = (
     ),
     Mutation("early answer", "a setting is acknowledged too early", Control, "_taken_over", _before_it_is_so),
     Mutation("silent loss", "a lost message is not counted", Inputs, "gone", _uncounted),
+    Mutation("hasty failure", "a host with a failed component ends at once", Host, "_leave", _fails_at_once),
     Mutation("hasty boundary", "a tick does not wait for hosts that leave", Boundary, "_until_left", _leaves_unseen),
 )

@@ -39,4 +39,25 @@ REGRESSIONS: dict[str, Scenario] = {
         weather=Weather(delay=0.1754, delay_us=24_142),
         actions=(Action("steer", 15, 818, "drift6/drifter", word="stop"),),
     ),
+    # A host that was asked to stop before it was ready had taken no part, but what it wrote in `finalize` counted and
+    # no replay could write it again.
+    "host stops before it is ready": Scenario(
+        seed=3,
+        ticks=40,
+        parts=(Part("b0/player", "Player"), Part("c1/player", "Player")),
+        stages=("think",),
+        wall=True,
+        weather=Weather(slow_start_us=400_000),
+        actions=(Action("kill", 20, 20, "b0/player"), Action("steer", 22, 0, "b0/player", word="stop")),
+    ),
+    # A component that failed took its process along, and with it the messages of earlier iterations that had been lost
+    # on their way.
+    "component fails after lost messages": Scenario(
+        seed=18,
+        ticks=5,
+        parts=(Part("a4/opener", "Opener", ("think", "tidy"), {"crash_tick": 5, "eager": 0.8}),),
+        stages=("plan", "think", "act", "tidy"),
+        period_us=10_000,
+        weather=Weather(loss=0.13),
+    ),
 }

@@ -8,7 +8,7 @@ from tests.simulation.mutations import MUTATIONS
 from tests.simulation.regressions import REGRESSIONS
 from tests.simulation.scenario import Scenario, scenario_of
 
-HISTORIES = 15
+HISTORIES = 8
 """In one test."""
 
 
