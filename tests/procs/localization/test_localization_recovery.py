@@ -1,0 +1,108 @@
+"""A robot that does not know its pose: search, kidnapping, compass."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fwk.testing import Bench
+from procs.evaluation.system import settings_in
+from procs.localization.localization import Localization
+from tests.procs.localization.localization_parts import (
+    FakeRobot,
+    until_localized,
+)
+
+
+@pytest.mark.slow
+def test_kidnapped_robot_localizes_within_5_s_a_hundred_times() -> None:
+    robot = FakeRobot(seed=7)
+    robot.place()
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    times = []
+    for _ in range(100):
+        robot.place()
+        times.append(until_localized(bench, robot, 8.0))
+    assert np.median(times) <= 2.0
+    assert sorted(times)[94] <= 5.0
+    assert np.isfinite(times).sum() >= 98
+
+
+def test_repeated_kidnapping_does_not_bias_the_compass() -> None:
+    robot = FakeRobot(seed=8)
+    robot.place()
+    bench = Bench(Localization)
+    assert until_localized(bench, robot, 5.0) < math.inf
+    for _ in range(20):
+        heading_rad = robot.pose[2]
+        robot.place()
+        robot.pose[2] = heading_rad + 0.5
+        assert until_localized(bench, robot, 8.0) < math.inf
+        assert abs(bench.component._localizer.compass_offset_rad - robot.drift_rad) < 0.15
+
+
+def test_never_localized_without_a_compass_or_without_lines() -> None:
+    robot = FakeRobot(seed=9)
+    blind = Bench(Localization)
+    blind.port("imu").put(heading_rad=0.0)
+    blind.iterate(60)
+    assert not any(sent.localized for sent in blind.port("pose").sent)
+    deaf = Bench(Localization)
+    for _ in range(60):
+        x_m, y_m = robot.white_points()
+        deaf.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist())
+        deaf.iterate()
+    assert not any(sent.localized for sent in deaf.port("pose").sent)
+
+
+def test_compass_tells_the_halves_apart() -> None:
+    for heading_rad in (0.3, 0.3 - math.pi):
+        robot = FakeRobot(seed=11)
+        robot.pose = np.array((5.0, 2.0, heading_rad))
+        bench = Bench(Localization)
+        assert until_localized(bench, robot, 5.0) < math.inf
+        assert np.hypot(*robot.error(bench)[:2]) < 0.15
+
+
+def test_compass_that_contradicts_the_pose_starts_a_search() -> None:
+    robot = FakeRobot(seed=15)
+    robot.pose = np.array((2.0, 1.0, 0.5))
+    bench = Bench(Localization, start_x_m=-2.0, start_y_m=-1.0, start_heading_rad=0.5 - math.pi)
+    assert until_localized(bench, robot, 5.0) < math.inf, "it began as the mirror image of the true pose"
+
+
+@pytest.mark.parametrize("parity", [0, 1])
+def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> None:
+    """Cameras take turns: a robot may get its frames in even or in odd ticks only."""
+    bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization")), FakeRobot(3)
+    robot.pose = np.array((-5.0, 2.0, 0.3))
+    known: list[bool] = []
+    for tick in range(240):
+        if tick == 100:
+            robot.pose = np.array((4.0, -3.0, 0.3))
+        robot.drive(np.zeros(3))
+        robot.show(bench)
+        if tick % 2 != parity:
+            bench.port("line_points").waiting.clear()
+        bench.iterate()
+        known.append(bench.port("pose").sent[-1].localized)
+    assert known[99]
+    assert not all(known[100:180]), "carried 10 m away"
+    assert known[-1]
+    assert np.hypot(*robot.error(bench)[:2]) < 0.3
+
+
+def test_robot_without_compass_is_declared_lost() -> None:
+    start = {"start_x_m": -5.0, "start_y_m": 2.0, "start_heading_rad": 0.3}
+    bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization") | start), FakeRobot(4)
+    known: list[bool] = []
+    for tick in range(200):
+        robot.pose = np.array((-5.0, 2.0, 0.3) if tick < 60 else (4.0, -3.0, 0.3))
+        robot.drive(np.zeros(3))
+        robot.show(bench)
+        bench.port("imu").waiting.clear()
+        bench.iterate()
+        known.append(bench.port("pose").sent[-1].localized)
+    assert all(known[10:60])
+    assert not known[-1]
