@@ -1,23 +1,21 @@
 """How the robots play: collisions, distances at restarts, passes, goals."""
 
 import itertools
-import math
 
 import numpy as np
 
 from lcmtypes.robot import kicker_state_t
-from lcmtypes.soccer import game_state_t, match_event_t
+from lcmtypes.soccer import match_event_t
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
-from procs.model.robot import CYAN, side_of, team_of
+from procs.model.field import Point
+from procs.model.robot import team_of
+from procs.referee.positions import in_wrong_half, too_near
+from procs.referee.restarts import Restart, State, Team
 
-OWN_M, THEIRS_M, DROPPED_M = 2.0, 3.0, 1.0
-"""Distances from the ball at a set piece: of the team that takes it, of the other, and at a dropped ball."""
-_TOLERANCE_M = 0.05
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3
 _FLIGHT_S = 4.0
-_NUMBERS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 
 
 def conducted(piece: Piece) -> Samples:
@@ -44,34 +42,13 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
     for before, tick in itertools.pairwise(ticks):
         game = piece.game[tick]
         if piece.game[before].stopped and not game.stopped and tick in piece.truth:
-            distances.append(_too_near(piece, tick))
-            if game.state == game_state_t.KICK_OFF:
-                halves.append(_in_wrong_half(piece, tick))
+            truth = piece.truth[tick]
+            middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in truth.robots}
+            restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
+            distances.append(bool(too_near(restart, middles)))
+            if restart.state is State.KICK_OFF:
+                halves.append(bool(in_wrong_half(restart, middles)))
     return distances, halves
-
-
-def _too_near(piece: Piece, tick: int) -> bool:
-    truth, game = piece.truth[tick], piece.game[tick]
-    ball, taking = (truth.ball_x_m, truth.ball_y_m), _NUMBERS.get(game.state_team, "")
-    mates_m = sorted(math.dist(ball, (each.x_m, each.y_m)) for each in truth.robots if team_of(each.name) == taking)
-    others_m = [math.dist(ball, (each.x_m, each.y_m)) for each in truth.robots if team_of(each.name) != taking]
-    limit_m = DROPPED_M if game.state == game_state_t.DROP_BALL else THEIRS_M
-    return any(each < OWN_M - _TOLERANCE_M for each in mates_m[1:]) or min(others_m, default=99.0) < (
-        limit_m - _TOLERANCE_M
-    )
-
-
-def _in_wrong_half(piece: Piece, tick: int) -> bool:
-    game = piece.game[tick]
-    ball = piece.truth[tick].ball_x_m, piece.truth[tick].ball_y_m
-    robots = piece.truth[tick].robots
-    taking = [each for each in robots if team_of(each.name) == _NUMBERS.get(game.state_team, CYAN)]
-    taker = min(taking, key=lambda each: math.dist(ball, (each.x_m, each.y_m)), default=None)
-    return any(
-        each.x_m * side_of(team_of(each.name)) < -_TOLERANCE_M
-        for each in robots
-        if taker is None or each.name != taker.name
-    )
 
 
 def _passes(piece: Piece) -> list[bool]:

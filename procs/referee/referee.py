@@ -1,7 +1,7 @@
 """Referees the match: calls goals, balls out and fouls, places the ball, keeps time and score."""
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes
-from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, match_event_t, match_events_t
+from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, ground_truth_t, match_event_t, match_events_t
 from procs.model.field import Point
 from procs.referee.restarts import State, Team
 from procs.referee.rules import Referee as Whistle
@@ -16,7 +16,7 @@ class RefereeConfig(Config, Rules):
 
 
 class Referee(Component):
-    """Decides from the reports of the linesmen alone; it does not know the positions of the robots."""
+    """Decides from the reports of the linesmen and the true positions of the robots."""
 
     stage = "post_loop"
 
@@ -24,6 +24,7 @@ class Referee(Component):
     clock: Clock
     log: Logger
     match_events: Reads[match_events_t]
+    ground_truth: Reads[ground_truth_t]
     game_state: Writes[game_state_t]
     ball_placement: Writes[ball_placement_t]
 
@@ -42,7 +43,8 @@ class Referee(Component):
         ball = self.match_events.value
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
-        whistle.step(passed_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events))
+        robots = {robot.name: Point(robot.x_m, robot.y_m) for robot in self.ground_truth.value.robots}
+        whistle.step(passed_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events, robots))
         for team in whistle.score:
             if whistle.score[team] > score[team]:
                 self._remember(True, team)

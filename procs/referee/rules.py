@@ -1,17 +1,20 @@
 """Rules of the referee: from the reports of the linesmen to the state of the game.
 
 A simplification of the rules of the middle size league: no cards, no dribbling limit, and fouls are free kicks. As
-there, a goal counts only if the scoring team touched the ball last in the opponents' half, own goals excepted.
+there, a goal counts only if the scoring team touched the ball last in the opponents' half, own goals excepted, and a
+set piece is released once all robots keep their distance and, at a kick-off, their half.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import NamedTuple
 
 from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
 
 from procs.model.field import Field, Point
 from procs.referee import restarts
+from procs.referee.positions import misplaced
 from procs.referee.restarts import Restart, State, Team
 from procs.simulation.physics.events import Event, Kind
 
@@ -32,6 +35,8 @@ class Rules(BaseModel):
     """From a goal or the beginning of a half until the kick-off may be taken."""
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""
+    positions_s: NonNegativeFloat = 6.0
+    """Longest further wait for robots that are too near to the ball or in the wrong half."""
     set_piece_s: PositiveFloat = 7.0
     """Time for a set piece; after it play goes on."""
     moved_m: PositiveFloat = 0.2
@@ -49,6 +54,8 @@ class Sight(NamedTuple):
 
     ball: Point
     events: Sequence[Event] = ()
+    robots: Mapping[str, Point] = MappingProxyType({})
+    """Middle of each robot on the field."""
 
 
 class Referee:
@@ -89,16 +96,21 @@ class Referee:
         if self.time_in_half_s >= self.rules.half_s:
             self._enter(State.HALF_TIME if self.half == 1 else State.FROZEN, Team.NONE, stopped=True)
         elif self.stopped:
-            self._wait_for_robots(duration_s, sight.ball)
+            self._wait_for_robots(duration_s, sight)
         else:
             self._watch(duration_s, sight)
 
-    def _wait_for_robots(self, duration_s: float, ball: Point) -> None:
+    def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
+        ball = sight.ball
         self._since_placed_s += duration_s
         if math.dist(ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
             self._place()
         kicks_off = self.state is State.KICK_OFF
-        if self.time_in_state_s < (self.rules.kick_off_stoppage_s if kicks_off else self.rules.stoppage_s):
+        stoppage_s = self.rules.kick_off_stoppage_s if kicks_off else self.rules.stoppage_s
+        if self.time_in_state_s < stoppage_s:
+            return
+        patient = self.time_in_state_s < stoppage_s + self.rules.positions_s
+        if patient and misplaced(Restart(self.state, self.team, self.spot), sight.robots):
             return
         self._enter(self.state, self.team, stopped=False)
         self._resting_at, self._resting_s, self._last_touch = ball, 0.0, ball

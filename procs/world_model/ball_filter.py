@@ -13,6 +13,7 @@ import numpy as np
 
 from procs.model.ball import ROLLING_SHARE, SLIDING_M_S2
 from procs.model.frames import Floats
+from procs.world_model.batch import corrected, drift, innovation
 
 
 class Mode(IntEnum):
@@ -26,6 +27,7 @@ class Mode(IntEnum):
 
 
 _MODES = len(Mode)
+_AXES, _OTHER = np.array((0, 1, 2, 3)), np.array((2, 3, 0, 1))  # x, y, vx, vy, and the partner of each
 _NOISE_M2_S3 = np.array((0.0002, 0.01, 0.3, 5.0, 0.3))
 """Spectral density of the acceleration that each model leaves open."""
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
@@ -110,18 +112,14 @@ class BallFilter:
         x[:, :2] += x[:, 2:] * (duration_s * (1.0 + kept) / 2)[:, None]
         x[:, 2:] *= kept[:, None]
         p[Mode.RESTS, 2:] = p[Mode.RESTS, :, 2:] = 0.0
-        p[:, :2] += duration_s * p[:, 2:]
-        p[:, :, :2] += duration_s * p[:, :, 2:]
+        drift(p, duration_s)
         along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
         noise = _NOISE_M2_S3[:, None] * along
         hit = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
         noise[Mode.HIT] += hit
         noise[Mode.RESTS] = (_NOISE_M2_S3[Mode.RESTS] * duration_s, 0.0, 1e-4)
-        for axis in (0, 1):
-            p[:, axis, axis] += noise[:, 0]
-            p[:, axis, axis + 2] += noise[:, 1]
-            p[:, axis + 2, axis] += noise[:, 1]
-            p[:, axis + 2, axis + 2] += noise[:, 2]
+        p[:, _AXES, _AXES] += noise[:, (0, 0, 2, 2)]
+        p[:, _AXES, _OTHER] += noise[:, 1:2]
 
     def stay_within(self, x_m: float, y_m: float) -> None:
         """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them."""
@@ -133,23 +131,12 @@ class BallFilter:
 
     def see(self, position_m: Floats, covariance_m2: Floats, age_s: float = 0.0) -> bool:
         """Takes a sighting (2) with its covariance (2, 2), captured `age_s` ago; returns False if it does not fit."""
-        gain = self._p[:, :, :2] - age_s * self._p[:, :, 2:]  # P H'
-        spread = gain[:, :2] - age_s * gain[:, 2:] + covariance_m2
-        determinants = spread[:, 0, 0] * spread[:, 1, 1] - spread[:, 0, 1] * spread[:, 1, 0]
-        inverse = np.empty_like(spread)
-        inverse[:, 0, 0], inverse[:, 1, 1] = spread[:, 1, 1], spread[:, 0, 0]
-        inverse[:, 0, 1], inverse[:, 1, 0] = -spread[:, 0, 1], -spread[:, 1, 0]
-        inverse /= determinants[:, None, None]
-        innovations = position_m - self._x[:, :2] + age_s * self._x[:, 2:]
-        weighted = (inverse @ innovations[:, :, None])[:, :, 0]
-        surprises = (innovations * weighted).sum(axis=1)
-        likely = self._weights * np.exp(-surprises / 2) / (2 * math.pi * np.sqrt(determinants))
+        found = innovation(self._x, self._p, position_m, covariance_m2, age_s)
+        likely = self._weights * np.exp(-found.surprises / 2) / (2 * math.pi * np.sqrt(found.determinants))
         evidence = float(likely.sum())
         if evidence < _CLUTTER_1_M2:
             return False
-        self._x += (gain @ weighted[:, :, None])[:, :, 0]
-        self._p -= gain @ inverse @ gain.transpose(0, 2, 1)
-        self._p = (self._p + self._p.transpose(0, 2, 1)) / 2  # rounding errors would grow
+        self._x, self._p = corrected(self._x, self._p, found)
         self._weights = np.maximum(likely / evidence, _LEAST)
         self._weights /= self._weights.sum()
         return True

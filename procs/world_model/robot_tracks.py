@@ -1,79 +1,48 @@
-"""Tracks of the robots that are seen as obstacles: a Kalman filter for each."""
-
-import math
+"""Tracks of the robots that are seen as obstacles: a Kalman filter for each, all in one batch."""
 
 import numpy as np
 
-from procs.model.estimation import linear_sum_assignment, predict, update
+from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
+from procs.world_model.batch import corrected, drift, innovation, inverted
 
 _ACCELERATION_M_S2 = 2.5
 _UNKNOWN_SPEED_M_S = 1.5
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
 _SAME_M = 0.45  # robots are 0.5 m wide
-
-
-class _Track:
-    """Position and velocity of one robot: state x, y (m), vx, vy (m/s)."""
-
-    def __init__(self, position_m: Floats, covariance_m2: Floats, age_s: float) -> None:
-        self.state = np.concatenate((position_m, (0.0, 0.0)))
-        self.covariance = np.eye(4) * _UNKNOWN_SPEED_M_S**2
-        self.covariance[:2, :2] = covariance_m2 + np.eye(2) * (_UNKNOWN_SPEED_M_S * age_s) ** 2
-        self.age_s = age_s
-        self.sightings = 1
-
-    @property
-    def place(self) -> tuple[float, float]:
-        return float(self.state[0]), float(self.state[1])
-
-    def move(self, motion: Floats, noise: Floats) -> None:
-        self.state, self.covariance = predict(self.state, self.covariance, F=motion, Q=noise)
-
-    def see(self, position_m: Floats, covariance_m2: Floats, seen_as: Floats) -> None:
-        self.state, self.covariance = update(self.state, self.covariance, position_m, covariance_m2, H=seen_as)
-        self.sightings += 1
+_AXES = np.arange(4)
 
 
 class RobotTracks:
     """n tracks of position and velocity in the world frame."""
 
     def __init__(self) -> None:
-        self._tracks: list[_Track] = []
+        self.states: Floats = np.zeros((0, 4))
+        """(n, 4): x, y (m), vx, vy (m/s)."""
+        self.covariances: Floats = np.zeros((0, 4, 4))
+        """(n, 4, 4) of the states."""
+        self.ages_s: Floats = np.zeros(0)
+        """(n): time since each robot was last seen."""
+        self._sightings: Indices = np.zeros(0, np.intp)
 
     def __len__(self) -> int:
-        return len(self._tracks)
-
-    @property
-    def states(self) -> Floats:
-        """(n, 4): x, y (m), vx, vy (m/s)."""
-        return np.array([track.state for track in self._tracks]).reshape(-1, 4)
-
-    @property
-    def covariances(self) -> Floats:
-        """(n, 4, 4) of the states."""
-        return np.array([track.covariance for track in self._tracks]).reshape(-1, 4, 4)
-
-    @property
-    def ages_s(self) -> Floats:
-        """(n): time since each robot was last seen."""
-        return np.array([track.age_s for track in self._tracks])
+        return len(self.states)
 
     @property
     def sure(self) -> Indices:
         """Indices of the tracks with more than one sighting; a single sighting may be a ghost."""
-        return np.flatnonzero([track.sightings > 1 for track in self._tracks])
+        return np.flatnonzero(self._sightings > 1)
 
     def predict(self, duration_s: float, timeout_s: float) -> None:
         """Moves all tracks on by `duration_s`; drops those without a sighting for `timeout_s`."""
-        motion, noise = _motion(duration_s)
-        for track in self._tracks:
-            track.age_s += duration_s
-            track.move(motion, noise)
-        self._tracks = [
-            track for track in self._tracks if track.age_s <= (timeout_s if track.sightings > 1 else timeout_s / 4)
-        ]
+        self.ages_s = self.ages_s + duration_s
+        current = self.ages_s <= np.where(self._sightings > 1, timeout_s, timeout_s / 4)
+        if not current.all():
+            self._keep(current)
+        self.states[:, :2] += duration_s * self.states[:, 2:]
+        drift(self.covariances, duration_s)
+        self.covariances += _noise(duration_s)
 
     def see(self, positions_m: Floats, covariances_m2: Floats, age_s: float = 0.0) -> None:
         """Takes one robot's sightings of a frame, captured `age_s` ago, each of a different robot.
@@ -83,31 +52,61 @@ class RobotTracks:
             covariances_m2: (m, 2, 2).
             age_s: time since the exposure.
         """
-        free = np.ones(len(positions_m), dtype=bool)
-        seen_as = _seen_as(age_s)
-        if self._tracks and len(positions_m):
-            predicted = np.array([seen_as @ track.state for track in self._tracks])
-            spread = np.array([seen_as @ track.covariance @ seen_as.T for track in self._tracks])
-            innovations = positions_m[None] - predicted[:, None]
-            surprises = _surprises(innovations, spread[:, None] + covariances_m2[None])
-            near = (surprises <= _GATE) & (np.hypot(innovations[..., 0], innovations[..., 1]) <= _FARTHEST_M)
-            rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
-            for row, column in zip(rows[near[rows, columns]], columns[near[rows, columns]], strict=True):
-                track = self._tracks[row]
-                track.see(positions_m[column], covariances_m2[column], seen_as)
-                track.age_s = min(track.age_s, age_s)
-                free[column] = False
-        for position_m, covariance_m2 in zip(positions_m[free], covariances_m2[free], strict=True):
-            self._tracks.append(_Track(position_m, covariance_m2, age_s))
+        if not len(positions_m):
+            return
+        tracks, seen = self._assign(positions_m, covariances_m2, age_s)
+        if len(tracks):
+            before = self.states[tracks], self.covariances[tracks]
+            found = innovation(*before, positions_m[seen], covariances_m2[seen], age_s)
+            self.states[tracks], self.covariances[tracks] = corrected(*before, found)
+            self.ages_s[tracks] = np.minimum(self.ages_s[tracks], age_s)
+            self._sightings[tracks] += 1
+        if len(seen) < len(positions_m):
+            free = np.ones(len(positions_m), dtype=bool)
+            free[seen] = False
+            self._begin(positions_m[free], covariances_m2[free], age_s)
         self._join()
+
+    def _assign(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> tuple[Indices, Indices]:
+        """Returns the tracks that are seen, and the sighting of each."""
+        if not len(self):
+            return np.zeros(0, np.intp), np.zeros(0, np.intp)
+        predicted_m = self.states[:, :2] - age_s * self.states[:, 2:]
+        gains = self.covariances[:, :2] - age_s * self.covariances[:, 2:]
+        spreads = gains[:, :, :2] - age_s * gains[:, :, 2:]
+        apart_m = positions_m[None] - predicted_m[:, None]
+        surprises = _surprises(apart_m, spreads[:, None] + covariances_m2[None])
+        near = (surprises <= _GATE) & ((apart_m**2).sum(axis=2) <= _FARTHEST_M**2)
+        rows, columns = linear_sum_assignment(np.where(near, surprises, 1e3))
+        fits = near[rows, columns]
+        return rows[fits], columns[fits]
+
+    def _begin(self, positions_m: Floats, covariances_m2: Floats, age_s: float) -> None:
+        count = len(positions_m)
+        states, covariances = np.zeros((count, 4)), np.zeros((count, 4, 4))
+        states[:, :2], covariances[:, :2, :2] = positions_m, covariances_m2
+        covariances[:, _AXES, _AXES] += _UNKNOWN_SPEED_M_S**2 * np.array((age_s**2, age_s**2, 1.0, 1.0))
+        self.states = np.concatenate((self.states, states))
+        self.covariances = np.concatenate((self.covariances, covariances))
+        self.ages_s = np.concatenate((self.ages_s, np.full(count, age_s)))
+        self._sightings = np.concatenate((self._sightings, np.ones(count, np.intp)))
 
     def _join(self) -> None:
         """Drops the less seen of two tracks in one place; of equals, the younger."""
-        kept: list[_Track] = []
-        for track in sorted(self._tracks, key=lambda each: -each.sightings):
-            if all(math.dist(track.place, other.place) >= _SAME_M for other in kept):
-                kept.append(track)
-        self._tracks = [track for track in self._tracks if track in kept]
+        if len(self) < 2:
+            return
+        apart_m = self.states[:, None, :2] - self.states[None, :, :2]
+        same = (apart_m**2).sum(axis=2) < _SAME_M**2
+        if np.count_nonzero(same) == len(self):
+            return
+        kept = np.zeros(len(self), dtype=bool)
+        for track in np.argsort(-self._sightings, kind="stable"):
+            kept[track] = not (same[track] & kept).any()
+        self._keep(kept)
+
+    def _keep(self, which: Flags) -> None:
+        self.states, self.covariances = self.states[which], self.covariances[which]
+        self.ages_s, self._sightings = self.ages_s[which], self._sightings[which]
 
 
 def without_known(
@@ -136,21 +135,16 @@ def without_known(
     return remain
 
 
-def _motion(duration_s: float) -> tuple[Floats, Floats]:
-    """Transition matrix (4, 4) and process noise (4, 4) of a robot that accelerates at random."""
-    motion = np.eye(4)
-    motion[0, 2] = motion[1, 3] = duration_s
-    push = np.array((duration_s**2 / 2, duration_s))
-    noise = np.kron(np.outer(push, push), np.eye(2)) * _ACCELERATION_M_S2**2
-    return motion, np.asarray(noise, np.float64)
-
-
-def _seen_as(age_s: float) -> Floats:
-    """Measurement matrix (2, 4) of a position that was seen `age_s` ago."""
-    return np.array(((1.0, 0.0, -age_s, 0.0), (0.0, 1.0, 0.0, -age_s)))
+def _noise(duration_s: float) -> Floats:
+    """Returns the process noise (4, 4) of a robot that accelerates at random."""
+    noise = np.zeros((4, 4))
+    place, both, velocity = _ACCELERATION_M_S2**2 * np.array((duration_s**4 / 4, duration_s**3 / 2, duration_s**2))
+    noise[_AXES, _AXES] = place, place, velocity, velocity
+    noise[0, 2] = noise[2, 0] = noise[1, 3] = noise[3, 1] = both
+    return noise
 
 
 def _surprises(innovations: Floats, spreads: Floats) -> Floats:
-    """Squared Mahalanobis distances (n, m) of innovations (n, m, 2) with covariances (n, m, 2, 2)."""
-    weighted = np.linalg.solve(spreads, innovations[..., None])[..., 0]
+    """Returns squared Mahalanobis distances (n, m) of innovations (n, m, 2) with covariances (n, m, 2, 2)."""
+    weighted = (inverted(spreads)[0] * innovations[..., None, :]).sum(axis=-1)
     return np.asarray((innovations * weighted).sum(axis=-1))

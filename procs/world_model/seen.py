@@ -1,10 +1,10 @@
 """Things that a robot saw in one frame, with their covariances."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from procs.model.frames import BOUND, Flags, Floats
 
@@ -27,17 +27,28 @@ class Seen:
     """(n): of obstacles."""
 
     @classmethod
-    def of(cls, positions_m: ArrayLike, covariances_m2: ArrayLike, radii_m: ArrayLike) -> "Seen":
-        """Returns things with the covariance of the sight, without those that have impossible values."""
-        places = np.asarray(positions_m, dtype=np.float64).reshape(-1, 2)
-        spreads = np.asarray(covariances_m2, dtype=np.float64).reshape(-1, 2, 2)
-        sizes = np.asarray(radii_m, dtype=np.float64)
-        values = np.hstack((places, spreads.reshape(-1, 4), sizes[:, None]))
+    def of(cls, positions_m: Iterable[Any], covariances_m2: Iterable[Any], radii_m: Iterable[float]) -> "Seen":
+        """Returns things with the covariance of the sight, without those that have impossible values.
+
+        Args:
+            positions_m: n pairs x, y.
+            covariances_m2: n matrices (2, 2).
+            radii_m: n radii.
+        """
+        rows = [
+            (x_m, y_m, xx_m2, xy_m2, yx_m2, yy_m2, radius_m)
+            for (x_m, y_m), ((xx_m2, xy_m2), (yx_m2, yy_m2)), radius_m in zip(
+                positions_m, covariances_m2, radii_m, strict=True
+            )
+        ]
+        values = np.array(rows, np.float64).reshape(-1, 7)
+        values[:, 2:6:3] += _LEAST_M2
         sound = (np.abs(values) < BOUND).all(axis=1)  # false for NaN too
-        places, spreads, sizes = places[sound], spreads[sound] + np.eye(2) * _LEAST_M2, sizes[sound]
-        across = spreads[:, 0, 1] * spreads[:, 1, 0]
-        proper = (spreads[:, 0, 0] > 0) & (spreads[:, 1, 1] > 0) & (spreads[:, 0, 0] * spreads[:, 1, 1] > across)
-        return cls(places[proper], spreads[proper], np.zeros((int(proper.sum()), 2, 2)), sizes[proper])
+        sound &= (values[:, 2] > 0) & (values[:, 5] > 0)
+        with np.errstate(over="ignore", invalid="ignore"):
+            sound &= values[:, 2] * values[:, 5] > values[:, 3] * values[:, 4]
+        values = values[sound]
+        return cls(values[:, :2], values[:, 2:6].reshape(-1, 2, 2), np.zeros((len(values), 2, 2)), values[:, 6])
 
     @property
     def covariances_m2(self) -> Floats:

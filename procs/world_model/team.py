@@ -10,6 +10,8 @@ _LEAST_M = 0.02  # deviation of a position whose sender claims less
 _DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
+_UNIT = np.eye(2)
+
 
 def _least_m2() -> Floats:
     return np.eye(2) * _LEAST_M**2
@@ -37,7 +39,7 @@ class Mate:
     def covariance_at(self, time_s: float) -> Floats:
         """Returns the covariance (2, 2) in m² of `position_at`."""
         drift_m = _DRIFT_M_S * abs(time_s - self.told_s)
-        return self.covariance_m2 + np.eye(2) * (_LEAST_M + drift_m) ** 2
+        return self.covariance_m2 + _UNIT * (_LEAST_M + drift_m) ** 2
 
 
 class Team:

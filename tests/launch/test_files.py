@@ -44,10 +44,12 @@ def test_a_team_hears_only_itself() -> None:
         assert radio.channels["inboxes"] == tuple(f"{robot}/team_inbox" for robot in own)
 
 
-def test_only_cameras_read_the_ground_truth() -> None:
+def test_only_cameras_and_the_referee_read_the_ground_truth() -> None:
     plan = plan_of("soccer.yaml")
     truth = next(channel for channel in plan.channels if channel.name == "world/ground_truth")
-    assert {plan.components[index].name.rpartition("/")[2] for index in truth.readers} == {"camera"}
+    readers = [plan.components[index] for index in truth.readers]
+    assert [each.name for each in readers if each.namespace == "world"] == ["world/referee"]
+    assert {each.name.rpartition("/")[2] for each in readers if each.namespace != "world"} == {"camera"}
 
 
 def test_vision_alone_has_a_camera_of_files_and_both_detectors() -> None:

@@ -1,10 +1,13 @@
 """The goalkeeper's skill: stay between ball and goal, and be where a shot will cross the line."""
 
+import math
+
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step
 from procs.model.field import Point
 from procs.model.geometry import bearing_rad, clamp
 
 _BEFORE_LINE_M = 0.45
+_ON_GUARD_M = 1.5  # a keeper further away drives around robots on its way home
 _SHOT_M_S = 0.8
 _LOOK_AHEAD_S = 3.0
 _WIDE_M = 0.6  # a shot that passes the post further away is let go
@@ -18,7 +21,8 @@ class KeepGoal(Skill):
     def step(self, scene: Scene) -> Step:
         place = self._place(scene)
         heading_rad = bearing_rad(place, scene.view.ball.place) if scene.view.ball.known else 0.0
-        drive = Drive(place, clamp(heading_rad, -1.3, 1.3), scene.speed_m_s, avoid_robots=False)
+        away = math.dist(place, scene.view.own.place) > _ON_GUARD_M
+        drive = Drive(place, clamp(heading_rad, -1.3, 1.3), scene.speed_m_s, avoid_robots=away)
         return Step(drive, dribble=scene.holds_ball, status=Status.RUNNING)
 
     def _place(self, scene: Scene) -> Point:

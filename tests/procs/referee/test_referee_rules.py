@@ -3,7 +3,8 @@
 import pytest
 
 from procs.model.field import Point
-from procs.referee.restarts import State, Team
+from procs.referee.positions import misplaced
+from procs.referee.restarts import Restart, State, Team
 from procs.referee.rules import Referee, Rules, Sight
 from procs.simulation.physics.events import Event, Kind
 
@@ -157,3 +158,44 @@ def test_magenta_kicks_off_second_half_and_then_the_match_ends() -> None:
     assert referee.over
     report(referee, event(Kind.GOAL, "cyan2", 11.2, 0.0))
     assert (referee.state, referee.score[Team.CYAN]) == (State.FROZEN, 0)
+
+
+def test_set_piece_waits_for_robots_that_are_misplaced() -> None:
+    referee = Referee(Rules(kick_off_stoppage_s=1.0, positions_s=4.0))
+    away = {"cyan1": Point(-5.0, 0.0), "cyan2": Point(-0.7, 0.0), "magenta1": Point(4.0, 0.0)}
+    for _ in range(40):
+        referee.step(TICK_S, Sight(CENTRE, robots=away | {"magenta2": Point(2.5, 0.0)}))
+    assert referee.stopped, "magenta2 is nearer than 3 m"
+    referee.step(TICK_S, Sight(CENTRE, robots=away))
+    assert not referee.stopped
+
+
+def test_set_piece_does_not_wait_forever() -> None:
+    referee = Referee(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
+    stopped = []
+    for _ in range(70):
+        referee.step(TICK_S, Sight(CENTRE, robots={"magenta2": Point(2.5, 0.0)}))
+        stopped.append(referee.stopped)
+    assert stopped.index(False) == pytest.approx(60, abs=1)
+
+
+@pytest.mark.parametrize(
+    ("state", "team", "robot", "place", "allowed"),
+    [
+        (State.FREE_KICK, Team.CYAN, "cyan2", (1.9, 0.0), False),
+        (State.FREE_KICK, Team.CYAN, "cyan2", (2.1, 0.0), True),
+        (State.FREE_KICK, Team.CYAN, "magenta2", (2.9, 0.0), False),
+        (State.FREE_KICK, Team.CYAN, "magenta2", (3.1, 0.0), True),
+        (State.DROP_BALL, Team.NONE, "cyan2", (0.9, 0.0), False),
+        (State.DROP_BALL, Team.NONE, "magenta2", (1.1, 0.0), True),
+        (State.KICK_OFF, Team.CYAN, "cyan2", (0.5, 4.0), False),
+        (State.KICK_OFF, Team.CYAN, "magenta2", (-0.5, 4.0), False),
+        (State.KICK_OFF, Team.CYAN, "magenta2", (0.5, 4.0), True),
+        (State.THROW_IN, Team.CYAN, "magenta2", (-0.5, 4.0), True),
+    ],
+)
+def test_places_of_robots_at_a_set_piece(
+    state: State, team: Team, robot: str, place: tuple[float, float], allowed: bool
+) -> None:
+    robots = {"cyan1": Point(-0.5 - 1.0 * (team is Team.NONE), 0.0), robot: Point(*place)}
+    assert misplaced(Restart(state, team, CENTRE), robots) == ([] if allowed else [robot])
