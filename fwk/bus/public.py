@@ -6,6 +6,7 @@ import itertools
 import socket
 import struct
 
+from fwk.bus.listeners import Listeners
 from fwk.bus.sockets import BUFFER_BYTES, LOOPBACK
 from fwk.lcm import wire
 from fwk.model.public_url import parse_url
@@ -38,6 +39,7 @@ class PublicBus:
             self._join(group, LOOPBACK)
         _ignore_source(self._receiver, self._sender.getsockname()[1])
         self._assembler = wire.Assembler()
+        self._listeners = Listeners(port)
 
     def fileno(self) -> int:
         """For waiting until something arrives."""
@@ -47,6 +49,7 @@ class PublicBus:
         """Gives both sockets back."""
         self._sender.close()
         self._receiver.close()
+        self._listeners.close()
 
     def publish(self, channel: str, data: bytes) -> None:
         """Sends a message; on this bus loss is not repaired."""
@@ -61,6 +64,10 @@ class PublicBus:
         """Sends one datagram; one that the system does not take is lost."""
         with contextlib.suppress(OSError):
             self._sender.sendto(datagram, self._address)
+
+    def busy_listener(self) -> str:
+        """Returns the name of a program that still works on earlier messages; empty if none does."""
+        return self._listeners.busy()
 
     def receive(self) -> tuple[str, bytes, int] | None:
         """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.

@@ -1,4 +1,4 @@
-"""The blackboard from outside: channels' newest messages for whoever asks, each new one for whoever watches."""
+"""Answers tools that list channels, show their newest messages and watch them."""
 
 import contextlib
 from collections.abc import Callable
@@ -19,11 +19,17 @@ _BYTES_SHOWN = 64
 
 
 class ChannelServer:
-    """A sink of the gateway that answers questions."""
+    """A sink of the gateway with the gateway's control socket.
 
-    def __init__(self, plan: Plan, instances: ChannelTable, call: Callable[[requests.Call, Connection], None]) -> None:
+    Args:
+        plan: the plan of the run.
+        channels: the channels that exist, including the dynamic ones.
+        call: takes requests for components.
+    """
+
+    def __init__(self, plan: Plan, channels: ChannelTable, call: Callable[[requests.Call, Connection], None]) -> None:
         self._plan = plan
-        self._instances = instances
+        self._table = channels
         self._call = call
         self._channels = {channel.name: channel for channel in plan.channels}
         self._newest: dict[str, bytes] = {}
@@ -33,16 +39,16 @@ class ChannelServer:
         self._server = Server(gateway_address(plan.bus_port), self._take)
 
     def fileno(self) -> int:
-        """For waiting until somebody asks."""
+        """Returns the descriptor that is readable when `handle` has something to do."""
         return self._server.fileno()
 
     def handle(self) -> None:
-        """Answers who asks."""
+        """Answers the requests that have arrived."""
         self._server.handle()
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Takes a message."""
-        if not self._instances.find(channel):
+        """Takes a message of the run."""
+        if not self._table.find(channel):
             return
         self._newest[channel], self._arrived_us[channel] = data, monotonic_us()
         self._counts[channel] = self._counts.get(channel, 0) + 1
@@ -50,14 +56,14 @@ class ChannelServer:
             watching = [connection for connection in self._watching[channel] if connection.open]
             self._watching[channel] = watching
             for connection in watching:
-                with contextlib.suppress(RequestError):  # one that does not decode; its reader complains
+                with contextlib.suppress(RequestError):  # it does not decode; its readers complain
                     connection.stream({"ok": True, **self._shown(channel)})
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def close(self) -> None:
-        """The run is over."""
+        """Disconnects all tools."""
         self._server.close()
 
     def _take(self, line: bytes, connection: Connection) -> None:
@@ -75,19 +81,19 @@ class ChannelServer:
             connection.reply({"ok": True, **answer})
         except RequestError as error:
             connection.refuse(str(error))
-        except Exception as error:  # a mistake in here must not end the recording
+        except Exception as error:  # a defect here must not end the recording
             connection.refuse(f"the gateway cannot answer this: {type(error).__name__}: {error}")
 
     def _known(self, name: str) -> ChannelPlan:
-        """The channel of that name, of the plan or opened while the run goes on."""
-        instance = self._instances.find(name)
+        """Returns the channel of that name, of the plan or dynamic."""
+        instance = self._table.find(name)
         if instance is None:
             raise RequestError(f"no channel '{name}'; {hint(name, [each.name for each in self._all()])}")
         return self._channels[name] if instance.declared else self._opened(instance)
 
     def _all(self) -> list[ChannelPlan]:
-        """The plan's channels, and after them those that were opened while the run goes on."""
-        opened = [instance for instance in self._instances.matching("*") if not instance.declared]
+        """Returns the plan's channels, then the dynamic ones."""
+        opened = [instance for instance in self._table.matching("*") if not instance.declared]
         return [*self._plan.channels, *map(self._opened, opened)]
 
     def _opened(self, instance: Instance) -> ChannelPlan:
@@ -117,8 +123,8 @@ class ChannelServer:
         }
 
     def _readers(self, channel: ChannelPlan) -> list[int]:
-        """Those of the plan, then those who opened it at run time."""
-        instance = self._instances.find(channel.name)
+        """Returns the readers of the plan, then those that opened the channel during the run."""
+        instance = self._table.find(channel.name)
         opened = sorted({component for component, _ in instance.readers}) if instance else []
         return list(dict.fromkeys([*channel.readers, *opened]))
 
@@ -134,7 +140,7 @@ class ChannelServer:
 
 
 def plain(value: Any) -> Any:
-    """A message as plain data for JSON; of long byte arrays only how long they are."""
+    """Returns a message as plain data for JSON; long byte arrays are replaced by their length."""
     if hasattr(value, "__typenames__"):
         return {name: plain(getattr(value, name)) for name in value.__slots__}
     if isinstance(value, list | tuple):

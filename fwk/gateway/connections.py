@@ -1,19 +1,19 @@
-"""What the gateway is connected to: sinks, the supervisor, programs outside the run."""
+"""Protocols of what the gateway is connected to: sinks, the supervisor, programs outside the run."""
 
 from typing import Protocol
 
 
 class Sink(Protocol):
-    """Takes everything that the gateway sees."""
+    """Takes all messages that the gateway collects."""
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
-        """A message of a component, of the main loop, a line of text or a status."""
+        """Takes a message of a component, a tick record, a line of text or a status."""
 
     def tick(self) -> None:
-        """A tick is complete."""
+        """Takes note that all messages of a tick were handed over."""
 
     def close(self) -> None:
-        """The run is over."""
+        """Writes what is left: the run is over."""
 
 
 class SupervisorConnection(Protocol):
@@ -24,7 +24,7 @@ class SupervisorConnection(Protocol):
         ...
 
     def recv(self, size: int, /) -> bytes:
-        """Returns what the supervisor sent; nothing when the connection is closed.
+        """Returns what the supervisor sent; empty when the connection is closed.
 
         Raises:
             BlockingIOError: nothing waits.
@@ -45,4 +45,8 @@ class Outsiders(Protocol):
 
     def send(self, datagram: bytes) -> None:
         """Sends one datagram to them."""
+        ...
+
+    def busy_listener(self) -> str:
+        """Returns the name of a program that still works on earlier messages; empty if none does."""
         ...

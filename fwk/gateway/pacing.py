@@ -2,7 +2,8 @@
 
 A tick's messages become visible at once, several hundred in a large system. A receiver with default settings (30
 messages in the queue of a subscription, 208 KiB in the socket) loses most of such a burst, so the datagrams wait and
-leave a few at a time. The run does not wait for them: the queue empties within a tick if it can, else over several.
+leave a few at a time, and only when the listeners of this machine have handled those before. The run does not wait for
+any of this: the queue empties within a tick if it can, else over several.
 """
 
 from collections import deque
@@ -14,11 +15,13 @@ SLOT_BYTES = 2_048
 """A datagram counts as one for each begun piece of this size."""
 LEAST = 4
 """Datagrams of a group, at the least."""
-LARGEST = 12
+LARGEST = 14
 """Datagrams of a group, at the most: two groups fit into the queue of a subscription."""
+SHORT_SLOT_US = 200
+"""Wall time from one of these largest groups to the next."""
 QUEUE_MAX = 16_384
-"""Datagrams that wait, at the most; of a system that writes more, what is beyond leaves at once."""
-LONGEST_US = 50_000
+"""Datagrams that wait, at the most; of a system that writes more, the excess leaves at once."""
+LONGEST_US = 250_000
 """Wall time over which the messages of a tick are spread, at the most."""
 _NEVER = 1 << 62
 _WEIGHT = 0.2  # of the newest tick in the mean time between ticks
@@ -30,15 +33,28 @@ class PacedPublisher:
     Args:
         now_us: returns the wall time in microseconds.
         send: sends one datagram.
+        busy_listener: returns the name of a program that has not handled earlier datagrams; empty if none has to.
+        patience_us: wall time that the queue waits for a busy listener at the most.
     """
 
-    def __init__(self, now_us: Callable[[], int], send: Callable[[bytes], None]) -> None:
+    def __init__(
+        self,
+        now_us: Callable[[], int],
+        send: Callable[[bytes], None],
+        busy_listener: Callable[[], str],
+        patience_us: int,
+    ) -> None:
+        self.overrun = ""
+        """Listener that was busy for so long that it may lack datagrams; empty: there was none."""
         self._now_us = now_us
         self._send = send
+        self._busy_listener = busy_listener
+        self._patience_us = patience_us
         self._queue: deque[bytes] = deque()
         self._size = 0  # of the queue, in datagrams that count
         self._group = LEAST
         self._due_us = 0
+        self._busy_us = 0  # wall time since which a listener is busy; 0: none is
         self._tick_us = now_us()  # wall time of the newest tick
         self._interval_us = float(LONGEST_US)  # mean wall time between ticks
 
@@ -67,20 +83,24 @@ class PacedPublisher:
         self._group = min(max(LEAST, -(-self._size // slots)), LARGEST)
 
     def send_due(self) -> None:
-        """Sends the next group if its time has come, two of them if the process was late."""
+        """Sends the next group if its time has come."""
         now_us = self._now_us()
         if not self._queue or now_us < self._due_us:
             return
-        late = now_us >= self._due_us + SLOT_US > SLOT_US
-        self._send_group(max(self._group * (1 + late), self._size - QUEUE_MAX))
-        self._due_us = now_us + SLOT_US
+        excess = self._size - QUEUE_MAX
+        busy = self._busy_listener()
+        self._busy_us = (self._busy_us or now_us) if busy else 0
+        self._due_us = now_us + (SLOT_US if self._group < LARGEST else SHORT_SLOT_US)
+        if busy and excess <= 0 and now_us < self._busy_us + self._patience_us:
+            return
+        self.overrun = busy or self.overrun
+        self._send_group(max(self._group, excess))
 
     def _send_group(self, left: int) -> None:
         while self._queue and left > 0:
             datagram = self._queue.popleft()
-            size = _size_of(datagram)
-            self._size -= size
-            left -= size
+            left -= _size_of(datagram)
+            self._size -= _size_of(datagram)
             self._send(datagram)
 
 

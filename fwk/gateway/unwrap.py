@@ -1,4 +1,4 @@
-"""Takes envelopes apart for those outside a run: a stamp of our own, then the bytes of the device's type alone."""
+"""Replaces envelopes by a stamp and the plain message, for recordings and the public bus."""
 
 import struct
 from collections.abc import Set
@@ -15,21 +15,24 @@ _FINGERPRINT = messages.fingerprint(stamp_t)
 
 
 class Unwrap:
-    """A sink that gets, in place of each envelope on one of these channels, a stamp and the plain message.
+    """Sink that gives another sink a stamp and the plain message for each envelope.
 
-    Those of `opened` come and go.
+    Args:
+        sink: takes the messages.
+        channels: channels of the plan that carry envelopes.
+        dynamic: dynamic channels that carry envelopes at the moment.
     """
 
-    def __init__(self, sink: Sink, channels: Set[str], opened: Set[str] = frozenset()) -> None:
+    def __init__(self, sink: Sink, channels: Set[str], dynamic: Set[str] = frozenset()) -> None:
         self._sink = sink
         self._channels = channels
-        self._opened = opened
+        self._dynamic = dynamic
         self.tick = sink.tick
         self.close = sink.close
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         """Passes a message on."""
-        if channel in self._channels or channel in self._opened:
+        if channel in self._channels or channel in self._dynamic:
             end = Header.of(data).end
             self._sink.message(STAMP, _beginning(channel) + data[8:end], time_us)
             data = data[end:]
@@ -37,12 +40,12 @@ class Unwrap:
 
 
 def plain_channels(plan: Plan) -> frozenset[str]:
-    """The channels of a plan whose types have no header of ours."""
+    """Returns the channels of a plan whose types have no header."""
     return frozenset(channel.name for channel in plan.channels if envelope.is_plain(channel.type_name))
 
 
 @cache
 def _beginning(channel: str) -> bytes:
-    """Of an encoded `stamp_t`: everything before the members of its header."""
+    """Returns the bytes of an encoded `stamp_t` before the members of its header."""
     name = channel.encode() + b"\0"
     return _FINGERPRINT + struct.pack(">I", len(name)) + name

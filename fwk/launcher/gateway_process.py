@@ -8,7 +8,7 @@ from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
 from fwk.component.images import Ring
 from fwk.gateway.channel_server import ChannelServer
-from fwk.gateway.command_bridge import Calls
+from fwk.gateway.command_bridge import CommandBridge
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.unwrap import Unwrap, plain_channels
 from fwk.lcm.event_log import LogError
@@ -28,26 +28,25 @@ def run_gateway(
     rings: Mapping[str, Ring],
 ) -> int:
     """Serves until the supervisor closes `control`; returns the exit code."""
-    signal.signal(
-        signal.SIGTERM, signal.SIG_IGN
-    )  # ends when the supervisor's end of `control` is closed, also by its death
+    # The gateway ends when the supervisor's end of `control` is closed, also by the supervisor's death.
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
     network = UdpNetwork()
     gateway = Gateway(plan, run, network, control, public)
-    calls = Calls(plan, gateway.take_in, gateway.clock)
-    board = ChannelServer(plan, gateway.instances, calls.call)
-    gateway.watch(board.fileno(), board.handle)
+    bridge = CommandBridge(plan, gateway.take_in, gateway.clock)
+    channel_server = ChannelServer(plan, gateway.channels, bridge.call)
+    gateway.watch(channel_server.fileno(), channel_server.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already
     if public:
-        mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.opened_plain)
+        mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.dynamic_plain)
         gateway.sinks.append(targets.above(mirror, plan.log.bus))
     gateway.sinks += [
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         *targets.syslog(plan.log, plan.name, gateway.log.error),
-        board,
-        calls,
+        channel_server,
+        bridge,
         *targets.components(plan, gateway.take_in, gateway.log),
         targets.above(sinks.Display(plan, display), plan.log.console),
         sinks.Newest(plan, control, lambda: gateway.lost),
@@ -60,7 +59,7 @@ def run_gateway(
                 if recorded
                 else sinks.Recorder(plan, options.record, gateway.log.error)
             )
-            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.opened_plain), plan.log.recording))
+            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     network.run(gateway.serve())

@@ -5,7 +5,7 @@ from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.component.log import Logger
-from fwk.gateway.ingress import Full
+from fwk.gateway.ingress import IngressFullError
 from fwk.lcm.messages import MessageError, decoder
 from fwk.model.names import LINES
 from lcmtypes.core import log_t
@@ -28,7 +28,7 @@ class LogTarget:
             return
         try:
             self._take_in(LINES, _decode(data))
-        except Full:
+        except IngressFullError:
             self._dropped += 1
         except MessageError:  # the other targets name it
             return

@@ -15,7 +15,7 @@ from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
 from fwk.engine.runner import Runner
 from fwk.engine.visibility import Visibility
-from fwk.gateway.ingress import STAGE, WRITER
+from fwk.gateway.ingress import WRITER
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import change_message
@@ -24,7 +24,7 @@ from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.requests import channel_request_of
 from fwk.model.sections import LogPlan
 from fwk.testing.plans import plan_of
-from lcmtypes.core import done_t, log_t
+from lcmtypes.core import done_t, header_t, log_t
 
 T = TypeVar("T")
 
@@ -136,7 +136,7 @@ class MemorySystem:
         """Writes a message as a program outside does between two ticks; it is visible from the next tick on."""
         stamp = envelope.stamper(self._types[channel], channel)
         number = len(self.sent[channel]) + 1
-        self._publish([(channel, stamp(message, self.ticks + 1, number, self.now_us, STAGE, WRITER))])
+        self._publish([(channel, stamp(message, self.ticks + 1, number, self.now_us, header_t.OUTSIDE, WRITER))])
 
     def newest(self, channel: str) -> Any:
         """Returns the newest message of a channel, decoded; the type's zero before the first."""

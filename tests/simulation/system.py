@@ -133,7 +133,11 @@ class _Public(Signal):
         return CALLS, self._waiting.pop(0), 50_000
 
     def send(self, datagram: bytes) -> None:
-        """Nobody outside listens."""
+        """Drops the datagram: no program outside listens."""
+
+    def busy_listener(self) -> str:
+        """Names no listener: there is none."""
+        return ""
 
 
 class _GatewayEnd(Signal):
@@ -232,7 +236,7 @@ class System:
         gateway = Gateway(self.plan, RUN, process, self._closed, self._public)
         recorder = self._recorder = sinks.Recorder(self.plan, outcome.path, gateway.log.error)
         gateway.sinks += [
-            Unwrap(recorder, plain_channels(self.plan), gateway.opened_plain),
+            Unwrap(recorder, plain_channels(self.plan), gateway.dynamic_plain),
             _SlowDisk(process, self.world),
         ]
         yield from gateway.serve()

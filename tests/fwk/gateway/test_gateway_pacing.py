@@ -1,12 +1,13 @@
-"""What the gateway publishes leaves in small groups, in order, within a tick."""
+"""What the gateway publishes leaves in small groups, in order, within a tick, as listeners handle it."""
 
 from collections.abc import Callable
 
 import pytest
 
-from fwk.gateway.pacing import LARGEST, LONGEST_US, QUEUE_MAX, SLOT_BYTES, SLOT_US, PacedPublisher
+from fwk.gateway.pacing import LARGEST, LEAST, LONGEST_US, QUEUE_MAX, SLOT_BYTES, SLOT_US, PacedPublisher
 
 TICK_US = 50_000
+PATIENCE_US = 400_000
 
 
 class Paced:
@@ -16,7 +17,8 @@ class Paced:
         self.now_us = 1_000_000
         self.sent: list[bytes] = []
         self.groups: list[int] = []
-        self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append)
+        self.busy = ""
+        self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append, lambda: self.busy, PATIENCE_US)
 
     def tick(self, count: int, datagram: Callable[[int], bytes] = lambda number: b"%d" % number) -> None:
         """A tick is over, in which so many datagrams were written."""
@@ -50,17 +52,39 @@ def test_many_ticks_at_once_leave_in_groups_of_bounded_size() -> None:
         paced.tick(200)
     paced.pass_time(16 * 200 // LARGEST * SLOT_US + 2 * SLOT_US)
     assert len(paced.sent) == 16 * 200
-    assert max(paced.groups) <= 2 * LARGEST
+    assert max(paced.groups) <= LARGEST
 
 
-def test_a_gateway_that_is_late_sends_two_groups_at_the_most() -> None:
+def test_a_late_gateway_sends_one_group() -> None:
     paced = Paced()
     paced.tick(1000)
     paced.pass_time(SLOT_US)
     paced.now_us += 100 * SLOT_US
     before = len(paced.sent)
     paced.publisher.send_due()
-    assert len(paced.sent) - before <= 2 * LARGEST
+    assert len(paced.sent) - before <= LARGEST
+
+
+def test_a_busy_listener_holds_the_next_group_back() -> None:
+    paced = Paced()
+    paced.tick(100)
+    paced.busy = "lcm-logger"
+    paced.pass_time(PATIENCE_US - SLOT_US)
+    assert paced.sent == []
+    assert paced.publisher.overrun == ""
+    paced.busy = ""
+    paced.pass_time(2 * SLOT_US)
+    assert LEAST <= len(paced.sent) <= 2 * LARGEST
+
+
+def test_a_listener_that_stays_busy_is_overrun_and_named() -> None:
+    paced = Paced()
+    paced.tick(100)
+    paced.busy = "lcm-logger"
+    paced.pass_time(2 * PATIENCE_US)
+    assert len(paced.sent) == 100
+    assert max(paced.groups) <= LARGEST
+    assert paced.publisher.overrun == "lcm-logger"
 
 
 def test_large_datagrams_count_as_several() -> None:
@@ -73,7 +97,7 @@ def test_large_datagrams_count_as_several() -> None:
 def test_what_exceeds_the_queue_leaves_at_once() -> None:
     paced = Paced()
     paced.tick(QUEUE_MAX + 1000)
-    paced.pass_time(SLOT_US)
+    paced.publisher.send_due()
     assert paced.publisher.waiting == QUEUE_MAX
 
 

@@ -238,7 +238,7 @@ def test_foreign_datagrams_on_the_public_bus_change_nothing(
             stranger.send(datagram, public_port)
         pause()
     assert_unharmed(run, folder, reference)
-    assert "d/note: somebody else (port " in run.text
+    assert "d/note: another program (port " in run.text
     assert "somebody/else" not in run.text  # other programs may talk there
     assert run.text.count("not taken") < 100
 

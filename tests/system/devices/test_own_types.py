@@ -204,7 +204,7 @@ def test_malformed_device_messages_are_refused_and_counted(launch: Launch, tmp_p
     run.launched.until("(10 times)")
     assert run.json("bb", "show", "JOYSTICK")["sequence"] == 0
     bus.publish("MOTORS", type_named("devices.motor_t")().encode())
-    run.launched.until("MOTORS: somebody else (port ")
+    run.launched.until("MOTORS: another program (port ")
     bus.publish("JOYSTICK", whole)
     run.launched.until_true(lambda: run.json("bb", "show", "JOYSTICK")["sequence"] == 1, "the right one")
     run.ticks_pass(3)

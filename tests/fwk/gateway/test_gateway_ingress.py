@@ -10,8 +10,7 @@ from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
 from fwk.bus.sender import Sender
 from fwk.gateway.gateway import Gateway
-from fwk.gateway.ingress import WAITING_MAX
-from fwk.gateway.ingress_filter import BYTES_MAX
+from fwk.gateway.ingress import BYTES_MAX, WAITING_MAX
 from fwk.lcm import messages
 from fwk.lcm.messages import Header
 from fwk.model.ports import Ports
@@ -39,7 +38,7 @@ class Opened:
         made = plan_of({"r/obeys": Obeys}, outside=outside, bus_port=ports.bus, public_url=ports.public_url)
         self.channel = next(channel.index for channel in made.channels if channel.name == WISH)
         self.ports = Ports.of(made)
-        self.stranger = PublicBus(ports.public_url)
+        self.other = PublicBus(ports.public_url)
         self._ours, self._theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._theirs.setblocking(False)
         self._supervisor = Sender(self.ports.supervisor, UdpNetwork())
@@ -50,7 +49,7 @@ class Opened:
         self.gateway.sinks += [self.kept, Mirror(made, self._bus, self.gateway.publisher)]
 
     def say(self, data: bytes, channel: str = WISH) -> None:
-        self.stranger.publish(channel, data)
+        self.other.publish(channel, data)
 
     def record(self, tick: int, mark: int) -> None:
         made = tick_record_t()
@@ -60,7 +59,7 @@ class Opened:
         self._supervisor.publish(b"fwk/record", made.encode(), self.ports.record)
 
     def hear(self) -> None:
-        while self.gateway._hear_strangers():
+        while self.gateway._hear_outside():
             pass
 
     def follow(self) -> None:
@@ -78,7 +77,7 @@ class Opened:
     def close(self) -> None:
         self._ours.close()
         self._network.run(self.gateway.serve())
-        for each in (self._supervisor.socket, self.stranger, self._bus, self._theirs):
+        for each in (self._supervisor.socket, self.other, self._bus, self._theirs):
             each.close()
         self._network.close()
 
@@ -103,7 +102,7 @@ def test_a_message_is_stamped_and_recorded_when_a_mark_names_it(opened: Opened) 
     for speed in (1.0, 2.0):
         opened.say(wish(speed))
     opened.hear()
-    assert opened.gateway._outside.marks == {opened.channel: 2}
+    assert opened.gateway._ingress.marks == {opened.channel: 2}
     assert opened.wishes == []
     opened.record(2, 1)
     opened.follow()
@@ -115,7 +114,7 @@ def test_a_message_is_stamped_and_recorded_when_a_mark_names_it(opened: Opened) 
         (2, -1, 2, "outside"),
     ]
     assert [messages.decode(motor_command_t, data, WISH).vx_m_s for data in opened.wishes] == [1.0, 2.0]
-    assert opened.gateway._outside.marks == {}
+    assert opened.gateway._ingress.marks == {}
     assert opened.said == []
 
 
@@ -132,9 +131,9 @@ def test_a_message_is_stamped_and_recorded_when_a_mark_names_it(opened: Opened) 
 def test_message_of_another_type_is_refused_with_its_sender(opened: Opened, data: bytes, reason: str) -> None:
     opened.say(data)
     opened.hear()
-    assert opened.gateway._outside.marks == {}
+    assert opened.gateway._ingress.marks == {}
     (line,) = opened.said
-    port = opened.stranger._sender.getsockname()[1]
+    port = opened.other._sender.getsockname()[1]
     assert line.startswith(f"{WISH}: from port {port} on the public bus: ")
     assert reason in line
     assert line.endswith("; not taken")
@@ -144,7 +143,7 @@ def test_flood_is_bounded_and_reported_until_the_next_tick(opened: Opened) -> No
     for number in range(WAITING_MAX + 30):
         opened.say(wish(float(number)))
         opened.hear()
-    assert opened.gateway._outside.marks == {opened.channel: WAITING_MAX}
+    assert opened.gateway._ingress.marks == {opened.channel: WAITING_MAX}
     first, tenth = opened.said
     assert f"{WAITING_MAX} messages wait for the next tick already" in first
     assert tenth.endswith("(10 times)")
@@ -152,13 +151,13 @@ def test_flood_is_bounded_and_reported_until_the_next_tick(opened: Opened) -> No
     opened.follow()
     opened.say(wish())
     opened.hear()
-    assert opened.gateway._outside.marks == {opened.channel: WAITING_MAX + 1}
+    assert opened.gateway._ingress.marks == {opened.channel: WAITING_MAX + 1}
 
 
 def test_one_look_at_the_public_bus_ends_however_much_comes(opened: Opened) -> None:
     for _ in range(600):
-        opened.stranger.publish("somebody/else", b"12345678")
-    assert opened.gateway._hear_strangers()
+        opened.other.publish("somebody/else", b"12345678")
+    assert opened.gateway._hear_outside()
 
 
 def test_closed_channels_and_framework_channels_are_refused(opened: Opened) -> None:
@@ -166,7 +165,7 @@ def test_closed_channels_and_framework_channels_are_refused(opened: Opened) -> N
     opened.say(wish(), "somebody/else")
     opened.hear()
     (line,) = opened.said
-    assert line.startswith("fwk/record: somebody else (port ")
+    assert line.startswith("fwk/record: another program (port ")
 
 
 def test_messages_from_the_public_bus_are_not_echoed(opened: Opened) -> None:
@@ -177,7 +176,7 @@ def test_messages_from_the_public_bus_are_not_echoed(opened: Opened) -> None:
     opened.hear()
     assert len(opened.wishes) == 1
     heard = []
-    while message := opened.stranger.receive():
+    while message := opened.other.receive():
         heard.append(message[0])
     assert "fwk/record" in heard
     assert WISH not in heard

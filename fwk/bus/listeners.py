@@ -1,0 +1,101 @@
+"""The programs of this machine that listen on a multicast port, and whether they still work on what they got."""
+
+import contextlib
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+from fwk.clock import US_PER_S, monotonic_us
+
+LOOK_US = US_PER_S
+"""Wall time between two looks for programs that listen."""
+THREADS_MAX = 32
+"""Threads of a program that are looked at, at the most."""
+_SOCKETS = Path("/proc/net/udp")
+_STATE_BYTES = 128
+
+
+class Listeners:
+    """The listeners on a port, except this process, as far as the kernel shows them to this user.
+
+    A listener is busy while one of its threads can run: it has not taken everything from its socket, or has not
+    handled everything that it took. A listener that waits has handled everything.
+
+    Args:
+        port: UDP port on which the programs listen.
+    """
+
+    def __init__(self, port: int) -> None:
+        self._port = f":{port:04X}"
+        self._look_us = 0
+        self._inodes: set[str] = set()
+        self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
+
+    def busy(self) -> str:
+        """Returns the name of a listener that still works on what it got; empty if none does."""
+        now_us = monotonic_us()
+        if now_us >= self._look_us:
+            self._look_us = now_us + LOOK_US
+            self._look()
+        for process, threads in list(self._threads.items()):
+            try:
+                if any(_can_run(thread) for thread in threads):
+                    return _name_of(process)
+            except OSError:  # the program, or one of its threads, has ended
+                self._forget(process)
+                self._inodes = set()
+        return ""
+
+    def close(self) -> None:
+        """Closes the files with the states."""
+        for process in list(self._threads):
+            self._forget(process)
+
+    def _look(self) -> None:
+        """Finds out which processes listen, if they are others than before, and which threads they have."""
+        inodes = set(self._inodes_of_sockets())
+        if inodes != self._inodes:
+            self._inodes = inodes
+            processes = _processes_with({f"socket:[{inode}]" for inode in inodes}) if inodes else []
+        else:
+            processes = list(self._threads)
+        self.close()
+        for process in processes:
+            with contextlib.suppress(OSError):
+                files = [f"/proc/{process}/task/{thread}/stat" for thread in os.listdir(f"/proc/{process}/task")]
+                self._threads[process] = []
+                for file in files[:THREADS_MAX]:
+                    self._threads[process].append(os.open(file, os.O_RDONLY | os.O_CLOEXEC))
+
+    def _inodes_of_sockets(self) -> Iterator[str]:
+        with contextlib.suppress(OSError):
+            for line in _SOCKETS.read_text().splitlines():
+                columns = line.split()
+                if columns[1].endswith(self._port):
+                    yield columns[9]
+
+    def _forget(self, process: str) -> None:
+        for file in self._threads.pop(process):
+            os.close(file)
+
+
+def _processes_with(sockets: set[str]) -> list[str]:
+    """Returns the other processes of this user that have one of these sockets."""
+    found = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        with contextlib.suppress(OSError):
+            if int(process) != os.getpid() and any(
+                os.readlink(f"/proc/{process}/fd/{number}") in sockets for number in os.listdir(f"/proc/{process}/fd")
+            ):
+                found.append(process)
+    return found
+
+
+def _can_run(thread: int) -> bool:
+    return os.pread(thread, _STATE_BYTES, 0).rpartition(b")")[2][1:2] == b"R"
+
+
+def _name_of(process: str) -> str:
+    with contextlib.suppress(OSError):
+        return f"{Path(f'/proc/{process}/comm').read_text().strip()} (process {process})"
+    return f"process {process}"

@@ -1,0 +1,57 @@
+"""lcm-spy on a screen of its own, and the table that its window shows."""
+
+import csv
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from tests.clients.bus import Bus, process
+
+FWK_SPY = "import typer; from fwk.cli.look.spy import spy; typer.run(spy)"
+Table = dict[str, dict[str, str]]
+"""Rows of the window by channel."""
+
+
+@contextmanager
+def screen() -> Iterator[str]:
+    """Starts a virtual screen; its name is the value of DISPLAY."""
+    with process(["Xvfb", "-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"]) as server:
+        assert server.stdout
+        number = next(line.strip() for line in server.stdout if line.strip().isdigit())  # others may take one before it
+        yield f":{number}"
+
+
+@contextmanager
+def lcm_spy(bus: Bus, display: str, folder: Path) -> Iterator[Path]:
+    """Starts lcm-spy and waits until it listens; the folder that is returned is that of `read_table`."""
+    (folder / "seen").mkdir()
+    (folder / "agent").mkdir()
+    environment = {
+        **os.environ,
+        "DISPLAY": display,
+        "XDG_CACHE_HOME": str(folder / "cache"),
+        "LCM_JVM_OPT": f"-Xmx256m -javaagent:{_build_agent(folder / 'agent')}={folder / 'seen'}",
+    }
+    with process([sys.executable, "-c", FWK_SPY, "--url", bus.url], environment):
+        bus.publish_until(lambda: "fwk/probe" in read_table(folder / "seen"))
+        yield folder / "seen"
+
+
+def read_table(folder: Path) -> Table:
+    """Returns the newest table of the window."""
+    path = folder / "table.tsv"
+    if not path.exists():
+        return {}
+    with open(path, newline="") as file:
+        return {row["Channel"]: row for row in csv.DictReader(file, delimiter="\t")}
+
+
+def _build_agent(folder: Path) -> Path:
+    source = Path(__file__).with_name("SpyTable.java")
+    subprocess.run(["javac", "-d", folder, source], check=True)
+    (folder / "manifest").write_text("Premain-Class: SpyTable\n")
+    subprocess.run(["jar", "cfm", folder / "agent.jar", folder / "manifest", "-C", folder, "."], check=True)
+    return folder / "agent.jar"

@@ -1,0 +1,94 @@
+"""Which programs listen on a port, and whether they still work on what they got."""
+
+import os
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+
+from fwk.bus import listeners
+from fwk.bus.listeners import LOOK_US, Listeners
+from fwk.clock import sleep_s
+
+LISTENER = """
+import socket, sys
+listener = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+listener.bind(("127.0.0.1", 0))
+print(listener.getsockname()[1], flush=True)
+listener.recv(100)
+print("works", flush=True)
+while True:
+    pass
+"""
+
+
+@contextmanager
+def listening() -> Iterator[tuple[subprocess.Popen[str], int]]:
+    """A program that waits for a datagram at a port, and works from then on."""
+    command = [sys.executable, "-c", LISTENER]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
+        assert program.stdout
+        try:
+            yield program, int(program.stdout.readline())
+        finally:
+            program.kill()
+
+
+def busy_within(made: Listeners, seconds: float) -> str:
+    for _ in range(round(seconds / 0.01)):
+        if name := made.busy():
+            return name
+        sleep_s(0.01)
+    return ""
+
+
+def test_a_listener_is_busy_while_it_works() -> None:
+    with listening() as (program, port):
+        made = Listeners(port)
+        assert busy_within(made, 0.2) == ""
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"work", ("127.0.0.1", port))
+        assert program.stdout
+        assert program.stdout.readline() == "works\n"
+        assert str(program.pid) in busy_within(made, 5.0)
+        program.kill()
+        program.wait()
+        assert made.busy() == ""
+        made.close()
+
+
+def test_a_listener_that_comes_later_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    now_us = [1_000_000]
+    monkeypatch.setattr(listeners, "monotonic_us", lambda: now_us[0])
+    with listening() as (program, port):
+        made = Listeners(port + 1 if port < 65535 else port - 1)
+        made.busy()
+        made._port = f":{port:04X}"
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            sender.sendto(b"work", ("127.0.0.1", port))
+        assert program.stdout
+        program.stdout.readline()
+        assert made.busy() == ""
+        now_us[0] += LOOK_US
+        assert str(program.pid) in busy_within(made, 5.0)
+        made.close()
+
+
+def test_this_process_is_not_a_listener_of_its_own() -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as own:
+        own.bind(("127.0.0.1", 0))
+        made = Listeners(own.getsockname()[1])
+        assert made.busy() == ""
+        made.close()
+
+
+def test_closed_listeners_leave_no_descriptor() -> None:
+    before = len(os.listdir("/proc/self/fd"))
+    with listening() as (_, port):
+        made = Listeners(port)
+        made.busy()
+        made.close()
+    assert len(os.listdir("/proc/self/fd")) == before
