@@ -9,8 +9,8 @@ from fwk.clock import US_PER_S, monotonic_us
 
 LOOK_US = US_PER_S
 """Wall time between two looks for programs that listen."""
-THREADS_MAX = 32
-"""Threads of a program that are looked at, at the most."""
+THREADS_MAX = 8
+"""Of a program with more threads, only those are watched that have run since the look before."""
 _SOCKETS = Path("/proc/net/udp")
 _STATE_BYTES = 128
 
@@ -30,6 +30,7 @@ class Listeners:
         self._look_us = 0
         self._inodes: set[str] = set()
         self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
+        self._runs: dict[str, str] = {}  # by thread: how often it had run at the last look
 
     def busy(self) -> str:
         """Returns the name of a listener that still works on what it got; empty if none does."""
@@ -39,7 +40,8 @@ class Listeners:
             self._look()
         for process, threads in list(self._threads.items()):
             try:
-                if any(_can_run(thread) for thread in threads):
+                # One thread may hand its work over to another while these are looked at, so they are looked at twice.
+                if any(_can_run(thread) for thread in threads) or any(_can_run(thread) for thread in threads):
                     return _name_of(process)
             except OSError:  # the program, or one of its threads, has ended
                 self._forget(process)
@@ -60,12 +62,16 @@ class Listeners:
         else:
             processes = list(self._threads)
         self.close()
+        before, self._runs = self._runs, {}
         for process in processes:
             with contextlib.suppress(OSError):
-                files = [f"/proc/{process}/task/{thread}/stat" for thread in os.listdir(f"/proc/{process}/task")]
+                threads = [f"/proc/{process}/task/{thread}" for thread in os.listdir(f"/proc/{process}/task")]
+                self._runs.update((thread, Path(thread, "schedstat").read_text()) for thread in threads)
+                if len(threads) > THREADS_MAX:
+                    threads = [thread for thread in threads if self._runs[thread] != before.get(thread)]
                 self._threads[process] = []
-                for file in files[:THREADS_MAX]:
-                    self._threads[process].append(os.open(file, os.O_RDONLY | os.O_CLOEXEC))
+                for thread in threads:
+                    self._threads[process].append(os.open(f"{thread}/stat", os.O_RDONLY | os.O_CLOEXEC))
 
     def _inodes_of_sockets(self) -> Iterator[str]:
         with contextlib.suppress(OSError):
