@@ -10,6 +10,9 @@ DOCS_READY := .venv/.docs-ready
 WORKERS ?= $(shell expr $$(nproc) + 1)
 PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 
+# Hundreds of processes start in the tests; without compiled modules on disk each of them would compile the framework anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help soccer test test-fast simulate simulate-mutations lint types docs clean
 
