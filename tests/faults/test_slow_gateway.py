@@ -34,7 +34,7 @@ def trouble(kind: str) -> list[str]:
 def test_a_slow_gateway_records_a_writer_that_died_in_tick_one(
     launch: Launch, slow: Path, after: Aftermath, hosting: str
 ) -> None:
-    run = launch(*RUN, "--ticks", "10", "--hosting", hosting, *trouble("loop:raise"))
+    run = launch(*RUN, "--ticks", "40", "--hosting", hosting, *trouble("loop:raise"))
     run.until_ticks("f/player", 1)
     after.note(run)
     recording = after.check(run, tracebacks=True)
