@@ -40,10 +40,12 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
         for component in figures.components(status)
         if component.state not in figures.WELL
     ]
-    if options.record:
+    if options.record and (not outcome.deleted or options.record.exists()):
         lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
         lines.append(f"recording: {options.record}{lacks}")
-    return [*lines, f"run directory: {options.run_dir}"]
+    if not outcome.deleted or options.run_dir.exists():
+        lines.append(f"run directory: {options.run_dir}")
+    return lines
 
 
 def _advice() -> list[str]:

@@ -11,12 +11,16 @@ from fwk.gateway.channel_server import ChannelServer
 from fwk.gateway.command_bridge import CommandBridge
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.unwrap import Unwrap, plain_channels
+from fwk.launcher.run_files import RunFiles
 from fwk.lcm.event_log import LogError
 from fwk.logs import targets
 from fwk.model.plan import Plan
 from fwk.recording import sinks
 from fwk.recording.frame_recorder import FrameRecorder
 from fwk.supervisor.options import RunOptions
+
+DELETED = b"deleted"
+"""Begins the packet that tells the supervisor which file of the run was deleted."""
 
 
 def run_gateway(
@@ -62,5 +66,10 @@ def run_gateway(
             gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
+    run_files = RunFiles(options, gateway.log.error)
+    gateway.sinks.append(run_files)
     network.run(gateway.serve())
+    if run_files.deleted:
+        control.setblocking(True)
+        control.send(DELETED + b"\0" + run_files.deleted.encode())
     return 0

@@ -11,7 +11,7 @@ from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.host.process_title import name_process
-from fwk.launcher.gateway_process import run_gateway
+from fwk.launcher.gateway_process import DELETED, run_gateway
 from fwk.model.plan import Plan
 from fwk.recording import sinks
 from fwk.supervisor.options import RunOptions
@@ -32,6 +32,8 @@ class HelperProcesses:
         """Process that did not end in time, and the consequence; empty: all did."""
         self.lost = 0
         """Messages that the gateway never got; known after the end."""
+        self.deleted = ""
+        """File of the run that was deleted during the run; empty: none; known after the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -84,6 +86,7 @@ class HelperProcesses:
             while packet := self.control.recv(_PACKET_MAX):
                 channel, _, data = packet.partition(b"\0")
                 newest[channel.decode()] = data
+            self.deleted = newest.pop(DELETED.decode(), b"").decode()
             self.lost = int(newest.pop(sinks.LOST, 0))
         except OSError as error:
             if self._gateway:

@@ -57,6 +57,8 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     newest = _decoded(plan, helpers.stop())
     if helpers.gave_up and not failed:
         reason, failed = f"broken: {helpers.gave_up}", True
+    if helpers.deleted and not failed:
+        reason, failed = f"broken: {helpers.deleted}", True
     zygote.close()
     lock.release()
     return Outcome(
@@ -68,6 +70,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         status,
         newest,
         helpers.lost,
+        helpers.deleted,
     )
 
 

@@ -58,3 +58,5 @@ class Outcome:
     """Newest message of each mirrored channel, decoded."""
     unrecorded: int = 0
     """Messages that were lost on their way to the recording."""
+    deleted: str = ""
+    """Says which file of the run was deleted during the run; empty: none."""

@@ -1,0 +1,46 @@
+"""Notices that files of a run are deleted while the run goes on."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.supervisor.options import RunOptions
+
+
+class RunFiles:
+    """A sink of the gateway that looks for the run directory and the recording once a second.
+
+    Args:
+        options: names the run directory and the recording, both of which exist.
+        report: takes the name of what was deleted, once.
+    """
+
+    def __init__(self, options: RunOptions, report: Callable[[str], None]) -> None:
+        self.deleted = ""
+        """Says which of them was deleted; empty: both exist."""
+        self._watched: list[tuple[str, Path]] = [("run directory", options.run_dir)]
+        if options.record and options.record.exists():
+            self._watched.append(("recording", options.record))
+        self._report = report
+        self._look_us = 0
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Looks for the files when it is time, also while no tick ends."""
+        now_us = monotonic_us()
+        if now_us >= self._look_us:
+            self._look_us = now_us + US_PER_S
+            self._look()
+
+    def tick(self) -> None:
+        """Does nothing."""
+
+    def close(self) -> None:
+        """Looks for the files a last time."""
+        self._look()
+
+    def _look(self) -> None:
+        for what, path in self._watched if not self.deleted else ():
+            if not path.exists():
+                self.deleted = f"the {what} {path} was deleted during the run"
+                self._report(f"{self.deleted}; what is written there is lost")
+                return
