@@ -78,6 +78,15 @@ class HostPlan:
 
 
 @dataclass(frozen=True)
+class ModulePlan:
+    """A module of the application as it was when the plan was made."""
+
+    file: str
+    sha256: str
+    """First 16 hexadecimal digits of the hash of its file."""
+
+
+@dataclass(frozen=True)
 class Plan:
     """Everything that the processes of a run need to know."""
 
@@ -115,6 +124,10 @@ class Plan:
     log: LogPlan = field(default_factory=LogPlan)
     runs: RunsPlan = field(default_factory=RunsPlan)
     record: RecordPlan = field(default_factory=RecordPlan)
+    modules: dict[str, ModulePlan] = field(default_factory=dict)
+    """Modules of the components, and those of the application that they import, by name."""
+    blas_kernel: str = ""
+    """Name of the processor-specific kernel of OpenBLAS; empty: none was loaded."""
 
     def writer_of(self, channel: ChannelPlan) -> str:
         """Returns the name of a channel's writer as it is shown; empty if there is none."""
