@@ -35,12 +35,19 @@ class ComponentPlan:
     """Indices of components that must be ready before this one starts, including providers of its aspects."""
     rate_hz: float | None = None
     """Rate of a continuous component; 0: one iteration for each newer input. None: it iterates in stages."""
+    every: int = 1
+    """It iterates in the ticks with `tick % every == offset % every`."""
+    offset: int = 0
     start: bool = True
     """Whether it starts with the run; otherwise it is started by request."""
     memory_limit_mb: float | None = None
     """Memory that it may use beyond that of its process at the start; None: no limit."""
     opens: bool = False
     """Whether it may open channels during the run."""
+
+    def due(self, tick: int) -> bool:
+        """Returns whether it iterates in a tick."""
+        return self.every == 1 or tick % self.every == self.offset % self.every
 
     @property
     def namespace(self) -> str:

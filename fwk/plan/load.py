@@ -195,6 +195,8 @@ def _component_plans(
             ready_timeout_s=each.asked.entry.ready_timeout_s,
             stop_timeout_s=each.asked.entry.stop_timeout_s,
             rate_hz=each.rate_hz,
+            every=each.every,
+            offset=each.offset,
             memory_limit_mb=each.asked.entry.memory_limit_mb,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
             start=each.asked.entry.start,

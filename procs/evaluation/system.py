@@ -42,6 +42,7 @@ def system_of(
         seed,
         period_s=plan(file).period_us / 1e6,
         stages=plan(file).stages,
+        turns={each.name: (each.every, each.offset) for each in found},
     )
 
 

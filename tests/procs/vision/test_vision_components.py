@@ -41,7 +41,7 @@ def test_from_truth_to_percepts() -> None:
 
 
 def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
-    run = system(every_ticks=2)
+    run = system(turns=(2, 1))
     run.tick(6)
     assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
 
