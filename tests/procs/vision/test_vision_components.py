@@ -10,10 +10,9 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.testing import Bench
+from fwk.testing import Bench, settings_in
 from lcmtypes.core import frame_t
 from lcmtypes.soccer import ground_truth_t
-from procs.evaluation.system import settings_in
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
