@@ -49,7 +49,7 @@ def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> Ren
 
 def _figures(view: View, status: status_t, columns: int) -> list[Text]:
     """Returns the line of figures, without the last ones where the terminal is too narrow for all."""
-    sums = figures.totals(figures.components(status))
+    sums = figures.totals(status)
     used = sum(view.cpu.percent.values())
     parts = [f"tick {status.tick}", f"{status.time_us / US_PER_S:.2f} s", pace(status)]
     parts += [f"{status.ticks_per_s:.1f} ticks/s", *([f"CPU {used:.0f} %"] if used else [])]
@@ -98,8 +98,9 @@ def _by_component(view: View, status: status_t) -> Table:
         alone = len(host.components) == 1 and host.pid in percent
         cpu = f"{percent[host.pid]:.0f}" if alone else ""
         name = _marked(view, component.name)
+        lost = figures.lost([host] if len(host.components) == 1 else [], [component])
         table.add(
-            *(name, component.state, cpu, f"{time.mean_ms:.2f}", f"{time.worst_ms:.1f}", component.lost),
+            *(name, component.state, cpu, f"{time.mean_ms:.2f}", f"{time.worst_ms:.1f}", lost),
             style="bold" if component.name == view.selected else _STATE_STYLES.get(component.state, "cyan"),
         )
     return table
@@ -114,18 +115,18 @@ def _by_namespace(view: View, status: status_t) -> Table:
     ordered = sorted(figures.components(status), key=lambda each: _split(each.name))
     for namespace, group in groupby(ordered, key=lambda each: _split(each.name)[0]):
         members = list(group)
-        sums = figures.totals(members)
+        hosts = {host_of[member.name].host: host_of[member.name] for member in members}
         own = {member.name: times[member.name] for member in members}
         slowest = figures.slowest(own, 1)[0]
         pids = {host_of[member.name].pid for member in members} & percent.keys()
         table.add(
             _marked(view, namespace or "-"),
-            ", ".join(f"{count} {state}" for state, count in sums.states.items()),
+            ", ".join(f"{count} {state}" for state, count in figures.states(members).items()),
             f"{sum(percent[pid] for pid in pids):.0f}" if pids else "",
             f"{sum(time.mean_ms for time in own.values()):.2f}",
             f"{_split(slowest.name)[1]} {slowest.mean_ms:.2f}",
             f"{max(time.worst_ms for time in own.values()):.1f}",
-            sums.lost,
+            figures.lost(hosts.values(), members),
             max(host_of[member.name].restarts for member in members),
             style=_namespace_style(view, namespace, members),
         )

@@ -31,9 +31,9 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> 
         "mean_ms": told.busy_us / told.iterations / 1000 if told.iterations else 0.0,
         "worst_ms": told.worst_us / 1000,
         "awake_s": told.awake_us / US_PER_S if entry.pid else 0.0,
-        "fetched": told.fetched,
-        "lost": told.lost,
-        "strangers": told.strangers,
+        "fetched": entry.counters.fetched,  # this and the next two are those of the whole process
+        "lost": entry.counters.lost + told.lost_frames,
+        "strangers": entry.counters.foreign,
         "reason": told.reason or entry.reason,
         "needs": [plan.components[index].name for index in component.needs],
     }

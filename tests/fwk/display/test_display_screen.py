@@ -8,7 +8,7 @@ from rich.console import Console
 from fwk.display.screen import screen
 from fwk.display.view import View
 from lcmtypes.core import log_t, status_t
-from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, log, packet, plan, status
+from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, host_of, log, packet, plan, status
 
 DRAWING = "tests.fwk.cli.cli_drawing:headline"
 SCOREBOARD = "tests.fwk.cli.cli_runs:headline"
@@ -79,7 +79,7 @@ def test_the_slowest_of_a_robot_is_named() -> None:
 
 def test_losses_are_counted_in_the_sum_and_in_the_row() -> None:
     lossy = status(MATCH, 100, late=3)
-    component(lossy, "magenta4/agent").lost = 7
+    host_of(lossy, "magenta4/agent").counters.lost = 7
     picture = drawn(lossy)
     assert "lost 7   late 3" in row(picture, "tick")
     assert row(picture, "magenta4").split()[-2:] == ["7", "0"]
