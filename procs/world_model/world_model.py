@@ -127,9 +127,9 @@ class WorldModel(Component):
         self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
-        kicked = kicker.kicks != self._kicks
+        kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
+        self._kicks = kicker.kicks
         if kicked:
-            self._kicks = kicker.kicks
             velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, config.mouth_m)
             self._ball.kick(velocity_m_s)
             message = self.team_message.value
@@ -147,7 +147,7 @@ class WorldModel(Component):
             age_s = self._age_s(percept.capture_us)
             seen = self._untold_ball = view.ball(percept, age_s)
             self._untold_frame = True
-            self.team_message.value.ball_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            self.team_message.value.ball_capture_us = percept.capture_us or self.clock.now_us
             self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
@@ -202,7 +202,7 @@ class WorldModel(Component):
             age_s = self._age_s(percepts.capture_us)
             seen = strangers(view.obstacles(percepts, age_s), mates, now_s - age_s, rules)
             self._untold_obstacles = seen
-            self.team_message.value.obstacles_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
         team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
