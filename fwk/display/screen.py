@@ -23,7 +23,7 @@ _LEAST_LOG_ROWS = 3
 _DRAWING_LEAST = (26, 9)  # columns and rows
 _DRAWING_MOST = (96, 34)
 _DRAWING_SHARE = 0.44  # of the width
-KEYS = "space pause  s step  +/- speed  m max  tab component  l level  esc all  q quit"
+KEYS = ("space pause", "s step", "+/- speed", "m max", "tab component", "l level", "esc all", "q quit")
 
 
 def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> RenderableType:
@@ -43,7 +43,7 @@ def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> Ren
         room += _LEAST_LOG_ROWS - len(body)
     parts += _log_rows(view, columns, max(_LEAST_LOG_ROWS, room))
     if keys:
-        parts.append(_line(_foot(view), "dim", columns))
+        parts.append(_line(_foot(view, columns), "dim", columns))
     return Group(*parts)
 
 
@@ -191,12 +191,16 @@ def _folded(text: str, columns: int) -> list[str]:
     return parts
 
 
-def _foot(view: View) -> str:
+def _foot(view: View, columns: int) -> str:
+    """Returns the answer to the last key, or the filters and as many keys as fit, first those of the filters."""
     filters = [f"lines of {view.selected}"] if view.selected else []
     if view.level:
         filters.append(f"level {LEVEL_NAMES[LEVELS[view.level]]}")
     chosen = f"[{', '.join(filters)}]  " if filters else ""
-    return f" {view.message}" if view.message else f" {chosen}{KEYS}"
+    shown = list(KEYS)
+    while shown and cells(chosen) + cells("  ".join(shown)) >= columns:
+        del shown[0]
+    return f" {view.message}" if view.message else f" {chosen}{'  '.join(shown)}"
 
 
 def _line(text: str, style: str, columns: int) -> Text:

@@ -161,3 +161,16 @@ def test_cpu_of_a_process_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     with console.capture() as captured:
         console.print(screen(view, 40, 100))
     assert row(captured.get().splitlines(), "cyan1/tracker").split()[:3] == ["cyan1/tracker", "running", "75"]
+
+
+@pytest.mark.parametrize("columns", [50, 80, 120])
+def test_the_line_of_keys_is_never_cut(columns: int) -> None:
+    view = View(plan())
+    view.take(packet("fwk/status", status(TRACKER, 5)))
+    view.selected, view.level = "cyan1/tracker", 1
+    console = Console(width=columns, height=30, file=StringIO(), color_system=None)
+    with console.capture() as captured:
+        console.print(screen(view, 30, columns, keys=True))
+    keys = captured.get().splitlines()[-1]
+    assert keys.startswith(" [lines of cyan1/tracker")
+    assert keys.endswith("q quit")
