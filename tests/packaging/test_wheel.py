@@ -42,7 +42,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs the commands of a fresh environment with the wheel, what it asks for, pytest and mypy, in a user's folder."""
+    """Runs commands of a fresh environment with the wheel, what it asks for, pytest and mypy, in a user's folder."""
     folder = tmp_path_factory.mktemp("installed")
     environment = folder / "env"
     venv.create(environment, with_pip=True)
