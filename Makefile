@@ -63,7 +63,7 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 
 pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg from its recording
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
-	$(BIN)/python -m tools.docs.pictures build/match.log
+	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
 
 clean:  ## Removes what was made, the environment too
 	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ tests/simulation/messages/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis
