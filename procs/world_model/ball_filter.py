@@ -52,10 +52,10 @@ _FREE_1_S = np.array(
 """Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
 _CONTACT_1_S = np.array(
     (
-        (0.0, 0.1, 0.0, 1.5, 1.0),
-        (0.3, 0.0, 0.0, 3.0, 2.0),
-        (0.0, 1.5, 0.0, 3.0, 2.0),
-        (0.3, 1.0, 0.5, 0.0, 2.0),
+        (0.0, 0.1, 0.0, 3.0, 2.0),
+        (0.3, 0.0, 0.0, 6.0, 4.0),
+        (0.0, 1.5, 0.0, 6.0, 4.0),
+        (0.3, 1.0, 0.5, 0.0, 4.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
     )
 )
