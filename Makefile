@@ -14,7 +14,7 @@ PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs clean
+.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures clean
 
 help:  ## Lists what can be made
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -60,6 +60,10 @@ $(DOCS_READY): $(READY)
 docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, and the documentation site to build/site
 	$(BIN)/python -m fwk.cli.reference docs/commands.md
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
+
+pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg from its recording
+	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
+	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
 
 clean:  ## Removes what was made, the environment too
 	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ tests/simulation/messages/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis

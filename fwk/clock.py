@@ -23,7 +23,10 @@ class Clock:
         self.now_us = 0
         self.tick = 0
         self.stage = ""
-        self.period_us = period_us  # nominal time from tick to tick
+        self.period_us = period_us
+        """Nominal time from tick to tick."""
+        self.every = 1
+        """Ticks from one iteration of the component to its next."""
 
     @property
     def now_s(self) -> float:
@@ -90,6 +93,11 @@ class TimeSource:
 def rate_word(rate_hz: float) -> str:
     """Where others have stages: how often a continuous component iterates."""
     return f"{rate_hz:g} Hz" if rate_hz else "continuous"
+
+
+def turns_word(every: int, offset: int) -> str:
+    """Returns the ticks in which a component iterates, as shown behind its stages; empty if it iterates in each."""
+    return f" (tick % {every} = {offset % every})" if every > 1 else ""
 
 
 def speed_word(speed: float) -> str:

@@ -30,10 +30,6 @@ class OpenReads(ReadsHistory[T]):
     def __init__(self, channel: str, message_type: type[T], length: int = 0) -> None:
         super().__init__(channel, message_type, max(1, length))
 
-    def _freeze(self, fresh: list[bytes]) -> None:
-        """Begins an iteration; of the messages before the opening only the newest is visible."""
-        super()._freeze(fresh if self.has_value else fresh[-1:])
-
 
 class OpenWrites(Writes[T]):
     """Writer of a dynamic channel."""

@@ -44,6 +44,10 @@ class Component:
 
     stage: ClassVar[str | tuple[str, ...]]
     """Stages in which the component iterates."""
+    every: ClassVar[int] = 1
+    """Iterates in one of so many ticks: when `tick % every == offset % every`. Messages of the ticks between wait."""
+    offset: ClassVar[int] = 0
+    """Shifts these ticks, so that components can take turns."""
     rate_hz: ClassVar[float | None] = None
     """Instead of a stage: iterations per second of a continuous component; 0: one for each newer input."""
     provides: ClassVar[type[Aspect] | tuple[type[Aspect], ...]] = ()

@@ -24,6 +24,7 @@ from fwk.model.names import LINES
 from lcmtypes.core import log_t
 
 RATE_MAX_HZ = 10_000
+EVERY_MAX = 1_000_000
 _METHODS = ("init", "loop", "finalize", "config_changed")
 _ALIKE = 0.8  # similarity from which a method's name counts as misspelt: `lop` does, `look` does not
 _OF_ALL = frozenset(get_annotations(Component))
@@ -46,6 +47,9 @@ class Declaration:
     provides: tuple[type[Aspect], ...] = ()
     rate_hz: float | None = None
     """Rate of a continuous component; None: the component iterates in stages."""
+    every: int = 1
+    """Iterates in the ticks with `tick % every == offset % every`."""
+    offset: int = 0
 
 
 _ASPECTS: dict[Any, str] = {
@@ -112,6 +116,7 @@ def _read(component: type[Component]) -> Declaration:
             )
     if rate_hz is not None:
         _check_continuous(where, rate_hz, ports, aspects)
+    _check_every(component, where, aspects)
     return Declaration(
         component,
         stages,
@@ -121,6 +126,8 @@ def _read(component: type[Component]) -> Declaration:
         asks,
         _provided(component, where, ports),
         rate_hz,
+        component.every,
+        component.offset,
     )
 
 
@@ -195,6 +202,17 @@ def _provided(component: type[Component], where: str, ports: list[Port]) -> tupl
                     f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {right}"
                 )
     return provided
+
+
+def _check_every(component: type[Component], where: str, aspects: dict[str, str]) -> None:
+    for name, value, least in (("every", component.every, 1), ("offset", component.offset, 0)):
+        if isinstance(value, bool) or not isinstance(value, int) or not least <= value <= EVERY_MAX:
+            right = f"it should be a whole number from {least} to {EVERY_MAX}"
+            raise DeclarationError(f"{where}: {name} is {value!r}; {right}")
+    if component.every > 1 and component.rate_hz is not None:
+        raise DeclarationError(f"{where}: both 'every' and 'rate_hz'; keep one")
+    if component.every > 1 and "time_source" in aspects.values():
+        raise DeclarationError(f"{where}: a time source iterates in each tick; leave 'every' out")
 
 
 def _check_continuous(where: str, rate_hz: Any, ports: list[Port], aspects: dict[str, str]) -> None:

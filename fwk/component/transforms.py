@@ -4,25 +4,37 @@ import numpy as np
 
 from fwk.component.aspect import Aspect
 from fwk.component.channels import Reads
-from fwk.component.transform_tree import Transform, TransformTree
+from fwk.component.log import Logger
+from fwk.component.transform_tree import Transform, TransformError, TransformTree
 from lcmtypes.core import transform_t, transforms_t
 
 
 class Transforms(Aspect):
     """Tree of frames, provided by the component that writes it: `self.tf.lookup("world", "base").apply(points_m)`.
 
-    It holds the transforms of the last ten seconds that are visible to the iteration.
+    It holds the transforms of the last ten seconds that are visible to the iteration. A transform that does not fit
+    into the tree is left out and counted in `refused`, and the log names the 1st, 10th, 100th.
     """
 
+    log: Logger
     transforms: Reads[transforms_t]
 
     def init(self) -> None:
         self.tree = TransformTree()
+        self.refused = 0
 
     def begin(self) -> None:
         for message in self.transforms.fresh:
             for each in message.transforms:
-                self.tree.put(each.parent, each.child, each.time_us, transform_of(each), fixed=each.fixed)
+                try:
+                    self.tree.put(each.parent, each.child, each.time_us, transform_of(each), fixed=each.fixed)
+                except TransformError as error:
+                    self._refuse(error)
+
+    def _refuse(self, error: TransformError) -> None:
+        self.refused += 1
+        if str(self.refused).strip("0") == "1":
+            self.log.warning(f"{self.transforms.channel}: {error} ({self.refused} transforms refused so far)")
 
     @property
     def frames(self) -> list[str]:

@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from lcmtypes.core import component_state_t, status_t
+from lcmtypes.core import component_state_t, host_status_t, status_t
 
 WELL = ("init", "loaded", "running", "finalizing", "stopped")
 _UNWELL_FIRST = ("failed", "held")
@@ -12,15 +12,13 @@ _UNWELL_FIRST = ("failed", "held")
 
 @dataclass(frozen=True)
 class Totals:
-    """Sums over components."""
+    """Sums over all hosts."""
 
-    states: dict[str, int]
-    """State to number of components in it, failed and held first."""
     lost: int
-    """Messages lost for good."""
+    """Messages and camera frames lost for good."""
     fetched: int
     """Messages that were lost and fetched again."""
-    strangers: int
+    foreign: int
     """Datagrams refused."""
 
 
@@ -43,17 +41,25 @@ def restarts(status: status_t) -> int:
     return sum(host.restarts for host in status.hosts)
 
 
-def totals(some: Iterable[component_state_t]) -> Totals:
-    """Returns sums over some components."""
-    listed = list(some)
-    counted = Counter(component.state for component in listed)
+def states(some: Iterable[component_state_t]) -> dict[str, int]:
+    """Returns state to number of components in it, failed and held first."""
+    counted = Counter(component.state for component in some)
     order = sorted(counted, key=lambda state: (state not in _UNWELL_FIRST, state))
+    return {state: counted[state] for state in order}
+
+
+def totals(status: status_t) -> Totals:
+    """Returns sums over all hosts."""
     return Totals(
-        {state: counted[state] for state in order},
-        sum(component.lost for component in listed),
-        sum(component.fetched for component in listed),
-        sum(component.strangers for component in listed),
+        lost(status.hosts, components(status)),
+        sum(host.counters.fetched for host in status.hosts),
+        sum(host.counters.foreign for host in status.hosts),
     )
+
+
+def lost(hosts: Iterable[host_status_t], of: Iterable[component_state_t]) -> int:
+    """Returns how many messages these hosts and camera frames these components have lost."""
+    return sum(host.counters.lost for host in hosts) + sum(component.lost_frames for component in of)
 
 
 def loop_times(status: status_t, since: status_t | None = None) -> dict[str, LoopTime]:

@@ -10,6 +10,8 @@ from lcmtypes.core import log_t
 
 WINDOW_US = 2 * US_PER_S
 """Wall time in which lines that say the same are one group."""
+_WARNING_WINDOW_US = 60 * US_PER_S
+"""The same for warnings on the live display: one that returns every few seconds does not push out all other lines."""
 PRINTED_MAX = 4
 """So many lines of a group are printed; the others are counted."""
 _VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")
@@ -48,8 +50,9 @@ class LineGroups:
 
     def add(self, line: log_t) -> LineGroup:
         """Adds a line to the group of its meaning, or begins one; returns the group."""
+        window_us = _WARNING_WINDOW_US if line.level == log_t.WARNING else WINDOW_US
         for group in reversed(self._groups):
-            if line.wall_us - group.line.wall_us > WINDOW_US:
+            if line.wall_us - group.line.wall_us > window_us:
                 break
             if meaning(group.line) == meaning(line):
                 group.line, group.count = line, group.count + 1

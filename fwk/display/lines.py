@@ -39,7 +39,7 @@ def progress_of(status: status_t) -> str:
 
 
 def _states(status: status_t) -> str:
-    return ", ".join(f"{count} {state}" for state, count in figures.totals(figures.components(status)).states.items())
+    return ", ".join(f"{count} {state}" for state, count in figures.states(figures.components(status)).items())
 
 
 def pace(status: status_t) -> str:
@@ -51,11 +51,11 @@ def losses(status: status_t) -> str:
     """Returns the numbers of lost messages and late iterations; if there are any, also of messages fetched again,
     datagrams refused, repeated ticks and restarts.
     """
-    sums = figures.totals(figures.components(status))
+    sums = figures.totals(status)
     always = {"lost": sums.lost, "late": status.late}
     others = {
         "fetched": sums.fetched,
-        "refused": sums.strangers,
+        "refused": sums.foreign,
         "repeated": status.repeated,
         "restarts": figures.restarts(status),
     }

@@ -23,7 +23,7 @@ _LEAST_LOG_ROWS = 3
 _DRAWING_LEAST = (26, 9)  # columns and rows
 _DRAWING_MOST = (96, 34)
 _DRAWING_SHARE = 0.44  # of the width
-KEYS = "space pause  s step  +/- speed  m max  tab component  l level  esc all  q quit"
+KEYS = ("space pause", "s step", "+/- speed", "m max", "tab component", "l level", "esc all", "q quit")
 
 
 def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> RenderableType:
@@ -43,13 +43,13 @@ def screen(view: View, rows: int, columns: int = 120, keys: bool = False) -> Ren
         room += _LEAST_LOG_ROWS - len(body)
     parts += _log_rows(view, columns, max(_LEAST_LOG_ROWS, room))
     if keys:
-        parts.append(_line(_foot(view), "dim", columns))
+        parts.append(_line(_foot(view, columns), "dim", columns))
     return Group(*parts)
 
 
 def _figures(view: View, status: status_t, columns: int) -> list[Text]:
     """Returns the line of figures, without the last ones where the terminal is too narrow for all."""
-    sums = figures.totals(figures.components(status))
+    sums = figures.totals(status)
     used = sum(view.cpu.percent.values())
     parts = [f"tick {status.tick}", f"{status.time_us / US_PER_S:.2f} s", pace(status)]
     parts += [f"{status.ticks_per_s:.1f} ticks/s", *([f"CPU {used:.0f} %"] if used else [])]
@@ -98,8 +98,9 @@ def _by_component(view: View, status: status_t) -> Table:
         alone = len(host.components) == 1 and host.pid in percent
         cpu = f"{percent[host.pid]:.0f}" if alone else ""
         name = _marked(view, component.name)
+        lost = figures.lost([host] if len(host.components) == 1 else [], [component])
         table.add(
-            *(name, component.state, cpu, f"{time.mean_ms:.2f}", f"{time.worst_ms:.1f}", component.lost),
+            *(name, component.state, cpu, f"{time.mean_ms:.2f}", f"{time.worst_ms:.1f}", lost),
             style="bold" if component.name == view.selected else _STATE_STYLES.get(component.state, "cyan"),
         )
     return table
@@ -114,18 +115,18 @@ def _by_namespace(view: View, status: status_t) -> Table:
     ordered = sorted(figures.components(status), key=lambda each: _split(each.name))
     for namespace, group in groupby(ordered, key=lambda each: _split(each.name)[0]):
         members = list(group)
-        sums = figures.totals(members)
+        hosts = {host_of[member.name].host: host_of[member.name] for member in members}
         own = {member.name: times[member.name] for member in members}
         slowest = figures.slowest(own, 1)[0]
         pids = {host_of[member.name].pid for member in members} & percent.keys()
         table.add(
             _marked(view, namespace or "-"),
-            ", ".join(f"{count} {state}" for state, count in sums.states.items()),
+            ", ".join(f"{count} {state}" for state, count in figures.states(members).items()),
             f"{sum(percent[pid] for pid in pids):.0f}" if pids else "",
             f"{sum(time.mean_ms for time in own.values()):.2f}",
             f"{_split(slowest.name)[1]} {slowest.mean_ms:.2f}",
             f"{max(time.worst_ms for time in own.values()):.1f}",
-            sums.lost,
+            figures.lost(hosts.values(), members),
             max(host_of[member.name].restarts for member in members),
             style=_namespace_style(view, namespace, members),
         )
@@ -190,12 +191,16 @@ def _folded(text: str, columns: int) -> list[str]:
     return parts
 
 
-def _foot(view: View) -> str:
+def _foot(view: View, columns: int) -> str:
+    """Returns the answer to the last key, or the filters and as many keys as fit, first those of the filters."""
     filters = [f"lines of {view.selected}"] if view.selected else []
     if view.level:
         filters.append(f"level {LEVEL_NAMES[LEVELS[view.level]]}")
     chosen = f"[{', '.join(filters)}]  " if filters else ""
-    return f" {view.message}" if view.message else f" {chosen}{KEYS}"
+    shown = list(KEYS)
+    while shown and cells(chosen) + cells("  ".join(shown)) >= columns:
+        del shown[0]
+    return f" {view.message}" if view.message else f" {chosen}{'  '.join(shown)}"
 
 
 def _line(text: str, style: str, columns: int) -> Text:

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
-from unicodedata import east_asian_width
 
 _GAP = "  "
 _WRAPPED_MIN = 24  # a column of prose narrower than that is left out
@@ -88,7 +87,11 @@ class Table:
 
 def cells(text: str) -> int:
     """Returns how many columns of a terminal a text takes."""
-    return len(text) if text.isascii() else sum(2 if east_asian_width(each) in "FW" else 1 for each in text)
+    if text.isascii():
+        return len(text)
+    from unicodedata import east_asian_width  # most commands print ASCII alone
+
+    return sum(2 if east_asian_width(each) in "FW" else 1 for each in text)
 
 
 def wrapped(text: str, width: int) -> list[str]:

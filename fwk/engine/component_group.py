@@ -68,6 +68,7 @@ class ComponentGroup:
         limit_mb = plan.memory_limit_mb(assignment.host) or 0.0
         self._failures = Failures(self.metrics, limit_mb, lift_memory_limit, log)
         self._index = {component.name: component.index for component in self.plans}
+        self._in_turns = {component.name: component for component in self.plans if component.every > 1}
         self._marker = assignment.marker if len(self.plans) > 1 else None  # a single component needs no marker
         self._with_main_loop: list[Runner] = []
         self._requesting: list[Runner] = []  # runners whose components may request or report something with a done
@@ -173,7 +174,7 @@ class ComponentGroup:
                 runner.main_loop.holder = name
 
     def run(self, names: Sequence[str], stage: str, tick: tick_t, place: int) -> Ran:
-        """Runs one iteration of each of these components, in this order.
+        """Runs one iteration of each of these components that is due in the tick, in this order.
 
         Args:
             names: the components.
@@ -189,6 +190,10 @@ class ComponentGroup:
         began_us = start_us = self._now_us()
         for name in names:
             runner = self.runners[name]
+            if name in self._in_turns and not self._in_turns[name].due(tick.tick):
+                runner.pass_over(tick.tick, place, stage, tick.time_us)
+                self._views[name].pass_over(tick.tick)
+                continue
             if self._marker:
                 self._mark(self._index[name])
             try:
@@ -289,6 +294,7 @@ class ComponentGroup:
             self._assignment.frames,
         )
         runner = self._make_runner(declared, component.name, config, component.channels, section, start.incarnation)
+        runner.clock.every = component.every
         for channel, writer in runner.writers.items():
             writer.sequence = start.sequences.get(channel, 0)
         return runner

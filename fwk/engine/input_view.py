@@ -35,6 +35,11 @@ class InputView:
         """Returns the messages of a channel that the next iteration may see, oldest first."""
         return self._waiting.get(channel, ())
 
+    def pass_over(self, tick: int) -> None:
+        """Notes a tick in which the component takes part without an iteration; messages wait for the next one."""
+        if not self._catch_up.applies(tick):
+            self._catch_up.took_part(tick)
+
     def take(self, tick: int) -> Mapping[str, list[bytes]]:
         """Returns what an iteration of this tick sees, by channel, each oldest first; empty channels are left out."""
         seen, self._waiting = self._waiting, {}

@@ -44,6 +44,8 @@ def check_unchanged(component: ComponentPlan, stages: tuple[str, ...], before: D
     """
     followed = {*before.stages} == {*stages} and component.rate_hz == before.rate_hz  # not the launch file's own stages
     was, says = _in_the_plan(before, followed), _in_the_plan(now, followed)
+    if (component.every, component.offset) == (before.every, before.offset):  # not the launch file's own
+        was["'every'"], says["'every'"] = _turns(before), _turns(now)
     changed = [what for what in was | says if was.get(what) != says.get(what)]
     if changed:
         what = changed[0]
@@ -64,6 +66,10 @@ def _in_the_plan(declared: Declaration, stages: bool) -> dict[str, str]:
     return words
 
 
+def _turns(declared: Declaration) -> str:
+    return f"{declared.every} with the offset {declared.offset}"
+
+
 def _described(port: Port) -> str:
     types = [kind for kind in (port.message_type, port.reply_type) if kind]
-    return f"{port.kind} {' and '.join(map(messages.type_name, types))} of {port.channel}"
+    return f"{'each ' if port.each else ''}{port.kind} {' and '.join(map(messages.type_name, types))} of {port.channel}"

@@ -164,6 +164,13 @@ class Runner:
             self.log.warning(mistake)
         return self._written()
 
+    def pass_over(self, tick: int, stage: int, stage_name: str, time_us: int) -> None:
+        """Leaves an iteration out: the clock goes on, and what is visible waits for the next iteration."""
+        clock, stamp = self.clock, self.stamp
+        clock.tick = stamp.tick = tick
+        clock.now_us = stamp.time_us = time_us
+        clock.stage, stamp.stage = stage_name, stage
+
     def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
         """After the last iteration: lets the component finalize; returns what it wrote, stamped with that tick."""
         self.clock.tick = self.stamp.tick = tick

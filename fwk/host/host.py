@@ -295,10 +295,10 @@ class Host:
         actual.n = len(actual.components)
         for component in actual.components:
             if component.name in runners:
-                component.lost = sum(image.lost for image in runners[component.name].images.values())
-        first = actual.components[0]
-        first.lost += self.inputs.lost
-        first.fetched, first.strangers = self.inputs.fetched, self._complaints.total
+                component.lost_frames = sum(image.lost for image in runners[component.name].images.values())
+        counters = actual.counters
+        counters.fetched, counters.lost = self.inputs.fetched, self.inputs.lost
+        counters.foreign = self._complaints.total
         self._sender.publish(b"fwk/actual", actual.encode(), self._sync_port)
         for runner in runners.values():
             runner.log._report_dropped()

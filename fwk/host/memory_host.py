@@ -126,7 +126,9 @@ class MemoryHost:
             if fact.kind == "read" and fact.component in self._components and opening:
                 port = self._ports.channel(opening.channel)
                 self._names[port] = opening.name.encode()
-                self._expected[port] = change.number, [newest[opening.channel]] if opening.channel in newest else []
+                begin = [newest[opening.channel]] if opening.channel in newest else []
+                # An earlier decision that the host has not been told yet needs the messages since then.
+                self._expected[port] = change.number, self._expected.get(port, (0, begin))[1]
 
     def compose(self, tick: int, step: int, time_us: int, holder: int) -> tick_t:
         """Returns the tick that a supervisor sends to this host, with the marks of now."""

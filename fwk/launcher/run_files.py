@@ -24,7 +24,7 @@ class RunFiles:
         self._report = report
         self._look_us = 0
 
-    def message(self, channel: str, data: bytes, time_us: int) -> None:
+    def message(self, _channel: str, _data: bytes, _time_us: int) -> None:
         """Looks for the files when it is time, also while no tick ends."""
         now_us = monotonic_us()
         if now_us >= self._look_us:

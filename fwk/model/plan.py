@@ -35,12 +35,19 @@ class ComponentPlan:
     """Indices of components that must be ready before this one starts, including providers of its aspects."""
     rate_hz: float | None = None
     """Rate of a continuous component; 0: one iteration for each newer input. None: it iterates in stages."""
+    every: int = 1
+    """It iterates in the ticks with `tick % every == offset % every`."""
+    offset: int = 0
     start: bool = True
     """Whether it starts with the run; otherwise it is started by request."""
     memory_limit_mb: float | None = None
     """Memory that it may use beyond that of its process at the start; None: no limit."""
     opens: bool = False
     """Whether it may open channels during the run."""
+
+    def due(self, tick: int) -> bool:
+        """Returns whether it iterates in a tick."""
+        return self.every == 1 or tick % self.every == self.offset % self.every
 
     @property
     def namespace(self) -> str:
@@ -75,6 +82,15 @@ class HostPlan:
     index: int
     name: str
     components: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class ModulePlan:
+    """A module of the application as it was when the plan was made."""
+
+    file: str
+    sha256: str
+    """First 16 hexadecimal digits of the hash of its file."""
 
 
 @dataclass(frozen=True)
@@ -115,6 +131,10 @@ class Plan:
     log: LogPlan = field(default_factory=LogPlan)
     runs: RunsPlan = field(default_factory=RunsPlan)
     record: RecordPlan = field(default_factory=RecordPlan)
+    modules: dict[str, ModulePlan] = field(default_factory=dict)
+    """Modules of the components, and those of the application that they import, by name."""
+    blas_kernel: str = ""
+    """Name of the processor-specific kernel of OpenBLAS; empty: none was loaded."""
 
     def writer_of(self, channel: ChannelPlan) -> str:
         """Returns the name of a channel's writer as it is shown; empty if there is none."""

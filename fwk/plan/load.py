@@ -28,6 +28,7 @@ from fwk.plan.run_section import (
     scoreboard_channels_of,
 )
 from fwk.plan.stages import stages_of
+from fwk.plan.what_ran import blas_kernel, imported_modules
 from fwk.plan.wiring.needs import check_left_out, granted_by, needs_of
 from fwk.plan.wiring.start_order import check_groups, check_processes, check_starts
 from fwk.plan.wiring.wiring import Wiring, wire
@@ -123,6 +124,8 @@ class _Loading:
                 tuple(name for name in recorded.frames if name in {each.name for each in whole.channels})
             ),
             scoreboard_channels=scoreboard_channels_of(shared["scoreboard"], whole.channels, self.folders),
+            modules=imported_modules([each.asked.entry.use for each in components], self.folders),
+            blas_kernel=blas_kernel(),
             **shared,
         )
         check_clock(components, shared["clock"], problems)
@@ -192,6 +195,8 @@ def _component_plans(
             ready_timeout_s=each.asked.entry.ready_timeout_s,
             stop_timeout_s=each.asked.entry.stop_timeout_s,
             rate_hz=each.rate_hz,
+            every=each.every,
+            offset=each.offset,
             memory_limit_mb=each.asked.entry.memory_limit_mb,
             needs=tuple(index_of[name] for name in needs.get(each.asked.name, ()) if name in index_of),
             start=each.asked.entry.start,

@@ -13,7 +13,7 @@ from fwk.plan.files.launch_file import Files
 from fwk.plan.files.settings import effective
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
-from fwk.plan.stages import stages_in
+from fwk.plan.stages import stages_in, turns_of
 from fwk.plan.wiring.component_spec import Wish
 
 
@@ -26,6 +26,8 @@ class Resolved:
     stages: tuple[int, ...]
     config: dict[str, Any]
     origins: dict[str, str]
+    every: int
+    offset: int
 
     @property
     def rate_hz(self) -> float | None:
@@ -86,7 +88,9 @@ def resolve(
         report = partial(_report, problems, asked.name)
         config, origins = effective(declared.config, asked.settings(), asked.node.place, report)
         _check_ports(asked, declared, problems)
-        found.append(Resolved(asked, declared, stages_in(asked, declared, stages, problems), config, origins))
+        indices = stages_in(asked, declared, stages, problems)
+        every, offset = turns_of(asked, declared, problems)
+        found.append(Resolved(asked, declared, indices, config, origins, every, offset))
     _check_time_sources(found, problems)
     return found
 

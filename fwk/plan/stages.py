@@ -1,4 +1,4 @@
-"""The stages of the main loop, and which of them a component takes part in."""
+"""Stages of the main loop, and the stages and ticks in which a component iterates."""
 
 import re
 from collections.abc import Sequence
@@ -11,10 +11,11 @@ from fwk.plan.files.launch_file import Files
 from fwk.plan.files.templates import Asked
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_OFFSET_DIGITS = 6
 
 
 def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
-    """The stages that the files ask for, or the default ones."""
+    """Returns the stages that the files name, or the default ones."""
     layer = next((layer for layer in reversed(files.layers) if layer.content.stages is not None), None)
     if layer is None:
         return DEFAULT_STAGES
@@ -25,12 +26,12 @@ def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
         if not _NAME.fullmatch(name):
             problems.add(node.at(index).place, "", f"'{name}' is not a valid stage name; use letters, digits and '_'")
         elif name in names[:index]:
-            problems.add(node.at(index).place, "", f"stage '{name}' stands here twice; keep one")
+            problems.add(node.at(index).place, "", f"stage '{name}' occurs twice; keep one")
     return tuple(names)
 
 
 def stages_in(asked: Asked, declared: Declaration, stages: Sequence[str], problems: Problems) -> tuple[int, ...]:
-    """Indices of a component's stages, in the order of the main loop; a continuous one has none."""
+    """Returns the indices of a component's stages, in the order of the plan; none for a continuous component."""
     if declared.rate_hz is not None:
         if asked.entry.stage is not None:
             text = "it is continuous and takes part in no stage; leave 'stage' out"
@@ -47,3 +48,21 @@ def stages_in(asked: Asked, declared: Declaration, stages: Sequence[str], proble
     if not wanted:
         problems.add(place, asked.name, "it takes part in no stage; name at least one")
     return tuple(index for index, name in enumerate(stages) if name in wanted)
+
+
+def turns_of(asked: Asked, declared: Declaration, problems: Problems) -> tuple[int, int]:
+    """Returns `every` and `offset` of a component: those of the launch file, or else of its class."""
+    every = declared.every if asked.entry.every is None else asked.entry.every
+    if every > 1 and declared.rate_hz is not None:
+        text = "it is continuous and takes part in no tick; leave 'every' out"
+        problems.add(asked.node.at("every").place, asked.name, text)
+    if every > 1 and "time_source" in declared.aspects.values():
+        problems.add(asked.node.at("every").place, asked.name, "a time source iterates in each tick; leave 'every' out")
+    node = asked.node.child("offset")
+    text = str(declared.offset if node is None or node.value is None else node.value)
+    if not text.isdecimal() or not text.isascii() or len(text) > _OFFSET_DIGITS:
+        place = node.place if node else asked.node.place
+        right = f"it should be a whole number from 0 on, of at most {_OFFSET_DIGITS} digits, such as 1 or '{{number}}'"
+        problems.add(place, asked.name, f"offset is '{text}'; {right}")
+        return every, 0
+    return every, int(text)

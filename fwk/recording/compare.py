@@ -3,7 +3,7 @@
 from collections import OrderedDict, deque
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
-from itertools import zip_longest
+from itertools import islice, zip_longest
 from pathlib import Path
 
 from fwk.lcm.event_log import Event, LogError
@@ -11,9 +11,11 @@ from fwk.lcm.messages import HEADER_SIZE, sequence_of
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import header_of, is_interface
 from fwk.recording.difference import Difference, changed, missing
+from fwk.recording.versions import BROKEN, PLAN, read_plan
 
 FRAMEWORK = "fwk/"
 _SELF_TEST = "LCM_SELF_TEST"  # what liblcm sends when a process subscribes; a logger elsewhere may hear it
+_PLAN_WITHIN = 1000  # events at the beginning of a log among which its plan is
 _RECENT = 1024  # messages of a channel among which one sent again is recognized; writers keep fewer to send again
 
 
@@ -28,6 +30,21 @@ def compare(a: Path, b: Path, common: bool = False) -> Difference | None:
         LogError: a file cannot be read, is no log, or there is nothing to compare.
     """
     return Comparison(a, b, common).difference
+
+
+def kernel_of(log: Path) -> str:
+    """Returns the BLAS kernel that a recording was made with; empty if the log has no plan that names one.
+
+    Raises:
+        LogError: the file cannot be read, or is not a log.
+    """
+    for event in islice(StampedLog(log), _PLAN_WITHIN):
+        if event.channel == PLAN:
+            try:
+                return read_plan(event.data)[0].blas_kernel
+            except BROKEN:
+                return ""
+    return ""
 
 
 class Comparison:

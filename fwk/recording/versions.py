@@ -30,6 +30,8 @@ from fwk.model.tick_events import (
 from lcmtypes import core, core_v1
 from lcmtypes.core import protocol_t, settings_change_t, tick_record_t
 
+PLAN = "fwk/plan"
+"""Channel of the plan."""
 BROKEN = (ValueError, struct.error, LookupError, TypeError, AttributeError, RecursionError)
 """What reading data raises that is not what it should be."""
 _EVENTS_OF_A_HOST: dict[int, type[HostLost | HostLate | HostStopped]] = {

@@ -10,7 +10,7 @@ from fwk.host.debugger import LEFT
 from fwk.model.channel_table import Fact
 from fwk.model.plan import Plan
 from fwk.model.sections import RestartPolicy
-from lcmtypes.core import component_state_t, histogram_t
+from lcmtypes.core import component_state_t, histogram_t, host_counters_t
 
 REAL_TIME_STOP_US = 3 * US_PER_S
 """Time to end in real time if the launch file gives none; in lockstep the loop waits as long as it takes."""
@@ -99,6 +99,8 @@ class HostProcess:
     components: list[component_state_t] = field(default_factory=list)
     times: list[histogram_t] = field(default_factory=list)
     """Durations of its components' iterations."""
+    counters: host_counters_t = field(default_factory=host_counters_t)
+    """Losses and refusals of all its processes."""
     wanted: bool = True
     """Whether it should run: the first half of the desired state."""
     desired_run: int = 1
@@ -125,7 +127,8 @@ class HostProcess:
         """Whether time alone may change its state."""
         self._state = HostState.LOADED
         self._starts_us: deque[int] = deque()
-        self._earlier: dict[str, component_state_t] = {}  # the last report of the processes before this one
+        self._earlier_frames: dict[str, int] = {}  # lost ones of the processes before this one, by component
+        self._earlier_counters = host_counters_t()
 
     @property
     def state(self) -> HostState:
@@ -216,7 +219,8 @@ class HostProcess:
     def begin_start(self, now_us: int) -> int:
         """Begins a new incarnation; returns its number."""
         self._become(HostState.STARTING, now_us)
-        self._earlier = {component.name: component for component in self.components}
+        self._earlier_frames = {component.name: component.lost_frames for component in self.components}
+        self._earlier_counters = self.counters
         self.incarnation += 1
         self.actual_run, self.changes = self.desired_run, []
         self.reason = ""
@@ -241,15 +245,15 @@ class HostProcess:
         """Drops the changes that the tick which it answered last has told."""
         self.changes = [change for change in self.changes if change.step > self.answered_step]
 
-    def report(self, components: list[component_state_t], times: list[histogram_t]) -> None:
+    def report(self, components: list[component_state_t], times: list[histogram_t], counters: host_counters_t) -> None:
         """Takes the state of its components; losses of earlier processes stay counted."""
         for component in components:
-            earlier = self._earlier.get(component.name)
-            if earlier:
-                component.lost += earlier.lost
-                component.fetched += earlier.fetched
-                component.strangers += earlier.strangers
-        self.components, self.times = components, times
+            component.lost_frames += self._earlier_frames.get(component.name, 0)
+        earlier = self._earlier_counters
+        counters.fetched += earlier.fetched
+        counters.lost += earlier.lost
+        counters.foreign += earlier.foreign
+        self.components, self.times, self.counters = components, times, counters
 
     def ended(self, code: int, now_us: int, stopping: bool, core: bool = False, culprit: str = "") -> None:
         """Takes the end of its process and decides whether and when it is started again.

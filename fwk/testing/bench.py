@@ -36,6 +36,8 @@ class Bench:
         seed: int = 1,
         period_s: float = 0.05,
         namespaces: tuple[str, ...] = (),
+        every: int | None = None,
+        offset: int | None = None,
         **settings: Any,
     ) -> None:
         self.declaration: Declaration = declaration(component)
@@ -68,6 +70,8 @@ class Bench:
         section = RunSection(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
         self.runner = Runner(self.declaration, name, config, channels, section)
         self.component: Any = self.runner.component
+        self.runner.clock.every = self._every = self.declaration.every if every is None else every
+        self._offset = self.declaration.offset if offset is None else offset
         self._sent: dict[str, list[bytes]] = {}
         self._opening: Opening | None = None
         if self.runner.has_blackboard:
@@ -124,10 +128,13 @@ class Bench:
         port.waiting += master._announcement._take()
 
     def iterate(self, times: int = 1, stage: str = "") -> None:
-        """Runs that many ticks; logical time goes on by the period each."""
+        """Runs that many ticks, with an iteration in each that `every` selects; time advances by a period each."""
         for _ in range(times):
             self.tick += 1
             self.time_us += self.runner.clock.period_us
+            if self.tick % self._every != self._offset % self._every:
+                self.runner.pass_over(self.tick, 0, stage, self.time_us)
+                continue
             closed = self._open() if self._opening else set()
             fresh = {name: port.waiting for name, port in self._ports.items() if port.waiting and name not in closed}
             for name in fresh:

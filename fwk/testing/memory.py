@@ -34,6 +34,7 @@ class MemorySystem:
 
     `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those of
     the same components in processes. A test writes the channels of `outside`, given with their types, with `come_in`.
+    `turns` are `every` and `offset` of components, where they differ from the class.
 
     Raises:
         ValueError: the components do not fit together.
@@ -48,6 +49,7 @@ class MemorySystem:
         period_s: float = 0.05,
         stages: tuple[str, ...] = DEFAULT_STAGES,
         outside: Mapping[str, type[messages.Message]] | None = None,
+        turns: Mapping[str, tuple[int, int]] | None = None,
     ) -> None:
         for name, kind in components.items():
             if "plugins" in declaration(kind).aspects.values():
@@ -61,6 +63,7 @@ class MemorySystem:
             seed=seed,
             outside={name: messages.type_name(kind) for name, kind in (outside or {}).items()},
             log=LogPlan(lines_per_s=0),
+            turns=turns,
         )
         self.now_us = 0
         self.ticks = 0

@@ -23,12 +23,15 @@ def plan_of(
     period_s: float = 0.05,
     stages: tuple[str, ...] = DEFAULT_STAGES,
     restart: RestartPolicy | None = None,
+    turns: Mapping[str, tuple[int, int]] | None = None,
     **fields: Any,
 ) -> Plan:
-    """The plan of some components; `groups` names those that share a process, otherwise each has its own.
+    """Returns the plan of some components; those of a group share a process, each other one has its own.
+
+    `turns` are `every` and `offset` by component, where they differ from the class.
 
     Raises:
-        ValueError: they do not fit together.
+        ValueError: the components do not fit together.
     """
     mistakes: list[str] = []
     wishes = [Wish(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()]
@@ -44,6 +47,7 @@ def plan_of(
     planned = []
     for index, (wish, ports) in enumerate(zip(wishes, wiring.ports, strict=True)):
         kind, config_type = wish.declaration.component, wish.declaration.config
+        every, offset = (turns or {}).get(wish.name, (wish.declaration.every, wish.declaration.offset))
         config = config_type(**(settings or {}).get(wish.name, {})).model_dump()
         planned.append(
             ComponentPlan(
@@ -58,6 +62,8 @@ def plan_of(
                 host=host_of[wish.name],
                 restart=restart or RestartPolicy(),
                 rate_hz=wish.declaration.rate_hz,
+                every=every,
+                offset=offset,
                 opens="blackboard" in wish.declaration.aspects.values(),
                 needs=tuple(sorted(map(names.index, granted.get(wish.name, ())))),
             )
@@ -87,7 +93,7 @@ def plan_of(
 
 
 def alone(component: type[Component], name: str) -> Plan:
-    """The plan of one component without its channels: whatever it opens at run time is its own."""
+    """Returns the plan of one component without its channels, for the channels that it opens."""
     declared = declaration(component)
     only = ComponentPlan(
         index=0,

@@ -1,15 +1,16 @@
 """Chooses the role of the robot in its team, and the skill for the moment."""
 
 import math
+from typing import Literal
 
 from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, role_t, skill_command_t, skill_status_t, world_model_t
-from procs.behaviour import roles
-from procs.behaviour.game import game_of
+from procs.behaviour import greedy, roles
+from procs.behaviour.game import Game, game_of
 from procs.behaviour.skills.book import SKILLS
 from procs.behaviour.tactics import Order, Tactics
-from procs.behaviour.view import Frame, view_of
+from procs.behaviour.view import Frame, View, view_of
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
 from procs.model.robot import side_of, team_of
@@ -21,6 +22,8 @@ class AgentConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
+    strategy: Literal["team", "greedy"] = "team"
+    """`team`: roles, passes and formations; `greedy`: the simple opponent, which chases the ball."""
     new_target_m: float = 0.05
     """A target that moved further than this makes a new command."""
     new_heading_rad: float = 0.05
@@ -51,12 +54,19 @@ class Agent(Component):
         role = self.role.value
         view = view_of(self.world_model.value, self._robot, role.role, self._frame)
         game = game_of(self.game_state.value, team_number(self._robot), self._frame)
-        idle = roles.Job(role.role or roles.DEFENDER, view.own.place)
-        job = roles.assign(view, self.config.field).get(self._robot, idle)
-        order = self._tactics.decide(view, game, job, self.kicker_state.value.ball_held, self.clock.period_s)
-        role.role, role.intention = job.role, order.intention or order.skill
+        role.role, order = self._decide(view, game)
+        role.intention = order.intention or order.skill
         self.role.write()
         self._command(order)
+
+    def _decide(self, view: View, game: Game) -> tuple[str, Order]:
+        """Returns the role of the robot and its order."""
+        held, field = self.kicker_state.value.ball_held, self.config.field
+        if self.config.strategy == "greedy":
+            return greedy.decide(view, game, held, field)
+        idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
+        job = roles.assign(view, field).get(self._robot, idle)
+        return job.role, self._tactics.decide(view, game, job, held, self.clock.period_s)
 
     def _command(self, order: Order) -> None:
         command = self.skill_command.value

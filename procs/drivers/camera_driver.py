@@ -29,9 +29,6 @@ class CameraDriverConfig(Config):
     """Frames of one channel (gray8) instead of three (bgr8)."""
     rate_hz: float = Setting(default=0.0, ge=0.0, le=1000.0)
     """Pictures a second that a device is asked for; 0: its own rate."""
-    every_ticks: int = Setting(default=1, ge=1, le=1000)
-    """A frame every so many ticks. Of files it is always the next picture: picture k, from 0, in tick
-    1 + k * every_ticks. Of a device it is the newest, if there is a new one."""
     at_end: Literal["stop", "loop", "fail"] = "stop"
     """After the last picture of a file or folder: no more frames, from the beginning again, or the component fails."""
     retry_s: PositiveFloat = 0.5
@@ -41,9 +38,14 @@ class CameraDriverConfig(Config):
 
 
 class CameraDriver(Component):
-    """Frames of a video file or a folder depend on the tick alone; those of a device on the time."""
+    """Publishes a picture of its source in each iteration.
+
+    Pictures of a file or folder depend on the tick alone: picture k, from 0, belongs to tick 1 + k * `every`. Those of
+    a device are the newest, if there is a new one.
+    """
 
     stage = "sensor_acquire"
+    offset = 1
     image: VisionMaster
     config: CameraDriverConfig
     clock: Clock
@@ -69,13 +71,10 @@ class CameraDriver(Component):
         self._open()
 
     def loop(self) -> None:
-        number, rest = divmod(self.clock.tick - 1, self.config.every_ticks)
         if self._live:
             for text in self._live.news():
                 self.log.warning(f"{self.config.source} {text}")
-        if rest:
-            return
-        pixels = self._live.picture() if self._live else self._picture(number)
+        pixels = self._live.picture() if self._live else self._picture((self.clock.tick - 1) // self.clock.every)
         if pixels is not None:
             self.image.publish(self._as_wanted(pixels))
 

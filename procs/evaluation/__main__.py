@@ -8,16 +8,16 @@ from concurrent.futures import ProcessPoolExecutor
 from functools import partial
 from pathlib import Path
 
+from fwk.testing import launch_plan, system_of
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import piece_of
-from procs.evaluation.system import plan, system_of
 from procs.evaluation.table import as_json, as_text, rows_of
 
 
 def played(file: str, time_s: float, seed: int) -> Samples:
     """Plays one piece of `time_s` and returns the samples of all measures."""
-    period_s = plan(file).period_us / 1e6
+    period_s = launch_plan(file).period_us / 1e6
     system = system_of(file, seed=seed)
     system.tick(round(time_s / period_s))
     piece = piece_of(system.sent, period_s)

@@ -5,6 +5,7 @@ from pydantic import Field
 from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, Writes, channel, transform_message
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import pose_t
+from procs.model.frames import plausible
 
 
 class Mounting(Config):
@@ -66,8 +67,9 @@ class FrameTree(Component):
     def loop(self) -> None:
         pose, config = self.pose, self.config
         told = list(self._mounted)
-        if pose.has_value and pose.value.localized:
-            stands = Transform.of((pose.value.x_m, pose.value.y_m, 0.0), pose.value.heading_rad)
+        value = pose.value
+        if pose.has_value and value.localized and plausible(value.x_m, value.y_m, value.heading_rad):
+            stands = Transform.of((value.x_m, value.y_m, 0.0), value.heading_rad)
             told.append(transform_message(config.world, config.base, pose.header.time_us, stands))
         self.transforms.value.transforms, self.transforms.value.n = told, len(told)
         self.transforms.write()

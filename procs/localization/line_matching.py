@@ -36,7 +36,8 @@ class LinePoints:
     @classmethod
     def chosen(cls, x_m: Floats, y_m: Floats, reach_m: float, most: int) -> "LinePoints":
         """The points within reach; if they are too many, evenly spread ones of them."""
-        near = np.flatnonzero(np.hypot(x_m, y_m) < reach_m)
+        with np.errstate(over="ignore"):  # a range that overflows is beyond reach
+            near = np.flatnonzero(np.hypot(x_m, y_m) < reach_m)
         if len(near) > most:
             near = near[np.linspace(0, len(near) - 1, most).astype(np.intp)]
         return cls(x_m[near], y_m[near])

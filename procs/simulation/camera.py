@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk import Clock, Component, Config, Logger, Reads, VisionMaster, channel
+from fwk import Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.field import Field
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
@@ -37,8 +37,6 @@ class CameraConfig(Config):
     """Factor on all colours."""
     flicker: float = Setting(default=0.0, ge=0.0, le=0.5)
     """Standard deviation of the brightness from frame to frame, as a part of it."""
-    every_ticks: int = Setting(default=1, ge=1, le=100)
-    """A frame every so many ticks; robots take turns, so that not all cameras of a team work in the same tick."""
     field: Field = Field()
     """Measures of the field."""
     robot_radius_m: float = Setting(default=0.25, gt=0.0)
@@ -56,7 +54,6 @@ class Camera(Component):
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
     image: VisionMaster
     config: CameraConfig
-    clock: Clock
     log: Logger
     rng: np.random.Generator
 
@@ -68,13 +65,12 @@ class Camera(Component):
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._robot = self.name.rpartition("/")[0]
-        self._turn = int("".join(filter(str.isdigit, self._robot)) or 0)
         self._missing = False
         self._noise_seed = int(self.rng.integers(1 << 32))
         self._apply_settings()
 
     def loop(self) -> None:
-        if not self.ground_truth.refreshed or (self.clock.tick + self._turn) % self.config.every_ticks:
+        if not self.ground_truth.refreshed:
             return
         own = self._own_robot(self.ground_truth.value)
         if own is not None:

@@ -27,6 +27,7 @@ class Mode(IntEnum):
 
 
 _MODES = len(Mode)
+_EACH = np.arange(_MODES)
 _AXES, _OTHER = np.array((0, 1, 2, 3)), np.array((2, 3, 0, 1))  # x, y, vx, vy, and the partner of each
 _NOISE_M2_S3 = np.array((0.0002, 0.01, 0.3, 5.0, 0.3))
 """Spectral density of the acceleration that each model leaves open."""
@@ -51,10 +52,10 @@ _FREE_1_S = np.array(
 """Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
 _CONTACT_1_S = np.array(
     (
-        (0.0, 0.1, 0.0, 1.5, 1.0),
-        (0.3, 0.0, 0.0, 3.0, 2.0),
-        (0.0, 1.5, 0.0, 3.0, 2.0),
-        (0.3, 1.0, 0.5, 0.0, 2.0),
+        (0.0, 0.1, 0.0, 3.0, 2.0),
+        (0.3, 0.0, 0.0, 6.0, 4.0),
+        (0.0, 1.5, 0.0, 6.0, 4.0),
+        (0.3, 1.0, 0.5, 0.0, 4.0),
         (0.0, 0.0, 0.0, 0.0, 0.0),
     )
 )
@@ -178,8 +179,10 @@ class BallFilter:
         if self._rolls_below_m_s:
             slides = float(np.hypot(*self._x[Mode.SLIDES, 2:])) > self._rolls_below_m_s
             rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
-        moves = -np.expm1(-rates_1_s * duration_s)
-        moves[np.arange(_MODES), np.arange(_MODES)] = 1.0 - moves.sum(axis=1)
+        leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
+        stays = np.exp(-leaves_1_s * duration_s)
+        moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
+        moves[_EACH, _EACH] = stays
         moves[Mode.HIT] = _AFTER_HIT
         joint = self._weights[:, None] * moves
         weights = np.maximum(joint.sum(axis=0), 1e-12)

@@ -17,12 +17,13 @@ import numpy as np
 
 from procs.model.frames import Floats
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.seen import Seen
 
 _SECOND_SIGHT_S = 0.3
 _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _OBSERVER_S = 0.5
-_NOTICED_SHARE = 0.5  # a track whose velocity differs less from a kick's has noticed the kick
+_NOTICED_SHARE = 0.15  # a track whose velocity differs less from a kick's has noticed the kick
 _HELD_M = 0.02  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
 
@@ -125,15 +126,24 @@ class BallTracker:
         self._seen_s = self._held_s = self._moved_s = self._now_s
         self._doubts = []
 
-    def kick(self, velocity_m_s: Floats, age_s: float = 0.0) -> None:
-        """Takes a kick, reported `age_s` ago, that gave the ball this velocity (2); call it before `advance`.
+    def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING) -> None:
+        """Takes a kick that gave the ball a velocity; call it before `advance`.
 
         A kick of a mate that the track already shows changes nothing.
+
+        Args:
+            velocity_m_s: (2), world frame.
+            age_s: time since the kick.
+            mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
         """
         if self._track is not None:
             surprise_m_s = np.hypot(*(self._track.state[2:] - velocity_m_s))
             if age_s and surprise_m_s < _NOTICED_SHARE * np.hypot(*velocity_m_s):
                 return
+        for position_m, covariance_m2 in zip(mouth.positions_m, mouth.covariances_m2, strict=True):
+            self._track = BallFilter(position_m, covariance_m2)
+            self._seen_s = max(self._seen_s, self._now_s - age_s)
+        if self._track is not None:
             self._track.kick(velocity_m_s)
             self._track.predict(age_s, self._rolling_m_s2)
         self._moved_s = self._now_s - age_s

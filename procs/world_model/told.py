@@ -37,10 +37,15 @@ def ball_of(message: team_message_t) -> Seen:
 
 def held_ball_of(message: team_message_t, mate: Mate, mouth_m: float) -> Seen:
     """Returns the ball (0 or 1) in the sender's mouth, world frame; `mouth_m` is from its middle to the ball's."""
-    if not (message.ball_held and mate.localized):
+    return mouth_of(mate, mouth_m, mate.told_s) if message.ball_held else Seen.NOTHING
+
+
+def mouth_of(mate: Mate, mouth_m: float, time_s: float) -> Seen:
+    """Returns the place of a ball in a mate's mouth at a time near its message; none if the mate is lost."""
+    if not mate.localized:
         return Seen.NOTHING
     ahead_m = mouth_m * np.array((np.cos(mate.heading_rad), np.sin(mate.heading_rad)))
-    return Seen.of([mate.position_m + ahead_m], [mate.covariance_m2 + np.eye(2) * 0.03**2], [0.0])
+    return Seen.of([mate.position_at(time_s) + ahead_m], [mate.covariance_m2 + np.eye(2) * 0.03**2], [0.0])
 
 
 def obstacles_of(message: team_message_t) -> Seen:

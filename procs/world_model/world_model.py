@@ -29,7 +29,7 @@ from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, Team
-from procs.world_model.told import ball_of, held_ball_of, mate_of, obstacles_of
+from procs.world_model.told import ball_of, held_ball_of, mate_of, mouth_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
@@ -127,9 +127,9 @@ class WorldModel(Component):
         self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
-        kicked = kicker.kicks != self._kicks
+        kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
+        self._kicks = kicker.kicks
         if kicked:
-            self._kicks = kicker.kicks
             velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, config.mouth_m)
             self._ball.kick(velocity_m_s)
             message = self.team_message.value
@@ -147,7 +147,7 @@ class WorldModel(Component):
             age_s = self._age_s(percept.capture_us)
             seen = self._untold_ball = view.ball(percept, age_s)
             self._untold_frame = True
-            self.team_message.value.ball_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            self.team_message.value.ball_capture_us = percept.capture_us or self.clock.now_us
             self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
@@ -189,7 +189,8 @@ class WorldModel(Component):
             age_s = self.clock.since_s(message.kick_us)
             sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s) and 0.0 <= age_s <= _STALE_S
             if message.kicks != known and sound:
-                self._ball.kick(np.array((message.kick_vx_m_s, message.kick_vy_m_s)), age_s)
+                mouth = mouth_of(mate, self.config.mouth_m, message.kick_us / US_PER_S)
+                self._ball.kick(np.array((message.kick_vx_m_s, message.kick_vy_m_s)), age_s, mouth)
 
     def _follow_opponents(
         self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
@@ -201,7 +202,7 @@ class WorldModel(Component):
             age_s = self._age_s(percepts.capture_us)
             seen = strangers(view.obstacles(percepts, age_s), mates, now_s - age_s, rules)
             self._untold_obstacles = seen
-            self.team_message.value.obstacles_capture_us = self.clock.now_us - round(age_s * US_PER_S)
+            self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
         team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
@@ -218,6 +219,8 @@ class WorldModel(Component):
         Half a tick early is nearer to the period than half a tick late. A message without a sighting waits one tick for
         the camera; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
+        if self.team_message.value.kick_us == self.clock.now_us:
+            return True  # mates have to know of a kick at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
         if not self._untold_frame:

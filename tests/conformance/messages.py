@@ -1,12 +1,13 @@
 """Fills messages of any LCM type with a value for each kind of field."""
 
+import math
+import sys
 from typing import Any
 
 from fwk.lcm.messages import Message, type_named
 
 _INTEGER_BITS = {"byte": 8, "int8_t": 8, "int16_t": 16, "int32_t": 32, "int64_t": 64}
 _PACKAGE = "lcmtypes."
-_EXACT = 2**53
 _HEADER = "core.header_t"
 
 
@@ -51,7 +52,8 @@ class Filling:
         if kind in _INTEGER_BITS:
             bits = _INTEGER_BITS[kind]
             least, most = (0, 2**bits - 1) if kind == "byte" else (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1)
-            least, most = max(least, -_EXACT), min(most, _EXACT)
+            if math.isnan(self._number):
+                return most
             return least if self._number <= least else most if self._number >= most else round(self._number)
         return self.message(type_named(kind))
 
@@ -62,10 +64,7 @@ def usual() -> Filling:
 
 
 def extremes() -> list[Filling]:
-    """Returns values at the limits of what a computation can be fed with.
-
-    Numbers stay below 1e150, the square root of the largest float, and integers within those that a float can hold.
-    """
+    """Returns values at the limits of their types, and others that are far from plausible."""
     return [
         Filling(0.0),
         Filling(1.0, "cyan1", 3, truth=True),
@@ -73,5 +72,11 @@ def extremes() -> list[Filling]:
         Filling(-1e9, "-", 12),
         Filling(1e100, "\N{GREEK SMALL LETTER ALPHA}", 1, truth=True),
         Filling(-1e100, " ", 1),
+        Filling(1e300, "\N{GREEK SMALL LETTER ALPHA}", 1, truth=True),
+        Filling(-1e300, " ", 1),
         Filling(1e-300, "0", 2, truth=True),
+        Filling(sys.float_info.max, "m", 1, truth=True),
+        Filling(math.inf, "infinite", 1, truth=True),
+        Filling(-math.inf, "infinite", 1),
+        Filling(math.nan, "none", 1, truth=True),
     ]

@@ -30,7 +30,9 @@ def main(file: str, ticks: int, seed: int) -> None:
     for each in plan.components:
         base = getattr(import_module(each.module), each.class_name)
         parts[each.name] = type(base.__name__, (base,), {"stage": tuple(plan.stages[stage] for stage in each.stages)})
-    system = MemorySystem(parts, {each.name: each.config for each in plan.components}, seed=seed, stages=plan.stages)
+    turns = {each.name: (each.every, each.offset) for each in plan.components}
+    settings = {each.name: each.config for each in plan.components}
+    system = MemorySystem(parts, settings, seed=seed, stages=plan.stages, turns=turns)
     system.tick(ticks)
     with LogWriter(Path(LOG), print) as log:
         for channel, sent in system.sent.items():

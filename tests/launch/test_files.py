@@ -8,7 +8,7 @@ from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
 
 FOLDER = Path(__file__).parents[2] / "launch"
-SYSTEMS = {"soccer.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
+SYSTEMS = {"soccer.yaml": (5, 5), "soccer-greedy.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
 TOOLS = {"vision.yaml", "frames.yaml"}
 PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml"}
 

@@ -1,6 +1,7 @@
 """The wheel, in an empty environment far from any checkout: complete, and enough to run systems of one's own."""
 
 import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.fwk.cli.cli_processes import PROCS, write_files
+from tests.harness.pages import Page, shows
 from tests.harness.runs import PortBlock
 
 ROOT = Path(__file__).parents[2]
@@ -19,7 +21,7 @@ INSTALL_TIMEOUT_S = 280.0
 LEFTOVER = "procs/left_over.py"
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]  # a busy machine installs libraries slowly
 
 
 @pytest.fixture(scope="module")
@@ -40,22 +42,22 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs the commands of a fresh environment that holds the wheel and what it asks for, in a folder of the user's."""
+    """Runs commands of a fresh environment with the wheel, what it asks for, pytest and mypy, in a user's folder."""
     folder = tmp_path_factory.mktemp("installed")
     environment = folder / "env"
     venv.create(environment, with_pip=True)
     binaries = environment / "bin"
-    pip = [str(binaries / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check", str(wheel)]
-    subprocess.run(pip, check=True, timeout=INSTALL_TIMEOUT_S)
+    pip = [str(binaries / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    subprocess.run([*pip, str(wheel), "pytest", "mypy"], check=True, timeout=2 * INSTALL_TIMEOUT_S)
     user = folder / "user"
     write_files(user, PROCS)
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
     variables |= {"HOME": str(user), "PATH": f"{binaries}{os.pathsep}/usr/bin:/bin"}
 
-    def run(*command: str) -> "subprocess.CompletedProcess[str]":
+    def run(*command: str, cwd: Path = user) -> "subprocess.CompletedProcess[str]":
         return subprocess.run(
             [str(binaries / command[0]), *command[1:]],
-            cwd=user,
+            cwd=cwd,
             env=variables,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
@@ -115,3 +117,17 @@ def test_the_installed_robots_play(installed: Run, ports: PortBlock) -> None:
     assert result.returncode == 0, result.stdout
     assert "CYAN 0 : 0 MAGENTA" in result.stdout
     assert "one-robot: 5 ticks done" in result.stdout
+
+
+def test_the_tutorial_works_word_for_word(installed: Run, ports: PortBlock, tmp_path: Path) -> None:
+    page = Page("first-component.md")
+    assert (len(page.files), len(page.steps)) == (5, 8)
+    write_files(tmp_path, page.files)
+    for command, lines in page.steps:
+        words = shlex.split(command)
+        if words[0] == "fwk-launch":  # the one word added: beside other runs of this machine
+            words += ["--bus-port", str(ports.bus)]
+        result = installed(*words, cwd=tmp_path)
+        assert result.returncode == 0, f"{command}\n{result.stdout}"
+        for line in lines:
+            assert shows(result.stdout, line), f"{command}\ndoes not show: {line}\nbut: {result.stdout}"

@@ -2,6 +2,7 @@
 
 Visible to an iteration is every message whose done was taken before its stage began, and no other; in lockstep these
 are the messages of all earlier (tick, stage). An iteration sees what became visible since the last one of its process.
+A component iterates in the ticks that `every` and `offset` select; in the others it takes part without an iteration.
 The first one of a process that joins a run that goes on, and one after more than 16 ticks of absence, sees of each
 channel the newest message alone. Commands are taken out in the order of tick, stage, sender and sequence.
 """
@@ -60,6 +61,8 @@ class _Oracle:
         self._told: dict[int, Counts] = {}  # tick: what continuous components were told
         self._missed: set[tuple[int, str, int]] = set()  # host, channel, number
         self._incarnation: dict[int, int] = {}  # of each host
+        self._stage_of: dict[tuple[int, int], int] = {}  # tick, step: index of the stage
+        self._done: dict[int, list[tuple[int, int]]] = {}  # host to tick and step of each done of a stage
 
     def findings(self) -> Iterator[str]:
         """Goes through all records in order, then through all notes."""
@@ -73,6 +76,7 @@ class _Oracle:
         for kind, first, second, third in record.events:
             if kind == "done":
                 self._take(first, second, third)
+                self._done.setdefault(first, []).append((second, third))
             elif kind == "final":
                 self._take(first, second, header_t.FINAL)
             elif kind == "outside":
@@ -84,6 +88,7 @@ class _Oracle:
                 if (record.tick, second) in self._at:
                     yield f"tick {record.tick}: step {second} begins twice"
                 self._at[record.tick, second] = self._visible
+                self._stage_of[record.tick, second] = first
                 steps.append((second, first))
             elif kind == "told":
                 self._visible = dict(self._taken)
@@ -133,6 +138,8 @@ class _Oracle:
                 queue.restarted()
             elif (header.tick, header.stage) <= newest:
                 yield f"{where}: runs after tick {newest[0]}, stage {newest[1]}"
+            if header.tick % component["every"] != component["offset"] % component["every"]:
+                yield f"{where}: is not due in this tick"
             newest = (header.tick, header.stage)
             iterations += 1
             if unknown:
@@ -161,10 +168,7 @@ class _Oracle:
     ) -> Iterator[str]:
         before = process.seen.get(name)
         continuous = self._names[name]["rate_hz"] is not None
-        if before is None:
-            alone = process.incarnation > 1 or header.tick > 1
-        else:
-            alone = not continuous and header.tick > process.ticks[name] + AWAY_TICKS
+        alone = self._joins(name, process, header.tick)
         for channel, heard in zip(self._heard(name), note.heard, strict=True):
             if channel in self._holed:
                 continue
@@ -181,6 +185,28 @@ class _Oracle:
                 yield f"{where}: newest of {channel} is {heard.newest}, not {numbers[-1]}"
             if self._lockstep and not continuous and numbers:
                 yield from self._earlier(where, channel, header, numbers[-1])
+
+    def _joins(self, name: str, process: _Process, tick: int) -> bool:
+        """Whether an iteration is the first of a process that joins, or follows an absence of the component."""
+        component = self._names[name]
+        if name not in process.ticks and process.incarnation > 1:
+            return True
+        if component["rate_hz"] is not None:
+            return name not in process.ticks and tick > 1
+        last = process.ticks.get(name, 0)
+        took_part = sorted(
+            {
+                at
+                for at, step in self._done.get(component["host"], ())
+                if last < at < tick and self._stage_of.get((at, step)) in component["stages"]
+            }
+        )
+        newest = last or 1 - AWAY_TICKS  # in its first life a component joins before tick 1
+        for at in [*took_part, tick]:
+            if at > newest + AWAY_TICKS:
+                return True
+            newest = at
+        return False
 
     def _earlier(self, where: str, channel: str, header: Header, number: int) -> Iterator[str]:
         """In lockstep the newest message that was heard is of an earlier (tick, stage), whatever the records say."""

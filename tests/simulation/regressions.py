@@ -60,4 +60,26 @@ REGRESSIONS: dict[str, Scenario] = {
         period_us=10_000,
         weather=Weather(loss=0.13),
     ),
+    # A component asked twice for a channel before it iterated again; in a replay the second decision dropped the
+    # messages that had been kept for the first.
+    "slow component opens a channel twice": Scenario(
+        seed=566,
+        ticks=8,
+        parts=(
+            Part("c1/player", "Player", ("think",), {"ballast": 20, "bursts": 3, "work_us": 500}),
+            Part("c3/opener", "Opener", ("plan",), {"bursts": 0}),
+            Part("drift4/rover", "Rover", (), {"ballast": 20, "bursts": 3, "eager": 0.8, "work_us": 30_000}),
+        ),
+        stages=("plan", "think"),
+        weather=Weather(
+            latency_us=200,
+            loss=0.0004,
+            delay=0.0364,
+            delay_us=37_854,
+            slow_start_us=1_998_800,
+            hiccup=0.0851,
+            hiccup_us=18_166,
+        ),
+        actions=(Action("set", 3, 14_420, "drift4/rover", 969_730),),
+    ),
 }

@@ -29,6 +29,8 @@ class Part:
     stages: tuple[str, ...] = ("think",)
     """Nothing: a continuous component."""
     settings: Settings = field(default_factory=dict)
+    turns: tuple[int, int] = (1, 0)
+    """`every` and `offset`."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,7 @@ class Scenario:
             groups=groups_of(names, self.hosting, self.seed),
             period_s=self.period_us / 1e6,
             stages=self.stages,
+            turns={part.name: part.turns for part in self.parts},
             restart=RestartPolicy(backoff_s=0.05, limit=3),
             clock="wall" if self.wall else "simulated",
             seed=self.seed,
@@ -116,7 +119,7 @@ def scenario_of(seed: int) -> Scenario:
     exact = random.random() < 0.45
     wall = not exact and random.random() < 0.4
     inner = [stage for stage in STAGES if stage == "think" or random.random() < 0.5]
-    parts = _parts(random, tuple(inner), exact)
+    parts = _in_turns(Random(f"turns {seed}"), _parts(random, tuple(inner), exact))
     ticks = random.choice([3, 6, 6, 10, 10, 16, 30])
     hosting = random.choice(["process", "process", "process", "robot", "single", "mixed"])
     weather = weather_of(random) if random.random() < 0.9 else Weather()
@@ -159,6 +162,16 @@ def _parts(random: Random, stages: tuple[str, ...], exact: bool) -> tuple[Part, 
         running = () if continuous else tuple(stages[place] for place in chosen)
         parts.append(Part(name, kind, running, settings))
     return tuple(parts)
+
+
+def _in_turns(random: Random, parts: tuple[Part, ...]) -> tuple[Part, ...]:
+    """Lets some components iterate in every k-th tick; a time source and continuous components cannot."""
+    can = [part.stages and part.kind != "Conductor" and random.random() < 0.2 for part in parts]
+    turns = [(random.choice([2, 2, 3, 5, 20]), random.randrange(6)) for _ in parts]
+    return tuple(
+        dataclasses.replace(part, turns=turn) if may else part
+        for part, may, turn in zip(parts, can, turns, strict=True)
+    )
 
 
 def _settings(random: Random, crashes: bool) -> Settings:

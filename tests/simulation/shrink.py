@@ -58,6 +58,9 @@ def _smaller(scenario: Scenario) -> Iterator[Scenario]:
             settings = {name: value for name, value in part.settings.items() if name != setting}
             plainer = dataclasses.replace(part, settings=settings)
             yield dataclasses.replace(scenario, parts=(*scenario.parts[:place], plainer, *scenario.parts[place + 1 :]))
+        if part.turns != (1, 0):
+            plainer = dataclasses.replace(part, turns=(1, 0))
+            yield dataclasses.replace(scenario, parts=(*scenario.parts[:place], plainer, *scenario.parts[place + 1 :]))
         if len(part.stages) > 1:
             plainer = dataclasses.replace(part, stages=part.stages[:1])
             yield dataclasses.replace(scenario, parts=(*scenario.parts[:place], plainer, *scenario.parts[place + 1 :]))

@@ -8,7 +8,7 @@ import typer
 from fwk.cli.arguments import Hosting
 from fwk.cli.output import say, say_table
 from fwk.cli.run_options import Json
-from fwk.clock import rate_word
+from fwk.clock import rate_word, turns_word
 from fwk.display.plan_overview import counted, overview, value_at
 from fwk.display.table import Column, Table
 from fwk.model.errors import PlanError, Problem
@@ -85,7 +85,8 @@ def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
     writer = plan.components[channel.writer]
     if writer.rate_hz is not None:
         return writer.name, rate_word(writer.rate_hz)
-    return writer.name, ", ".join(plan.stages[index] for index in writer.stages)
+    stages = ", ".join(plan.stages[index] for index in writer.stages)
+    return writer.name, stages + turns_word(writer.every, writer.offset)
 
 
 def _settings_table(plan: Plan) -> Table:

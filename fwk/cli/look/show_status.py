@@ -4,7 +4,7 @@ import json
 from typing import Any
 
 from fwk.cli.output import say, say_table
-from fwk.clock import US_PER_S, rate_word
+from fwk.clock import US_PER_S, rate_word, turns_word
 from fwk.control import client
 from fwk.display.table import Column, Table
 
@@ -70,7 +70,9 @@ def component_table(components: list[dict[str, Any]]) -> Table:
 
 def _when(component: dict[str, Any]) -> str:
     """Returns the stages of a component, or its rate."""
-    return ", ".join(component["stages"]) if component["rate_hz"] is None else rate_word(component["rate_hz"])
+    if component["rate_hz"] is not None:
+        return rate_word(component["rate_hz"])
+    return ", ".join(component["stages"]) + turns_word(component["every"], component["offset"])
 
 
 def _one(component: dict[str, Any]) -> Table:

@@ -10,7 +10,8 @@ from fwk.cli.arguments import folder
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.run_options import Json
 from fwk.lcm.type_registry import use_types_of
-from fwk.recording.compare import Comparison
+from fwk.plan.what_ran import other_kernel
+from fwk.recording.compare import Comparison, kernel_of
 
 EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
 
@@ -32,7 +33,10 @@ def compare(
     """
     with failing(UNUSABLE):
         use_types_of(types)
-        result = Comparison(find_log(a), find_log(b), common)
+        logs = find_log(a), find_log(b)
+        if text := other_kernel((str(a), str(b)), (kernel_of(logs[0]), kernel_of(logs[1]))):
+            typer.echo(text, err=True)
+        result = Comparison(*logs, common)
     if as_json:
         difference = str(result.difference) if result.difference else None
         counts = {"messages": result.messages, "channels": result.channels, "damaged_bytes": list(result.skipped_bytes)}

@@ -1,6 +1,7 @@
 """`fwk replay`: feeds recorded inputs to real components and compares their outputs."""
 
 import json
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +15,8 @@ from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import LEFT, DebugRequest
 from fwk.host.debugger import debug as debug_process
 from fwk.model.errors import hint
+from fwk.model.plan import Plan
+from fwk.plan.what_ran import blas_kernel, changed_modules, other_kernel
 from fwk.recording.difference import Difference
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
@@ -88,11 +91,21 @@ def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, deb
     recording = Recording(log)
     use_folders(recording.plan.folders)
     made = Replay(recording, only)
+    for text in _not_as_in_the_run(recording.plan):
+        typer.echo(f"{log}: {text}", err=True)
     if debugged:
         _debug(made, debugged, from_tick, to_tick)
     else:
         made.run(to_tick)
     return made
+
+
+def _not_as_in_the_run(plan: Plan) -> Iterator[str]:
+    """Yields what differs from the run before any component runs: its modules and the BLAS kernel."""
+    for module, difference in changed_modules(plan).items():
+        yield f"{module} is not the module that ran: {difference}"
+    if text := other_kernel(("the run", "this replay"), (plan.blas_kernel, blas_kernel())):
+        yield text
 
 
 def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None:

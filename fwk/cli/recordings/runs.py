@@ -122,9 +122,8 @@ def _duration(run: RunDir, record: RunRecord) -> str:
 
 
 def _result(run: RunDir, record: RunRecord) -> str:
-    if run.in_use or record.started_us is None:
-        return record.result
-    return record.result or "ended without a result"
+    result = "; ".join(record.result.splitlines())
+    return result if result or run.in_use or record.started_us is None else "ended without a result"
 
 
 def _plain(run: RunDir) -> dict[str, object]:

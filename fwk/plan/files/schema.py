@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
 
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
-from fwk.component.declaration import RATE_MAX_HZ
+from fwk.component.declaration import EVERY_MAX, RATE_MAX_HZ
 from fwk.model.sections import LogPlan, RestartPolicy, RunsPlan
 
 PACE_MAX = "max"
@@ -55,6 +55,10 @@ class ComponentEntry(_Entry):
     """Port to channel or pattern, where it differs from the class."""
     stage: Words | None = None
     """Stages, where they differ from those of the class."""
+    every: int | None = Field(None, ge=1, le=EVERY_MAX)
+    """Iterates in one of so many ticks, where the number differs from the class."""
+    offset: Scalar | None = None
+    """Shifts these ticks: it iterates when the tick and the offset leave the same remainder, divided by `every`."""
     providers: dict[str, str] = {}
     """Attribute of an aspect to the component that provides it, where several components do."""
     rate_hz: float | None = Field(None, ge=0.0, le=RATE_MAX_HZ)

@@ -10,7 +10,7 @@ from fwk.plan.files.schema import ComponentEntry
 from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
 
-_FILLED = ("config", "channels", "providers", "needs")
+_FILLED = ("config", "channels", "providers", "needs", "offset")
 """Keys of a component in whose texts braces stand for values."""
 
 
@@ -119,7 +119,9 @@ class _Maker:
             first = self.made[name].node.place
             self._problems.add(node.place, name, f"there is a component of this name at {first} already; rename one")
         else:
-            asked = Asked(name, entry, node, {**values, "namespace": name.rpartition("/")[0], "name": name})
+            namespace = name.rpartition("/")[0]
+            number = "".join(filter(str.isdecimal, namespace)) or "0"
+            asked = Asked(name, entry, node, {"number": number, **values, "namespace": namespace, "name": name})
             keys = {key: below for key, below in node.value.items() if key in _FILLED}
             filled = self._filled(Node(keys, node.place), asked)
             asked.node = Node({**node.value, **filled.value}, node.place)

@@ -30,10 +30,9 @@ from fwk.model.tick_events import (
     events_of,
 )
 from fwk.recording.pictures import FRAME, RecordedPicture, picture_of
-from fwk.recording.versions import BROKEN, read_plan, read_record, record_type
+from fwk.recording.versions import BROKEN, PLAN, read_plan, read_record, record_type
 from lcmtypes.core import settings_change_t, tick_record_t
 
-PLAN = "fwk/plan"
 RECORD = "fwk/record"
 _OF_A_HOST = (StageDone, IterationDone, FinalDone, HostStarted, HostLost, HostLate, HostStopped, MessageLost)
 

@@ -51,17 +51,19 @@ class StatusReport:
     def complete(self, status: status_t) -> None:
         """Updates the figures of an earlier message to the newest reports of the hosts; its states stay."""
         for host, entry in zip(status.hosts, self._core.hosts, strict=True):
+            host.counters = entry.counters
             newest = {component.name: component for component in entry.components}
             for component in host.components:
                 last = newest.get(component.name, component)
                 component.iterations, component.busy_us = last.iterations, last.busy_us
                 component.awake_us, component.worst_us = last.awake_us, last.worst_us
-                component.fetched, component.lost, component.strangers = last.fetched, last.lost, last.strangers
+                component.lost_frames = last.lost_frames
 
 
 def _host(entry: HostProcess) -> host_status_t:
     made = host_status_t()
     made.host, made.pid, made.restarts = entry.index, entry.pid, entry.restarts
+    made.counters = entry.counters
     made.state = "late" if entry.late_with else entry.state
     made.components = list(entry.components)
     if entry.held and entry.alive:

@@ -21,6 +21,8 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> 
         "period_s": period_us(plan, component) / US_PER_S,
         "stages": [plan.stages[stage] for stage in component.stages],
         "rate_hz": component.rate_hz,
+        "every": component.every,
+        "offset": component.offset,
         "process": entry.name,
         "pid": entry.pid,
         "starts": entry.incarnation,
@@ -29,9 +31,9 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> 
         "mean_ms": told.busy_us / told.iterations / 1000 if told.iterations else 0.0,
         "worst_ms": told.worst_us / 1000,
         "awake_s": told.awake_us / US_PER_S if entry.pid else 0.0,
-        "fetched": told.fetched,
-        "lost": told.lost,
-        "strangers": told.strangers,
+        "fetched": entry.counters.fetched,  # this and the next two are those of the whole process
+        "lost": entry.counters.lost + told.lost_frames,
+        "strangers": entry.counters.foreign,
         "reason": told.reason or entry.reason,
         "needs": [plan.components[index].name for index in component.needs],
     }
@@ -40,7 +42,7 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> 
 def period_us(plan: Plan, component: ComponentPlan) -> int:
     """From iteration to iteration; 0 if a component goes on as fast as it can."""
     if component.rate_hz is None:
-        return plan.period_us
+        return plan.period_us * component.every
     return round(US_PER_S / component.rate_hz) if component.rate_hz else 0
 
 

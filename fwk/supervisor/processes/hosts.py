@@ -255,7 +255,7 @@ class Hosts:
         host = self._core.hosts[actual.host]
         if actual.incarnation != host.incarnation:
             return
-        host.report(actual.components, actual.times)
+        host.report(actual.components, actual.times, actual.counters)
         failed = [item.reason for item in actual.components if item.state == "failed"]
         if failed:
             host.reason = failed[0]

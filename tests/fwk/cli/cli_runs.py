@@ -71,6 +71,11 @@ def component(of: status_t, name: str) -> component_state_t:
     return next(each for host in of.hosts for each in host.components if each.name == name)
 
 
+def host_of(of: status_t, name: str) -> host_status_t:
+    """The host of a component of a status, to be changed."""
+    return next(host for host in of.hosts if any(each.name == name for each in host.components))
+
+
 def log(text: str, level: int = log_t.INFO) -> log_t:
     """A line of cyan1/tracker."""
     line = log_t()

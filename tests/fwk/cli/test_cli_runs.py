@@ -11,6 +11,7 @@ from typer.testing import CliRunner
 
 from fwk.cli.recordings.runs import runs
 from fwk.cli.run.run_directory import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
+from fwk.cli.run.run_record import RUN_FILE, write_result
 from tests.fwk.cli.cli_processes import PROCS, launch, write_files
 
 
@@ -138,6 +139,13 @@ def test_the_commands(home: Path) -> None:
     assert there(home) == names[2:]
     assert "'nan' is not a size; give gigabytes" in said("prune", "--size-gb", "nan", code=2)
     assert f"did you mean '{names[2]}'?" in said("keep", names[2] + "1", code=2)
+
+
+def test_a_result_of_several_lines_stands_in_one_row(home: Path) -> None:
+    (name,) = make(home, 1)
+    (home / name / RUN_FILE).write_text('{"started_us": 1}')
+    write_result(home / name, 1, "not started: a/b: no port\nc/d: no file", 0, 0.0)
+    assert "not started: a/b: no port; c/d: no file" in said("list")
 
 
 @pytest.mark.system

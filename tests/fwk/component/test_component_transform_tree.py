@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
+from fwk import Component, Transforms, transform_message
 from fwk.component.transform_tree import (
     HISTORY_US,
     DisconnectedError,
@@ -17,6 +18,7 @@ from fwk.component.transform_tree import (
     TransformTree,
     UnknownFrameError,
 )
+from fwk.testing import Bench
 
 QUARTER = math.pi / 2
 numbers = some.floats(-100, 100)
@@ -127,3 +129,26 @@ def test_there_and_back_is_where_one_was(one: Transform, other: Transform, point
     assert both.inverse.apply(there) == pytest.approx(point, abs=1e-6)
     assert one.towards(other, 0.0).apply(np.array(point)) == pytest.approx(one.apply(np.array(point)), abs=1e-4)
     assert one.towards(other, 1.0).apply(np.array(point)) == pytest.approx(other.apply(np.array(point)), abs=1e-4)
+
+
+class Looks(Component):
+    stage = "think"
+    tf: Transforms
+
+
+def test_the_aspect_leaves_out_what_does_not_fit() -> None:
+    bench = Bench(Looks)
+    port = bench.port("tf.transforms")
+    fits = transform_message("world", "base", 10, Transform.of((1.0, 0.0, 0.0)))
+    for wrong in (
+        transform_message("elsewhere", "base", 20, Transform.of((0.0, 0.0, 0.0))),
+        transform_message("base", "world", 20, Transform.of((0.0, 0.0, 0.0))),
+        transform_message("world", "base", 5, Transform.of((0.0, 0.0, 0.0))),
+    ):
+        port.put(transforms=[fits, wrong], n=2)
+    bench.iterate()
+    tf = bench.component.tf
+    assert tf.refused == 3
+    assert tf.lookup("world", "base").translation_m[0] == 1.0
+    (line,) = bench.logged
+    assert "frame 'base' stands in 'world' and cannot stand in 'elsewhere' as well (1 transforms refused" in line.text

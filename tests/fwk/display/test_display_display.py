@@ -235,6 +235,19 @@ def test_lines_that_differ_are_no_flood() -> None:
     assert [group.text for group in groups][-1] == "kicked (and 1 like it)"
 
 
+def test_a_warning_that_returns_stays_one_line() -> None:
+    groups = LineGroups(10)
+    for number in range(5):
+        line = log(f"loop time missed: tick {number} took 300.1 ms", log_t.WARNING)
+        line.wall_us = number * 10_000_000
+        groups.add(line)
+        said = log(f"goal {number}")
+        said.wall_us = line.wall_us
+        groups.add(said)
+    assert [group.count for group in groups if group.line.level == log_t.WARNING] == [5]
+    assert sum(group.line.level == log_t.INFO for group in groups) == 5
+
+
 KEYS = {
     "p": ("pause",),
     " ": ("pause",),

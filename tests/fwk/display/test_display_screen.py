@@ -8,7 +8,7 @@ from rich.console import Console
 from fwk.display.screen import screen
 from fwk.display.view import View
 from lcmtypes.core import log_t, status_t
-from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, log, packet, plan, status
+from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, host_of, log, packet, plan, status
 
 DRAWING = "tests.fwk.cli.cli_drawing:headline"
 SCOREBOARD = "tests.fwk.cli.cli_runs:headline"
@@ -79,7 +79,7 @@ def test_the_slowest_of_a_robot_is_named() -> None:
 
 def test_losses_are_counted_in_the_sum_and_in_the_row() -> None:
     lossy = status(MATCH, 100, late=3)
-    component(lossy, "magenta4/agent").lost = 7
+    host_of(lossy, "magenta4/agent").counters.lost = 7
     picture = drawn(lossy)
     assert "lost 7   late 3" in row(picture, "tick")
     assert row(picture, "magenta4").split()[-2:] == ["7", "0"]
@@ -161,3 +161,16 @@ def test_cpu_of_a_process_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
     with console.capture() as captured:
         console.print(screen(view, 40, 100))
     assert row(captured.get().splitlines(), "cyan1/tracker").split()[:3] == ["cyan1/tracker", "running", "75"]
+
+
+@pytest.mark.parametrize("columns", [50, 80, 120])
+def test_the_line_of_keys_is_never_cut(columns: int) -> None:
+    view = View(plan())
+    view.take(packet("fwk/status", status(TRACKER, 5)))
+    view.selected, view.level = "cyan1/tracker", 1
+    console = Console(width=columns, height=30, file=StringIO(), color_system=None)
+    with console.capture() as captured:
+        console.print(screen(view, 30, columns, keys=True))
+    keys = captured.get().splitlines()[-1]
+    assert keys.startswith(" [lines of cyan1/tracker")
+    assert keys.endswith("q quit")

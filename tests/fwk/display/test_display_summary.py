@@ -15,7 +15,8 @@ def lines(**changes: object) -> list[str]:
     last = status(MATCH, 1200, busy_us=500)
     component(last, "cyan2/omni_field").busy_us = 1200 * 4000
     failed = component(last, "cyan3/skiller")
-    failed.state, failed.reason, failed.lost = "failed", "ZeroDivisionError: division by zero", 2
+    failed.state, failed.reason = "failed", "ZeroDivisionError: division by zero"
+    last.hosts[1].counters.lost = 2
     last.hosts[0].restarts = 3
     outcome = Outcome(0, 1200, 60.0, 30.0, "1200 ticks done", last, {"world/game_state": game_state(3, 2)})
     return summary(plan("tests.fwk.cli.cli_runs:headline"), RunOptions(RUN_DIR, **changes), outcome)  # type: ignore[arg-type]

@@ -71,6 +71,19 @@ def test_a_file_says_what_the_run_is_like(load: Load) -> None:
     assert (only.restart.when, only.restart.limit, only.ready_timeout_s, only.stages) == ("never", 2, 3.0, (1,))
 
 
+def test_robots_take_turns_by_their_numbers(load: Load) -> None:
+    plan = load(
+        "templates: {eye: {odometer: {use: plan_parts:Odometer, every: 3, offset: '{number}'}}}\n"
+        "robots: {cyan1: {use: eye}, cyan12: {use: eye}, lone: {use: eye}}\n"
+    )
+    assert [(each.name, each.every, each.offset) for each in plan.components] == [
+        ("cyan1/odometer", 3, 1),
+        ("cyan12/odometer", 3, 12),
+        ("lone/odometer", 3, 0),
+    ]
+    assert [[tick for tick in range(1, 8) if each.due(tick)] for each in plan.components] == [[1, 4, 7], [3, 6], [3, 6]]
+
+
 def test_options_win_over_the_file(load: Load) -> None:
     plan = load(DRIVING + "seed: 9\nspeed: 2\n", seed=4, speed=0.0, bus_port=20_000)
     assert (plan.seed, plan.speed, plan.bus_port) == (4, 0.0, 20_000)

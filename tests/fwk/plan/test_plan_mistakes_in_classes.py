@@ -8,7 +8,8 @@ from fwk.model.errors import PlanError
 from fwk.plan.load import load_plan
 
 HEAD = """
-from fwk import Aspect, Clock, Component, Config, Each, MainLoop, Reads, Serves, VisionMaster, Writes, channel
+from fwk import Aspect, Clock, Component, Config, Each, MainLoop, Reads, Serves, TimeSource
+from fwk import VisionMaster, Writes, channel
 from lcmtypes.core import command_t
 from lcmtypes.robot import odometry_t
 class Settings(Config):
@@ -35,6 +36,11 @@ ROWS = {
     "def lop(self) -> None: ...": "Odd.lop: the framework calls no method 'lop'; did you mean 'loop'?",
     "def Finalise(self) -> None: ...": "Odd.Finalise: the framework calls no method 'Finalise'; "
     "did you mean 'finalize'?",
+    "every = 0": "Odd: every is 0; it should be a whole number from 1 to 1000000",
+    "every = 2.0": "Odd: every is 2.0; it should be a whole number from 1 to 1000000",
+    "offset = -1": "Odd: offset is -1; it should be a whole number from 0 to 1000000",
+    "every, sun = 2, None; sun: TimeSource": "Odd: a time source iterates in each tick; leave 'every' out",
+    "every, stage, rate_hz = 2, (), 5": "Odd: both 'every' and 'rate_hz'; keep one",
     "ball: Reads": "Odd.ball: Reads has no message type; write ball: Reads[message_t]",
     "way: Serves": "Odd.way: Serves has no message type; write way: Serves[command_t] or Serves[request_t, reply_t]",
     "ways: Each[Reads]": "Odd.ways: Reads has no message type; write ways: Each[Reads[message_t]]",

@@ -165,7 +165,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
     Broken(
         """
         it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
-        it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace
+        it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace, number
         """,
         """
         templates: {bot: {b: {use: plan_parts:Odometer}}}

@@ -99,6 +99,12 @@ wait for it; give it a stage, or let a component with a stage read the frames
         it.yaml:5: it/d: restless.Times.sun: a continuous component cannot be a time source; give it a stage
         it.yaml:6: it/e: it is continuous and takes part in no stage; leave 'stage' out
         it.yaml:7: it/f: it takes part in stages; leave 'rate_hz' out, or give its class a rate_hz instead of a stage
+        it.yaml:8: it/g: it is continuous and takes part in no tick; leave 'every' out
+        it.yaml:9: it/h: a time source iterates in each tick; leave 'every' out
+        it.yaml:10: it/i: offset is '-1'; it should be a whole number from 0 on, of at most 6 digits, \
+such as 1 or '{number}'
+        it.yaml:11: it/j: offset is 'one'; it should be a whole number from 0 on, of at most 6 digits, \
+such as 1 or '{number}'
         """,
         """
         components:
@@ -108,6 +114,10 @@ wait for it; give it a stage, or let a component with a stage read the frames
           it/d: {use: restless:Times}
           it/e: {use: restless:Right, stage: think}
           it/f: {use: restless:Staged, rate_hz: 5}
+          it/g: {use: restless:Right, every: 2}
+          it/h: {use: restless:Sun, every: 2}
+          it/i: {use: restless:Staged, every: 2, offset: -1}
+          it/j: {use: restless:Staged, offset: one}
         --- restless.py
         from fwk import Component, Image, TimeSource
         class Both(Component):
@@ -120,6 +130,9 @@ wait for it; give it a stage, or let a component with a stage read the frames
             image: Image
         class Times(Component):
             rate_hz = 5
+            sun: TimeSource
+        class Sun(Component):
+            stage = "think"
             sun: TimeSource
         class Right(Component):
             rate_hz = 0

@@ -31,6 +31,7 @@ from lcmtypes.core import (
     tick_t,
 )
 
+STEPS_MAX = 30_000
 RUN = 4711
 S = 1_000_000
 
@@ -105,13 +106,16 @@ class MemoryRun:
         """Runs the supervisor until something has happened.
 
         Raises:
-            AssertionError: it has not within the wall time `longest_us`.
+            AssertionError: it has not within the wall time `longest_us`, or within `STEPS_MAX` steps, which take no
+                wall time while ticks follow each other.
         """
         if not self._steps:
             self._steps = self.supervisor.work(_Gateway())
             self._until_us = next(self._steps)
-        end_us = self.wall_us + longest_us
+        end_us, steps = self.wall_us + longest_us, 0
         while not until():
+            steps += 1
+            assert steps < STEPS_MAX, f"not within {STEPS_MAX} steps: {self.texts}"
             assert self.wall_us < end_us, f"not within {longest_us / S:g} s: {self.texts}"
             readable = [each for each in self._watched if each in self._sockets and self._sockets[each].waiting]
             if self._events:

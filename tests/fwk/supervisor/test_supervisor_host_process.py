@@ -4,7 +4,7 @@ import pytest
 
 from fwk.model.sections import RestartPolicy, RestartWhen
 from fwk.supervisor.host_process import NEXT_STATES, Change, HostProcess, HostState, HostStateError
-from lcmtypes.core import component_state_t
+from lcmtypes.core import component_state_t, host_counters_t
 
 
 def entry(
@@ -180,14 +180,17 @@ def test_what_was_lost_stays_lost_whoever_dies() -> None:
         host.begin_start(0)
         for sofar in range(lost + 1):  # it says so again and again
             said = component_state_t()
-            said.name, said.lost, said.fetched, said.iterations = "cyan1/base", sofar, 10 * sofar, 100
-            host.report([said], [])
+            said.name, said.lost_frames, said.iterations = "cyan1/base", sofar, 100
+            counters = host_counters_t()
+            counters.lost, counters.fetched, counters.foreign = sofar, 10 * sofar, 100 * sofar
+            host.report([said], [], counters)
         host.ended(-9, 0, stopping=False)
     host.begin_start(0)  # and this process has not reported anything
     host.ended(-9, 0, stopping=False)
     host.begin_start(0)
     (component,) = host.components
-    assert (component.lost, component.fetched, component.iterations) == (5, 50, 100)
+    assert (component.lost_frames, component.iterations) == (5, 100)
+    assert (host.counters.lost, host.counters.fetched, host.counters.foreign) == (5, 50, 500)
 
 
 def test_every_state_has_its_successors() -> None:

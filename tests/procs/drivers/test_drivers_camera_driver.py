@@ -80,7 +80,7 @@ def test_started_late_it_gives_the_picture_of_its_tick(film: Path, at_end: str, 
 
 
 def test_every_third_tick(film: Path) -> None:
-    assert shades_of(bench(film, every_ticks=3), 7) == [0, None, None, 1, None, None, 2]
+    assert shades_of(bench(film, every=3), 7) == [0, None, None, 1, None, None, 2]
 
 
 def test_size_and_channels_as_wanted(film: Path) -> None:

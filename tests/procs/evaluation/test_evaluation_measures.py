@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from fwk.testing import system_of
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import (
     ball_estimate_t,
@@ -21,7 +22,6 @@ from lcmtypes.soccer import (
 from procs.evaluation.beliefs import believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import Piece, piece_of
-from procs.evaluation.system import system_of
 from procs.evaluation.table import MEASURES, rows_of
 
 FIRST = 100  # tick; measuring begins some seconds after the start

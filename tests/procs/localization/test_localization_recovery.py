@@ -5,8 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fwk.testing import Bench
-from procs.evaluation.system import settings_in
+from fwk.testing import Bench, settings_in
 from procs.localization.localization import Localization
 from tests.procs.localization.localization_parts import (
     FakeRobot,

@@ -1,5 +1,7 @@
 """The radio: who gets what, when, how much is lost, and the same again with the same seed."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,13 +13,8 @@ TEAM = ("cyan1", "cyan2", "cyan3", "cyan4", "cyan5")
 
 
 def radio(seed: int = 1, **settings: float) -> Bench:
-    return Bench(
-        Radio,
-        "team_cyan/radio",
-        seed,
-        namespaces=TEAM,
-        **{"loss": 0.0, "delay_s": 0.0, "delay_jitter_s": 0.0, **settings},
-    )
+    links: dict[str, Any] = {"loss": 0.0, "delay_s": 0.0, "delay_jitter_s": 0.0, **settings}
+    return Bench(Radio, "team_cyan/radio", seed, namespaces=TEAM, **links)
 
 
 def say(bench: Bench, robot: str) -> None:

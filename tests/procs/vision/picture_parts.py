@@ -38,12 +38,13 @@ def robot(name: str, x_m: float, y_m: float, heading_rad: float) -> true_robot_t
     return made
 
 
-def system(seed: int = 1, **camera: Any) -> MemorySystem:
+def system(seed: int = 1, turns: tuple[int, int] = (1, 0), **camera: Any) -> MemorySystem:
     """The simulated camera with both detectors."""
     return MemorySystem(
         {"world/world": World, "cyan1/camera": Camera, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField},
         settings={"cyan1/camera": camera},
         seed=seed,
+        turns={"cyan1/camera": turns},
     )
 
 

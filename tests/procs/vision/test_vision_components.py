@@ -10,10 +10,9 @@ import cv2
 import numpy as np
 import pytest
 
-from fwk.testing import Bench
+from fwk.testing import Bench, settings_in
 from lcmtypes.core import frame_t
 from lcmtypes.soccer import ground_truth_t
-from procs.evaluation.system import settings_in
 from procs.simulation.camera import Camera
 from procs.vision.omni_ball import OmniBall
 from procs.vision.omni_field import OmniField
@@ -41,7 +40,7 @@ def test_from_truth_to_percepts() -> None:
 
 
 def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
-    run = system(every_ticks=2)
+    run = system(turns=(2, 1))
     run.tick(6)
     assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from procs.model.frames import rotation
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_tracker import BallTracker, Sighting
+from procs.world_model.seen import Seen
 
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05
@@ -354,3 +355,27 @@ def test_sighting_from_before_a_kick_tells_nothing() -> None:
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
     tracker.see(Sighting("mate", False, np.array((0.33, 0.0)), np.eye(2) * 0.01**2, age_s=0.1))
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.03)
+
+
+def test_long_step_is_as_sound_as_many_short_ones() -> None:
+    """A step may be as long as the age of a message; no probability becomes negative."""
+    track = BallFilter(np.zeros(2), np.eye(2) * 0.01)
+    for _ in range(10):
+        track.predict(0.5, ROLLING_M_S2, contact=True)
+        track.see(np.zeros(2), np.eye(2) * 0.01)
+    assert (track.weights >= 0.0).all()
+    assert track.weights.sum() == pytest.approx(1.0)
+    assert (np.linalg.eigvalsh(track.covariance) > 0).all()
+    assert track.state[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+
+
+def test_kick_of_a_mate_begins_at_its_mouth() -> None:
+    """Cameras have shown a part of the flight already, which does not count twice."""
+    tracker = BallTracker()
+    for frame in range(8):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=True)
+        tracker.see(Sighting("me", True, np.array((0.2 * max(0, frame - 5), 0.0)), np.eye(2) * 0.05**2))
+    mouth = Seen.of([(0.0, 0.0)], [np.eye(2) * 0.03**2], [0.0])
+    tracker.kick(np.array((8.0, 0.0)), 0.1, mouth)
+    assert tracker.track.state[0] == pytest.approx(0.8, abs=0.03)
+    assert tracker.track.state[2] == pytest.approx(7.7, abs=0.1)

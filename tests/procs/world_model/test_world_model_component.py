@@ -374,3 +374,24 @@ def test_mate_counts_as_precisely_as_it_says() -> None:
         deviations_m.append(math.sqrt(robot.world.mates[0].covariance_m2[0][0]))
     assert deviations_m[0] < 0.1
     assert deviations_m[1] > 0.4
+
+
+def test_kick_is_told_at_once_and_only_once() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(5):
+        robot.sense(np.array((0.33, 0.0)), [], held=True)
+        robot.bench.iterate()
+    told = robot.bench.port("team_message").sent
+    while told[-1].header.time_us != robot.bench.time_us:  # a kick in the tick after a message
+        robot.sense(np.array((0.33, 0.0)), [], held=True)
+        robot.bench.iterate()
+    before = len(told)
+    robot.sense(np.array((0.33, 0.0)), [])
+    robot.bench.port("kicker_state").put(ball_held=False, kicks=1, kick_speed_m_s=8.0)
+    robot.bench.iterate()
+    assert len(told) == before + 1
+    assert (told[-1].kicks, told[-1].kick_us) == (1, robot.bench.time_us)
+    robot.sense(np.array((0.7, 0.0)), [])
+    robot.bench.port("kicker_state").put(ball_held=False, kicks=1, kick_speed_m_s=8.0)
+    robot.bench.iterate()
+    assert len(told) == before + 1

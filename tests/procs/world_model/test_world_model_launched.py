@@ -1,7 +1,7 @@
 """World models of the real launch file, with its cameras and detectors."""
 
+from fwk.testing import system_of
 from lcmtypes.soccer import team_message_t
-from procs.evaluation.system import system_of
 
 OWNERS = ("world", "team_cyan", "cyan2", "cyan3")
 

@@ -1,4 +1,4 @@
-"""Builds the components of a launch file in one process."""
+"""Systems in memory of the components of a launch file."""
 
 from collections.abc import Callable
 from functools import lru_cache
@@ -9,12 +9,16 @@ from typing import Any
 from fwk.component.declaration import declaration
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.plan.load import load_plan
-from fwk.testing import MemorySystem
+from fwk.testing.memory import MemorySystem
 
 
 @lru_cache(maxsize=8)
-def plan(file: str) -> Plan:
-    """Loads a launch file."""
+def launch_plan(file: str) -> Plan:
+    """Returns the checked plan of a launch file.
+
+    Raises:
+        PlanError: the launch file has mistakes.
+    """
     return load_plan(file)
 
 
@@ -24,7 +28,7 @@ def settings_in(file: str, component: str) -> dict[str, Any]:
     Raises:
         KeyError: the launch file has no such component.
     """
-    return dict({each.name: each.config for each in plan(file).components}[component])
+    return dict({each.name: each.config for each in launch_plan(file).components}[component])
 
 
 def system_of(
@@ -34,14 +38,15 @@ def system_of(
 
     `changes` are further settings by the component's own name: `camera={"flicker": 0.1}`.
     """
-    found = [each for each in plan(file).components if wanted(each.name)]
+    found = [each for each in launch_plan(file).components if wanted(each.name)]
     return MemorySystem(
         {each.name: _class(each) for each in found},
         {each.name: {**each.config, **changes.get(each.name.rpartition("/")[2], {})} for each in found},
         {each.name: _channels(each) for each in found},
         seed,
-        period_s=plan(file).period_us / 1e6,
-        stages=plan(file).stages,
+        period_s=launch_plan(file).period_us / 1e6,
+        stages=launch_plan(file).stages,
+        turns={each.name: (each.every, each.offset) for each in found},
     )
 
 

@@ -1,0 +1,95 @@
+"""What the results of a run depend on besides its launch file: the application's modules and the BLAS kernel."""
+
+import ctypes
+import hashlib
+import sys
+from collections.abc import Iterable, Sequence
+from importlib.util import find_spec
+from pathlib import Path
+
+from fwk.model.plan import ModulePlan, Plan
+
+_KEPT = ("fwk", "lcmtypes")
+"""Packages of the framework and of generated types: no modules of an application."""
+_DIGITS = 16
+_KERNEL_SYMBOLS = [f"{prefix}openblas_get_corename{suffix}" for prefix in ("scipy_", "") for suffix in ("64_", "")]
+
+
+def imported_modules(component_modules: Iterable[str], folders: Sequence[str]) -> dict[str, ModulePlan]:
+    """Returns the application's modules that this process has imported, by name.
+
+    Args:
+        component_modules: modules of the components, perhaps with `:Class`; everything in their packages belongs to
+            the application.
+        folders: folders of the application; everything in them belongs to it, except libraries.
+    """
+    packages = {module.partition(":")[0].partition(".")[0] for module in component_modules} - {*_KEPT}
+    prefixes = tuple(f"{Path(folder).resolve()}/" for folder in folders)
+    found = {}
+    for name, module in sorted(sys.modules.items()):
+        file, top = getattr(module, "__file__", None), name.partition(".")[0]
+        if not file or top in _KEPT:
+            continue
+        if top in packages or (prefixes and file.startswith(prefixes) and "site-packages" not in file):
+            found[name] = ModulePlan(file, _hash_of(file))
+    return found
+
+
+def changed_modules(plan: Plan) -> dict[str, str]:
+    """Returns the modules of a recorded run that are not the same here, by name, each with what is different.
+
+    The folders of the plan must be in `sys.path`. A module that lies elsewhere with the same content is the same.
+    """
+    changed = {}
+    for name, before in plan.modules.items():
+        file = _file_of(name)
+        if not file:
+            changed[name] = f"{before.file} is missing"
+        elif _hash_of(file) != before.sha256:
+            changed[name] = f"{file} was changed" if file == before.file else f"{before.file} ran; here it is {file}"
+    return changed
+
+
+def blas_kernel() -> str:
+    """Returns the name of the processor-specific kernel of the loaded OpenBLAS; empty if none is loaded.
+
+    Kernels differ in the last bits of matrix products, so the bytes of a run depend on the kernel.
+    """
+    with open("/proc/self/maps") as maps:
+        libraries = {line.split(maxsplit=5)[5].strip() for line in maps if "openblas" in line}
+    for library in sorted(libraries):
+        loaded = ctypes.CDLL(library)
+        for symbol in _KERNEL_SYMBOLS:
+            if hasattr(loaded, symbol):
+                ask = getattr(loaded, symbol)
+                ask.restype = ctypes.c_char_p
+                return str(ask().decode())
+    return ""
+
+
+def other_kernel(names: tuple[str, str], kernels: tuple[str, str]) -> str:
+    """Returns a sentence if two sides ran with different BLAS kernels; empty if not, or if one is unknown."""
+    if not all(kernels) or kernels[0] == kernels[1]:
+        return ""
+    return (
+        f"{names[0]} ran with the BLAS kernel {kernels[0]}, {names[1]} with {kernels[1]}: "
+        "results of matrix operations may differ in their last digits; OPENBLAS_CORETYPE chooses a kernel"
+    )
+
+
+def _file_of(module: str) -> str:
+    loaded = sys.modules.get(module)
+    if loaded is not None:
+        return getattr(loaded, "__file__", None) or ""
+    try:
+        spec = find_spec(module)
+    except (ImportError, ValueError):
+        return ""
+    return spec.origin or "" if spec else ""
+
+
+def _hash_of(file: str) -> str:
+    try:
+        return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:_DIGITS]
+    except OSError:  # deleted since it was imported
+        return ""

@@ -1,0 +1,60 @@
+"""A simple opponent, which stays as it is: the nearest robot chases the ball and shoots; no roles, no passes."""
+
+import math
+
+from procs.behaviour import formation
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER
+from procs.behaviour.tactics import Order
+from procs.behaviour.view import View
+from procs.model.field import Field, Point
+from procs.model.geometry import bearing_rad
+from procs.model.robot import number_of
+
+_KEEPER = 1
+_TAKER = 2
+_SHOT_RANGE_M = 8.0
+_BEHIND_M = 1.5  # distance along x between the robots that do not have the ball
+
+
+def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str, Order]:
+    """Returns the role and the order of a robot, in the attack frame.
+
+    Number 1 keeps the goal, number 2 takes the set pieces. In play the robot that believes itself nearest to the ball
+    goes for it and shoots; the others line up behind the ball.
+    """
+    number, ball = number_of(view.own.name), view.ball.place
+    if game.paused or not view.localized:
+        return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
+    if number == _KEEPER:
+        return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_goal")
+    if not game.free_play:
+        return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
+    if holds_ball:
+        return ATTACKER, _play(view, field)
+    nearest = min((view.own, *view.mates), key=lambda robot: (math.dist(robot.place, ball), robot.name))
+    if view.ball.known and nearest is view.own:
+        return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
+    place = Point(max(ball.x_m - _BEHIND_M * number, -field.half_length_m + 1.0), 0.5 * ball.y_m)
+    return DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
+
+
+def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Field) -> tuple[str, Order]:
+    goal_rad = bearing_rad(game.spot, field.goal_centre(1.0))
+    if not takes:
+        place = Point(game.spot.x_m - _BEHIND_M * number_of(view.own.name), 0.5 * game.spot.y_m)
+        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game)
+        return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
+    if game.stopped:
+        return ATTACKER, Order("goto", formation.taker_place(game.spot, goal_rad), goal_rad, "take set piece")
+    if holds_ball:
+        return ATTACKER, _play(view, field)
+    return ATTACKER, Order("get_ball", game.spot, goal_rad, "take set piece")
+
+
+def _play(view: View, field: Field) -> Order:
+    goal = field.goal_centre(1.0)
+    if math.dist(view.own.place, goal) < _SHOT_RANGE_M:
+        return Order("shoot", goal, bearing_rad(view.own.place, goal), "shoot")
+    target = Point(field.half_length_m - _SHOT_RANGE_M / 2, 0.0)
+    return Order("dribble", target, bearing_rad(view.own.place, goal), "dribble")

@@ -1,0 +1,58 @@
+"""The simple opponent: what each robot does, and that a launch file chooses it."""
+
+import math
+
+import pytest
+
+from fwk.testing import settings_in
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.greedy import decide
+from procs.model.field import Field, Point
+from procs.referee.restarts import State
+from tests.procs.behaviour.behaviour_parts import ball, robot, view
+
+FIELD = Field()
+PLAY = Game(State.PLAY, stopped=False)
+OTHERS = (robot("cyan3", -4.0, 2.0),)
+
+
+def test_nearest_robot_chases_and_the_others_stay_behind_the_ball() -> None:
+    near = view(robot("cyan2", 0.0, 0.0), ball(2.0, 0.0), OTHERS)
+    role, order = decide(near, PLAY, False, FIELD)
+    assert (role, order.skill, order.place) == ("attacker", "get_ball", (2.0, 0.0))
+    far = view(robot("cyan2", -6.0, 0.0), ball(2.0, 0.0), OTHERS)
+    role, order = decide(far, PLAY, False, FIELD)
+    assert (role, order.skill) == ("defender", "goto")
+    assert order.place.x_m < 2.0
+
+
+@pytest.mark.parametrize(("x_m", "skill"), [(6.0, "shoot"), (-3.0, "dribble")])
+def test_robot_with_the_ball_shoots_or_drives_to_the_goal(x_m: float, skill: str) -> None:
+    seen = view(robot("cyan2", x_m, 0.0), ball(x_m + 0.3, 0.0))
+    assert decide(seen, PLAY, True, FIELD)[1].skill == skill
+
+
+def test_first_robot_keeps_the_goal() -> None:
+    role, order = decide(view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0)), PLAY, False, FIELD)
+    assert (role, order.skill) == ("goalkeeper", "keep_goal")
+
+
+@pytest.mark.parametrize("name", ["cyan2", "cyan3", "cyan5"])
+def test_distance_is_kept_at_the_other_teams_set_piece(name: str) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(1.0, 1.0))
+    role, order = decide(view(robot(name, -5.0, 0.0), ball(1.0, 1.0)), game, False, FIELD)
+    assert (role, order.skill) == ("defender", "goto")
+    assert math.dist(order.place, game.spot) > 3.0
+
+
+def test_second_robot_takes_the_own_set_piece() -> None:
+    game = Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(1.0, 1.0))
+    seen = view(robot("cyan2", 0.0, 1.0), ball(1.0, 1.0))
+    assert decide(seen, game, False, FIELD)[1].skill == "get_ball"
+    assert decide(seen._replace(own=robot("cyan3", 0.0, 1.0)), game, False, FIELD)[1].skill == "goto"
+
+
+def test_launch_file_chooses_the_strategy_of_a_team() -> None:
+    assert settings_in("soccer-greedy.yaml", "magenta2/agent")["strategy"] == "greedy"
+    assert settings_in("soccer-greedy.yaml", "cyan2/agent")["strategy"] == "team"
+    assert not settings_in("soccer-greedy.yaml", "magenta2/world_model")["use_team_sight"]
