@@ -9,6 +9,8 @@ from fwk.clock import US_PER_S, monotonic_us
 
 LOOK_US = US_PER_S
 """Wall time between two looks for programs that listen."""
+FIRST_LOOK_US = US_PER_S // 4
+"""The same as long as no program listens."""
 THREADS_MAX = 8
 """Of a program with more threads, only those are watched that have run since the look before."""
 _SOCKETS = Path("/proc/net/udp")
@@ -23,21 +25,25 @@ class Listeners:
 
     Args:
         port: UDP port on which the programs listen.
+        own: inode of this process's own socket on that port; 0: there is none.
     """
 
-    def __init__(self, port: int) -> None:
+    def __init__(self, port: int, own: int = 0) -> None:
+        self._own = str(own)
         self._port = f":{port:04X}"
         self._look_us = 0
         self._inodes: set[str] = set()
         self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last look
 
-    def busy(self) -> str:
-        """Returns the name of a listener that still works on what it got; empty if none does."""
+    def busy(self) -> str | None:
+        """Returns the name of a listener that still works on what it got; empty if none does, None if none exists."""
         now_us = monotonic_us()
         if now_us >= self._look_us:
-            self._look_us = now_us + LOOK_US
             self._look()
+            self._look_us = now_us + (LOOK_US if self._inodes else FIRST_LOOK_US)
+        if not self._inodes:
+            return None
         for process, threads in list(self._threads.items()):
             try:
                 # One thread may hand its work over to another while these are looked at, so they are looked at twice.
@@ -45,7 +51,7 @@ class Listeners:
                     return _name_of(process)
             except OSError:  # the program, or one of its threads, has ended
                 self._forget(process)
-                self._inodes = set()
+                self._look_us = now_us
         return ""
 
     def close(self) -> None:
@@ -77,7 +83,7 @@ class Listeners:
         with contextlib.suppress(OSError):
             for line in _SOCKETS.read_text().splitlines():
                 columns = line.split()
-                if columns[1].endswith(self._port):
+                if columns[1].endswith(self._port) and columns[9] != self._own:
                     yield columns[9]
 
     def _forget(self, process: str) -> None:

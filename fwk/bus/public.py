@@ -3,6 +3,7 @@
 import contextlib
 import ctypes
 import itertools
+import os
 import socket
 import struct
 
@@ -22,6 +23,7 @@ class PublicBus:
         group, port, ttl = parse_url(url)
         self._address = (group, port)
         self._number = itertools.count()
+        self._leaves_machine = ttl > 0
         self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
         self._sender.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, BUFFER_BYTES)
@@ -39,7 +41,7 @@ class PublicBus:
             self._join(group, LOOPBACK)
         _ignore_source(self._receiver, self._sender.getsockname()[1])
         self._assembler = wire.Assembler()
-        self._listeners = Listeners(port)
+        self._listeners = Listeners(port, os.fstat(self._receiver.fileno()).st_ino)
 
     def fileno(self) -> int:
         """For waiting until something arrives."""
@@ -65,9 +67,10 @@ class PublicBus:
         with contextlib.suppress(OSError):
             self._sender.sendto(datagram, self._address)
 
-    def busy_listener(self) -> str:
-        """Returns the name of a program that still works on earlier messages; empty if none does."""
-        return self._listeners.busy()
+    def busy_listener(self) -> str | None:
+        """Returns the name of a program that still works on earlier messages; None if no program can listen."""
+        busy = self._listeners.busy()
+        return "" if busy is None and self._leaves_machine else busy
 
     def receive(self) -> tuple[str, bytes, int] | None:
         """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.

@@ -47,6 +47,6 @@ class Outsiders(Protocol):
         """Sends one datagram to them."""
         ...
 
-    def busy_listener(self) -> str:
-        """Returns the name of a program that still works on earlier messages; empty if none does."""
+    def busy_listener(self) -> str | None:
+        """Returns the name of a program that still works on earlier messages; empty: none; None: no program listens."""
         ...

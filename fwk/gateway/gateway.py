@@ -392,6 +392,5 @@ def _drop(_: bytes) -> None:
     """Sends nothing: the run has no public bus."""
 
 
-def _none() -> str:
-    """Names no listener."""
-    return ""
+def _none() -> None:
+    """Names no listener: the run has no public bus."""

@@ -2,7 +2,7 @@
 
 A tick's messages become visible at once, several hundred in a large system. A receiver with default settings (30
 messages in the queue of a subscription, 208 KiB in the socket) loses most of such a burst, so the datagrams wait and
-leave a few at a time, and only when the listeners of this machine have handled those before. The run does not wait for
+leave a few at a time while programs listen, and only when the listeners of this machine have handled those before. The run does not wait for
 any of this: the queue empties within a tick if it can, else over several.
 """
 
@@ -33,7 +33,8 @@ class PacedPublisher:
     Args:
         now_us: returns the wall time in microseconds.
         send: sends one datagram.
-        busy_listener: returns the name of a program that has not handled earlier datagrams; empty if none has to.
+        busy_listener: returns the name of a program that has not handled earlier datagrams; empty if all listeners
+            have, None if no program can listen.
         patience_us: wall time that the queue waits for a busy listener at the most.
     """
 
@@ -41,7 +42,7 @@ class PacedPublisher:
         self,
         now_us: Callable[[], int],
         send: Callable[[bytes], None],
-        busy_listener: Callable[[], str],
+        busy_listener: Callable[[], str | None],
         patience_us: int,
     ) -> None:
         self.overrun = ""
@@ -89,6 +90,9 @@ class PacedPublisher:
             return
         excess = self._size - QUEUE_MAX
         busy = self._busy_listener()
+        if busy is None:
+            self._send_group(self._size)
+            return
         self._busy_us = (self._busy_us or now_us) if busy else 0
         self._due_us = now_us + (SLOT_US if self._group < LARGEST else SHORT_SLOT_US)
         if busy and excess <= 0 and now_us < self._busy_us + self._patience_us:

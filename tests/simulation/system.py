@@ -136,7 +136,7 @@ class _Public(Signal):
         """Drops the datagram: no program outside listens."""
 
     def busy_listener(self) -> str:
-        """Names no listener: there is none."""
+        """Names no listener: the gateway paces what it publishes for programs that it cannot see."""
         return ""
 
 

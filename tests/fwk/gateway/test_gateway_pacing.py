@@ -17,7 +17,7 @@ class Paced:
         self.now_us = 1_000_000
         self.sent: list[bytes] = []
         self.groups: list[int] = []
-        self.busy = ""
+        self.busy: str | None = ""
         self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append, lambda: self.busy, PATIENCE_US)
 
     def tick(self, count: int, datagram: Callable[[int], bytes] = lambda number: b"%d" % number) -> None:
@@ -85,6 +85,14 @@ def test_a_listener_that_stays_busy_is_overrun_and_named() -> None:
     assert len(paced.sent) == 100
     assert max(paced.groups) <= LARGEST
     assert paced.publisher.overrun == "lcm-logger"
+
+
+def test_everything_leaves_at_once_if_no_program_listens() -> None:
+    paced = Paced()
+    paced.busy = None
+    paced.tick(1000)
+    paced.publisher.send_due()
+    assert len(paced.sent) == 1000
 
 
 def test_large_datagrams_count_as_several() -> None:
