@@ -1,9 +1,9 @@
 """Paces what the gateway publishes: the messages of a tick are spread over the time until the next tick.
 
 A tick's messages become visible at once, several hundred in a large system. A receiver with default settings (30
-messages in the queue of a subscription, 208 KiB in the socket) loses most of such a burst, so the datagrams wait and
-leave a few at a time while programs listen, and only when the listeners of this machine have handled those before. The run does not wait for
-any of this: the queue empties within a tick if it can, else over several.
+messages in the queue of a subscription, 208 KiB in the socket) loses most of such a burst. So the datagrams wait and
+leave a few at a time, and only when the listeners of this machine have handled those before. The run does not wait for
+any of this: the queue empties within a tick if it can, else over several. While no program listens, all leave at once.
 """
 
 from collections import deque
