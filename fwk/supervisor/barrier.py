@@ -3,6 +3,7 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
+from fwk.bus.backoff import Backoff
 from fwk.bus.network import Steps
 from fwk.model.tick_events import HostLate, StageBegun
 from fwk.supervisor.core import Core
@@ -69,25 +70,32 @@ class Barrier(ABC):
         began_us = sent_us = now_us = core.now_us()
         look_us = began_us + LOOK_US
         ends_us = self._ends_us(began_us)
-        repeat_us = first_us = self._timeouts[stage].wait_us
+        repeats = self._repeats(sent_us)
         while self.outstanding and not core.interrupted():
             if now_us >= look_us:
                 self._look_after(began_us)
                 look_us = now_us + LOOK_US
-            yield from core.events.wait(min(sent_us + repeat_us, look_us, ends_us))
+            yield from core.events.wait(min(repeats.due_us, look_us, ends_us))
             now_us = core.now_us()
             if not self.outstanding:
                 self._timeouts[stage].took(now_us - sent_us)
             elif now_us >= ends_us:
                 self._leave_behind()
-            elif self._rejoined or now_us >= sent_us + repeat_us:
+            elif self._rejoined or now_us >= repeats.due_us:
                 self.repeated += not self._rejoined
-                repeat_us = first_us if self._rejoined else min(2 * repeat_us, max(first_us, REPEAT_LONGEST_US))
-                self._rejoined = False
                 self.sender.broadcast(tick, turn, self.outstanding)
                 sent_us = core.now_us()
+                if self._rejoined:
+                    self._rejoined, repeats = False, self._repeats(sent_us)
+                else:
+                    repeats.repeated(sent_us)
         self.report.ended()
         self._times.stage_ended(stage, now_us - began_us)
+
+    def _repeats(self, now_us: int) -> Backoff:
+        """Returns when a tick of the running stage that was sent now is repeated."""
+        first_us = self._timeouts[self.turn.stage].wait_us
+        return Backoff(now_us, first_us, max(first_us, REPEAT_LONGEST_US))
 
     def answered(self, host: HostProcess) -> None:
         """Takes note that a host has answered the running stage."""

@@ -1,13 +1,14 @@
 """The supervisor's decisions of each tick, kept and sent again until the gateway has them."""
 
-import contextlib
 import json
 import sys
 from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 
 from fwk.bus import sync
+from fwk.bus.backoff import Backoff
 from fwk.bus.network import Steps
+from fwk.bus.receiver import Receiver
 from fwk.engine.visibility import Visibility
 from fwk.lcm.messages import MessageError
 from fwk.model.channel_table import change_message
@@ -39,7 +40,10 @@ class TickLog:
         self._events: list[TickEvent] = []
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
-        core.events.watch(core.sender.socket, self._answer_fetch)
+        ports = core.ports
+        # Hosts, too, refuse datagrams of other programs and name them, so nothing is said about them here.
+        self._own = Receiver(core.sender.socket, ports.members, "of this run", "fwk/fetch_records", _ignore)
+        core.events.watch(self._own, self._answer_fetch)
 
     def event(self, event: TickEvent) -> None:
         """Adds an event to the record of the running tick."""
@@ -68,13 +72,12 @@ class TickLog:
         announcement.run, announcement.change = core.run, change_message(change.number, change.facts)
         data = announcement.encode()
         until_us = core.now_us() + longest_us if longest_us else sys.maxsize
-        wait_us, due_us = FIRST_WAIT_US, 0
+        repeats = Backoff(core.now_us(), 0, LONGEST_WAIT_US, FIRST_WAIT_US)
         while self._listens_to < change.number and not interrupted() and (now_us := core.now_us()) < until_us:
-            if now_us >= due_us:
+            if now_us >= repeats.due_us:
                 core.sender.publish(sync.ANNOUNCE, data, core.ports.record)
-                due_us = now_us + wait_us
-                wait_us = min(2 * wait_us, LONGEST_WAIT_US)
-            yield from core.events.wait(min(due_us, until_us))
+                repeats.repeated(now_us)
+            yield from core.events.wait(min(repeats.due_us, until_us))
 
     def publish(self, tick: int, time_us: int, voids: Sequence[void_t]) -> None:
         """Sends the record of a tick that has ended, and keeps it for a while."""
@@ -112,12 +115,18 @@ class TickLog:
                 self._core.sender.publish(sync.RECORD, data, self._core.ports.record)
 
     def _answer_fetch(self) -> None:
-        with contextlib.suppress(MessageError):  # complaints of the hosts name the sender
-            message = self._core.sender.receive(self._core.ports.members)
-            if message and message[0] == sync.FETCH_RECORDS:
-                fetch = sync.decode_fetch_records(message[1])
-                if fetch.run == self._core.run:
-                    self._repeat(fetch.first_tick, fetch.last_tick)
+        while message := self._own.receive():
+            try:
+                fetch = sync.decode_fetch_records(message[1]) if message[0] == sync.FETCH_RECORDS else None
+            except MessageError as error:
+                self._own.refuse(str(error))
+                continue
+            if fetch and fetch.run == self._core.run:
+                self._repeat(fetch.first_tick, fetch.last_tick)
+
+
+def _ignore(_channel: str, _reason: str) -> None:
+    """Says nothing about a refused datagram."""
 
 
 def put_changes(message: tick_t | tick_record_t, changes: Iterable[Change]) -> None:

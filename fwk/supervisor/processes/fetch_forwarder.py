@@ -1,9 +1,8 @@
 """Forwards fetches for a host that has left the run to the gateway."""
 
-import contextlib
-
+from fwk.bus.complaints import Complaints
+from fwk.bus.receiver import Receiver
 from fwk.bus.sender import Sender
-from fwk.lcm.messages import MessageError
 from fwk.supervisor.core import Core
 
 
@@ -12,18 +11,20 @@ class FetchForwarder:
 
     def __init__(self, core: Core, host: int) -> None:
         port = core.ports.host(host)
-        self._ports = core.ports
+        self._gateway_port = core.ports.host(core.ports.gateway)
         self._events = core.events
         self._sender = Sender(port, core.events.network)
-        core.events.watch(self._sender.socket, self._forward)
+        complaints = Complaints(core.log)
+        self._own = Receiver(self._sender.socket, core.ports.members, "of this run", "fwk/fetch", complaints)
+        core.events.watch(self._own, self._forward)
 
     def close(self) -> None:
         """Gives the port back to the host."""
-        self._events.unwatch(self._sender.socket)
+        self._events.unwatch(self._own)
         self._sender.socket.close()
 
     def _forward(self) -> None:
-        with contextlib.suppress(MessageError):  # complaints of the hosts name the sender
-            message = self._sender.receive(self._ports.members)
-            if message and message[0] == b"fwk/fetch":
-                self._sender.send(*message, self._ports.host(self._ports.gateway))
+        while message := self._own.receive():
+            channel, data, _ = message
+            if channel == b"fwk/fetch":
+                self._sender.send(channel, data, self._gateway_port)
