@@ -30,9 +30,9 @@ class Aim(NamedTuple):
 
 
 def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:
-    """Free angle beside a ball's way between two points; negative if a robot blocks it, pi without a robot nearby.
+    """Returns the free angle beside the way of a ball; negative if a robot blocks it, pi without a robot nearby.
 
-    A robot far down the way has time to step aside, so it counts as wider.
+    A robot far down the way has time to step aside and counts as wider.
     """
     way_m, way_rad = math.dist(start, end), bearing_rad(start, end)
     free_rad = math.pi
@@ -47,7 +47,7 @@ def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float 
 
 
 def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
-    """The point of the opponents' goal line with the most room, seen from the ball at `start`."""
+    """Returns the point of the opponents' goal line with the most room, seen from the ball at `start`."""
     in_the_way = list(robots)
     posts = field.goal_posts(1.0)
     post_m = field.post_diameter_m / 2 + 0.11
@@ -67,11 +67,11 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
 
 
 def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot], back_m: float = 1.0) -> Aim | None:
-    """The team mate to whom a pass is worth most: a free way, ground gained, little turning of the player.
+    """Finds the mate for the best pass: a free way, ground gained, little turning of the player.
 
     Returns:
-        Where that mate will be in a moment, and the room beside the way; None if nobody will be 2 to 9 m away and not
-        more than `back_m` behind the player.
+        Expected place of that mate, and the room beside the way; None without a mate that will be 2 to 9 m away and at
+        most `back_m` behind the player.
     """
     others = list(opponents)
     best: tuple[tuple[bool, float], Aim] | None = None

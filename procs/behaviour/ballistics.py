@@ -15,7 +15,7 @@ _ACCELERATION_M_S2 = 2.5
 
 
 class Meeting(NamedTuple):
-    """Where and when a robot can be at the ball."""
+    """Place and time at which a robot can be at the ball."""
 
     place: Point
     time_s: float
@@ -32,7 +32,7 @@ def ball_after(ball: Ball, time_s: float) -> Point:
 
 
 def kick_speed_m_s(distance_m: float, arrival_m_s: float) -> float:
-    """Speed of a kick after which the ball still has the arrival speed that far away.
+    """Returns the speed of a kick after which the ball still has the arrival speed that far away.
 
     The ball slides until its speed has fallen to `ROLLING_SHARE` of the kick's, then rolls.
     """
@@ -42,14 +42,14 @@ def kick_speed_m_s(distance_m: float, arrival_m_s: float) -> float:
 
 
 def reach_s(distance_m: float) -> float:
-    """Time in which a robot drives a distance from rest to rest."""
+    """Returns the time in which a robot drives a distance from rest to rest."""
     if distance_m < _SPEED_M_S**2 / _ACCELERATION_M_S2:
         return 2 * math.sqrt(max(0.0, distance_m) / _ACCELERATION_M_S2)
     return distance_m / _SPEED_M_S + _SPEED_M_S / _ACCELERATION_M_S2
 
 
 def way_m(time_s: float) -> float:
-    """How far a robot drives in that time from rest to rest: the inverse of `reach_s`."""
+    """Returns the distance that a robot drives in a time from rest to rest: the inverse of `reach_s`."""
     if time_s < 2 * _SPEED_M_S / _ACCELERATION_M_S2:
         return _ACCELERATION_M_S2 * time_s**2 / 4
     return _SPEED_M_S * time_s - _SPEED_M_S**2 / _ACCELERATION_M_S2
@@ -71,7 +71,7 @@ class Course:
         )
 
     def meet(self, place: Point) -> Meeting:
-        """The earliest meeting with a robot that is now at `place`.
+        """Returns the earliest meeting with a robot that is now at `place`.
 
         If the ball outruns the robot, the meeting is where the ball will be at the end of the four seconds.
         """

@@ -17,7 +17,7 @@ _HALFWAY_M = 0.5
 
 
 def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
-    """Places of supporter, first and second defender, and of one more robot, in the order of their importance.
+    """Returns the places of supporter, first and second defender, and one more robot, most important first.
 
     `ours`: the team has the ball or will have it sooner; the supporter then offers itself ahead of the ball,
     on its flank: -1 or 1.
@@ -40,12 +40,12 @@ def taker_place(spot: Point, way_rad: float) -> Point:
 
 
 def first_opponent_place(game: Game, field: Field) -> Point:
-    """Where the nearest robot waits at a set piece that is not its team's: on the way from the ball to its goal."""
+    """Returns the place of the nearest robot at the other team's set piece: between the ball and the own goal."""
     return allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
 
 
 def allowed(place: Point, game: Game, field: Field) -> Point:
-    """The place, or one near it that is far enough from a set piece's ball and, at a kick-off, in the own half."""
+    """Returns the place, or one near it that the rules of the set piece allow."""
     if game.free_play:
         return place
     distance_m = _keep_off_m(game)
@@ -62,7 +62,7 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
 
 
 def next_step(own: Point, place: Point, game: Game) -> Point:
-    """The place, or where to go first so that the way there keeps the distance to a set piece's ball."""
+    """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece."""
     if game.free_play:
         return place
     circle = Disc(game.spot, _keep_off_m(game) - 0.1)

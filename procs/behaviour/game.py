@@ -15,7 +15,7 @@ class Whose(Enum):
 
     OURS = "ours"
     THEIRS = "theirs"
-    NOBODYS = "nobody's"
+    NEITHER = "neither team's"
 
 
 class Game(NamedTuple):
@@ -23,7 +23,7 @@ class Game(NamedTuple):
 
     state: State = State.FROZEN
     stopped: bool = True
-    whose: Whose = Whose.NOBODYS
+    whose: Whose = Whose.NEITHER
     spot: Point = Point(0.0, 0.0)
     """Place of the set piece."""
 
@@ -43,7 +43,7 @@ _STATES = {int(state): state for state in State}
 
 def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
     """Converts the referee's message; an unknown state stops the robot."""
-    whose = Whose.NOBODYS
+    whose = Whose.NEITHER
     if message.state_team in (Team.CYAN, Team.MAGENTA):
         whose = Whose.OURS if message.state_team == team else Whose.THEIRS
     x_m, y_m = message.ball_x_m, message.ball_y_m

@@ -65,25 +65,25 @@ def ahead_in_time(pose: Pose, measured: Velocity, duration_s: float) -> Pose:
 
 
 def turned(x: float, y: float, angle_rad: float) -> tuple[float, float]:
-    """A vector turned counter-clockwise."""
+    """Returns a vector turned counter-clockwise."""
     cos, sin = math.cos(angle_rad), math.sin(angle_rad)
     return x * cos - y * sin, x * sin + y * cos
 
 
 def speed_to_go_m_s(distance_m: float, end_m_s: float, limit_m_s: float, limits: Limits) -> float:
-    """Highest speed from which the robot still brakes to the end speed within the distance."""
+    """Returns the highest speed from which the robot still brakes to the end speed within the distance."""
     braking_m_s = math.sqrt(end_m_s**2 + 2 * limits.braking_m_s2 * max(0.0, distance_m))
     return min(limit_m_s, braking_m_s, end_m_s + limits.position_gain_1_s * max(0.0, distance_m))
 
 
 def turning_to_go_rad_s(turn_rad: float, limit_rad_s: float, limits: Limits) -> float:
-    """Turning speed from which the robot still stops at the heading."""
+    """Returns the turning speed from which the robot still stops at the heading."""
     braking_rad_s = math.sqrt(2 * limits.angular_braking_rad_s2 * abs(turn_rad))
     return math.copysign(min(limit_rad_s, braking_rad_s, limits.heading_gain_1_s * abs(turn_rad)), turn_rad)
 
 
 def approach(before: Velocity, wanted: Velocity, duration_s: float, change_m_s2: float, turn_rad_s2: float) -> Velocity:
-    """The wanted velocity, or as near to it as the limits let the robot get in the time."""
+    """Returns the wanted velocity, or the nearest one that the limits allow in the time."""
     dvx, dvy = wanted.vx_m_s - before.vx_m_s, wanted.vy_m_s - before.vy_m_s
     change_m_s, possible_m_s = math.hypot(dvx, dvy), change_m_s2 * duration_s
     share = 1.0 if change_m_s <= possible_m_s else possible_m_s / change_m_s

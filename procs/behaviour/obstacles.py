@@ -14,7 +14,7 @@ _MARGIN_M = 0.12
 _BALL_MARGIN_M = 0.1
 _FORESIGHT_S = 0.8
 _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
-_NEAR_M = 6.0  # what is further away can wait
+_NEAR_M = 6.0  # further obstacles do not matter yet
 
 
 def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
@@ -32,7 +32,7 @@ def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bo
 
 
 def reachable(place: Point, field: Field) -> Point:
-    """The place, or the nearest one that is neither in a goal nor at the wall."""
+    """Returns the place, or the nearest one that is neither in a goal nor at the wall."""
     x_m = clamp(place.x_m, -field.half_length_m - field.border_m + 0.35, field.half_length_m + field.border_m - 0.35)
     y_m = clamp(place.y_m, -field.half_width_m - field.border_m + 0.35, field.half_width_m + field.border_m - 0.35)
     if abs(y_m) < field.goal_width_m / 2 + 0.5:

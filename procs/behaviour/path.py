@@ -23,19 +23,19 @@ class Disc(NamedTuple):
 
 
 class Way(NamedTuple):
-    """How to go on towards the target."""
+    """Direction and length of a way towards the target."""
 
     direction_rad: float
     length_m: float
     """Length of the way, with the visible detour."""
     free_m: float
-    """How far that direction is free."""
+    """Free distance in that direction."""
     blocked: bool
     """No direction is free."""
 
 
 def find_way(start: Point, target: Point, discs: Sequence[Disc], before_rad: float | None = None) -> Way:
-    """The way that turns least from the straight one and is free until it has passed what blocks that.
+    """Finds the free way that turns least from the straight one.
 
     A disc that covers the target shrinks until the target lies outside it, but not below its core; from a disc that
     covers the start the way leads out. `before_rad` is the direction of the last tick: staying on the same side is

@@ -60,7 +60,7 @@ def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> floa
 
 
 def _flank(view: View, team: Sequence[Robot]) -> float:
-    """Side of the field, -1 or 1, on which the supporter stands: away from the ball, or where it is if that is open."""
+    """Returns the supporter's side of the field, -1 or 1: away from the ball; near the middle, the side where it is."""
     supporter = next((robot for robot in team if robot.role == SUPPORTER), None)
     aside_m = supporter.place.y_m if supporter and abs(view.ball.place.y_m) < _MIDDLE_M else -view.ball.place.y_m
     return math.copysign(1.0, aside_m)

@@ -43,7 +43,7 @@ class Tactics:
         self._taking = False  # the ball in the mouth is that of the own set piece
 
     def decide(self, view: View, game: Game, job: Job, holds_ball: bool, duration_s: float) -> Order:
-        """The order for this tick, `duration_s` after the last."""
+        """Returns the order for this tick, `duration_s` after the last."""
         self._held_s = self._held_s + duration_s if holds_ball else 0.0
         if not game.free_play:
             self._taking = game.whose is Whose.OURS and job.role == ATTACKER
@@ -158,7 +158,7 @@ class Tactics:
 
 
 def keeper_takes(view: View, field: Field) -> bool:
-    """Whether the goalkeeper leaves its line for the ball: a slow ball before its goal that it reaches first."""
+    """Returns whether the goalkeeper leaves its line: for a slow ball before its goal that it reaches first."""
     ball = view.ball
     if ball.speed_m_s > _FAST_BALL_M_S or not field.in_penalty_area(*ball.place, -1.0, 0.3):
         return False
@@ -187,7 +187,7 @@ def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:
 
 
 def _free_opponent(view: View) -> Robot | None:
-    """The opponent deepest in the own half, other than the one at the ball."""
+    """Returns the opponent deepest in the own half, other than the one at the ball."""
     if len(view.opponents) < 2:
         return None
     at_ball = min(view.opponents, key=lambda other: (math.dist(other.place, view.ball.place), other.place))

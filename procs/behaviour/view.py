@@ -19,11 +19,11 @@ class Frame(NamedTuple):
     """1.0: the team attacks +x and nothing changes; -1.0: half a turn."""
 
     def point(self, x_m: float, y_m: float) -> Point:
-        """A point, or a velocity, in the other frame."""
+        """Returns a point, or a velocity, in the other frame."""
         return Point(self.sign * x_m, self.sign * y_m)
 
     def heading_rad(self, heading_rad: float) -> float:
-        """A direction in the other frame."""
+        """Returns a direction in the other frame."""
         return heading_rad if self.sign > 0 else wrap_rad(heading_rad + math.pi)
 
 
@@ -63,7 +63,7 @@ class View(NamedTuple):
 def view_of(model: world_model_t, name: str, role: str, frame: Frame, mate_timeout_s: float = 2.0) -> View:
     """Turns the world model into the attack frame.
 
-    Mates that were silent for the time-out are left out, and so is everything whose numbers make no sense.
+    Mates that were silent for the time-out are left out, and so are robots with implausible values.
     """
     here = plausible(model.x_m, model.y_m, model.heading_rad, model.vx_m_s, model.vy_m_s)
     own = Robot(name, Point(0.0, 0.0), role=role)

@@ -40,7 +40,7 @@ def open_stream(url: str) -> cv2.VideoCapture:
     """Opens a stream: rtsp, http and whatever else ffmpeg knows.
 
     Raises:
-        SourceError: nobody sends pictures there.
+        SourceError: no pictures come from there.
     """
     limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, OPEN_TIMEOUT_MS, cv2.CAP_PROP_READ_TIMEOUT_MSEC, READ_TIMEOUT_MS]
     capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG, limits)
@@ -53,7 +53,7 @@ def open_device(path: Path, wanted: Wanted) -> cv2.VideoCapture:
     """Opens a Video4Linux device.
 
     Raises:
-        SourceError: there is none, it may not be used, or it gives no pictures.
+        SourceError: the device is missing, may not be used, or gives no pictures.
     """
     check_device(path)
     capture = cv2.VideoCapture(str(path), cv2.CAP_V4L2)
@@ -71,7 +71,11 @@ def open_device(path: Path, wanted: Wanted) -> cv2.VideoCapture:
 
 
 def check_device(path: Path) -> None:
-    """Raises SourceError if there is no such device, or if this user may not read it."""
+    """Checks that the device exists and that this user may read it.
+
+    Raises:
+        SourceError: otherwise.
+    """
     try:
         kind = path.stat().st_mode
     except OSError as error:
@@ -101,7 +105,7 @@ class Live:
         self._thread.start()
 
     def picture(self) -> Picture | None:
-        """The newest picture since the last call, or None."""
+        """Returns the newest picture since the last call, or None."""
         with self._lock:
             taken, self._newest = self._newest, None
         return taken

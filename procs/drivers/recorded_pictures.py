@@ -20,7 +20,7 @@ class Recorded(Protocol):
     """Pictures that are the same whenever they are asked for."""
 
     def picture(self, number: int) -> Picture | None:
-        """Picture `number`, from 0; None after the last.
+        """Returns picture `number`, from 0; None after the last.
 
         Raises:
             SourceError: it is damaged.
@@ -31,14 +31,14 @@ class Recorded(Protocol):
         """How many there are; 0: not known before the last was seen, or no end."""
 
     def close(self) -> None:
-        """No more pictures are wanted."""
+        """Releases the source."""
 
 
 class Folder:
     """The picture files of a folder in the order of their names, in which numbers count as numbers: 2 before 10.
 
     Raises:
-        SourceError: there are none.
+        SourceError: the folder holds no pictures.
     """
 
     def __init__(self, path: Path) -> None:
@@ -60,7 +60,7 @@ class Folder:
         return len(self._files)
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Does nothing: no file is open."""
 
 
 class Video:

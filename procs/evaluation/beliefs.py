@@ -18,7 +18,7 @@ NEAR_M = 4.0
 MOVING_M_S = 0.3
 """A ball slower than that counts as resting."""
 SETTLED_S = 0.3
-"""A ball that nobody has touched for so long rolls freely."""
+"""A ball without a touch for that time rolls freely."""
 _CONTACT_S = 0.1
 _INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
 _START_S = 4.0  # until all robots know their places
@@ -222,7 +222,7 @@ def _opponents(piece: Piece) -> Samples:
         "opponents, position": np.array(errors_m2),
         "opponents, lag": np.array(ways).reshape(-1, 2),
         "opponents known": np.array(found, np.float64),
-        "opponents that are none": np.array(ghosts, np.float64),
+        "opponents that do not exist": np.array(ghosts, np.float64),
     }
 
 

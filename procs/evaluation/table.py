@@ -68,7 +68,7 @@ MEASURES = [
     Measure("opponents, position", rms, "m", "<= 0.08"),
     Measure("opponents, lag", ratio, "s", "0"),
     Measure("opponents known", mean, "share", ">= 0.80"),
-    Measure("opponents that are none", mean, "share", ""),
+    Measure("opponents that do not exist", mean, "share", ""),
     Measure("pose, position", rms, "m", "<= 0.10"),
     Measure("pose, heading", rms, "rad", "<= 0.03"),
     Measure("wrong pose believed", ratio, "/1000 min", "0"),
@@ -98,7 +98,7 @@ class Row:
 def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, seed: int = 1) -> list[Row]:
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
-    With a single piece there is no interval: its limits are NaN.
+    A single piece gives no interval: its limits are NaN.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))

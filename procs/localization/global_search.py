@@ -37,7 +37,7 @@ class GlobalSearch:
         self._starts = (grid_y.ravel() + half_y + pad) * self._width + grid_x.ravel() + half_x + pad
 
     def best(self, points: LinePoints, headings_rad: Floats, count: int, apart_m: float = 1.0) -> Floats:
-        """The `count` best poses (count, 3), best first, no two nearer to each other than `apart_m`."""
+        """Returns the `count` best poses (count, 3), best first, no two nearer to each other than `apart_m`."""
         scores = np.stack([self._scores(points, float(heading)) for heading in headings_rad])
         turn = scores.argmax(axis=0)
         score = scores.max(axis=0)
@@ -59,5 +59,5 @@ class GlobalSearch:
 
 @lru_cache(maxsize=4)
 def global_search(lines: LineMap, reach_m: float) -> GlobalSearch:
-    """The search in one table of lines, made once a process."""
+    """Returns the search in a table of lines, made once in each process."""
     return GlobalSearch(lines, reach_m)

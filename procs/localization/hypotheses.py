@@ -37,13 +37,13 @@ class Hypotheses:
         self.known = []
 
     def predict(self, ahead_m: float, left_m: float, turn_rad: float) -> None:
-        """The robot moved, by its odometry."""
+        """Moves the hypotheses with the robot, by its odometry."""
         for one in self.known:
             way_m = rotation(float(one.pose[2]) + turn_rad / 2) @ (ahead_m, left_m)
             one.pose = moved(one.pose, way_m, turn_rad)
 
     def starts(self, others: Floats) -> Floats:
-        """Start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
+        """Returns start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
         return np.vstack([one.pose for one in self.known] + [others])
 
     def update(self, poses: Floats, scores: Floats) -> None:
@@ -62,7 +62,7 @@ class Hypotheses:
         self.known = sorted(kept, key=lambda one: -one.score)[:_MOST]
 
     def decided(self, good_score: float) -> Hypothesis | None:
-        """The best, if it is good, followed long enough, and far enough ahead of the rest."""
+        """Returns the best hypothesis if it is good, old enough, and far enough ahead of the rest."""
         if not self.known or self.known[0].score < good_score or self.known[0].frames < _OLD_ENOUGH:
             return None
         best = self.known[0]

@@ -34,7 +34,7 @@ class LineMap:
         self._table = _nearest(field, centres_m)
 
     def look_up(self, x_m: Floats, y_m: Floats) -> tuple[Floats, Floats, Floats]:
-        """Signed distances in metres and the unit vectors along which they grow, for places of the world frame.
+        """Returns signed distances in metres and the unit vectors along which they grow, for places of the world frame.
 
         The arrays may have any shape; the three results have the same. The sign says on which side of the line a place
         is, but which side counts as positive has no meaning.
@@ -50,7 +50,7 @@ class LineMap:
 
 @lru_cache(maxsize=4)
 def line_map(field: Field) -> LineMap:
-    """The table of a field, made once a process."""
+    """Returns the table of a field, made once in each process."""
     return LineMap(field)
 
 
@@ -59,7 +59,7 @@ def _clipped(cells: Floats, count: int) -> NDArray[np.intp]:
 
 
 def _nearest(field: Field, places_m: Floats) -> Floats:
-    """Signed distance and unit normal (n, 3) of the line or mark that is nearest to each place (n, 2).
+    """Returns signed distance and unit normal (n, 3) of the line or mark that is nearest to each place (n, 2).
 
     Places lie in square blocks. Only those lines are looked at in a block that can be nearest somewhere in it: their
     distance to its middle is at most that of the nearest one, and twice the way from the middle to a corner.

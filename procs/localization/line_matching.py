@@ -35,7 +35,7 @@ class LinePoints:
 
     @classmethod
     def chosen(cls, x_m: Floats, y_m: Floats, reach_m: float, most: int) -> "LinePoints":
-        """The points within reach; if they are too many, evenly spread ones of them."""
+        """Returns the points within reach, evenly thinned if there are too many."""
         with np.errstate(over="ignore"):  # a range that overflows is beyond reach
             near = np.flatnonzero(np.hypot(x_m, y_m) < reach_m)
         if len(near) > most:
@@ -43,7 +43,7 @@ class LinePoints:
         return cls(x_m[near], y_m[near])
 
     def thinned(self, most: int) -> "LinePoints":
-        """At most that many of the points."""
+        """Returns at most that many of the points."""
         return LinePoints.chosen(self.x_m, self.y_m, np.inf, most)
 
     def __len__(self) -> int:
@@ -88,7 +88,7 @@ def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 
 
 
 def _evaluate(lines: LineMap, points: LinePoints, poses: Floats, robust_m: float) -> tuple[Floats, Floats, Floats]:
-    """Information (k, 3, 3), gradient (k, 3) and score (k) of poses (k, 3)."""
+    """Returns information (k, 3, 3), gradient (k, 3) and score (k) of poses (k, 3)."""
     cosine, sine = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
     x_m = cosine * points.x_m - sine * points.y_m
     y_m = sine * points.x_m + cosine * points.y_m

@@ -21,7 +21,7 @@ class LocalizationConfig(Config):
     field: Field = Field()
     """Measures of the field."""
     start_x_m: float | None = None
-    """Start of the robot if it is known, world frame. All three or none."""
+    """Start of the robot if it is known, world frame; needs the other two."""
     start_y_m: float | None = None
     """See start_x_m."""
     start_heading_rad: float | None = None
@@ -53,7 +53,7 @@ class Localization(Component):
 
     @classmethod
     def preload(cls, config: LocalizationConfig) -> None:
-        """The tables of the field's lines are the same for all robots."""
+        """Computes the tables of the field's lines, which are the same for all robots."""
         global_search(line_map(config.field), config.reach_m)
 
     def init(self) -> None:
@@ -110,7 +110,7 @@ class Localization(Component):
         return imu.heading_rad if sound else None
 
     def _motion(self) -> Motion:
-        """The way since the last frame by the wheels; the turn by the gyro, which a slipping wheel does not deceive."""
+        """Returns the way since the last frame by the wheels and the turn by the gyro, which slip does not affect."""
         now = self.odometry.value
         sound = plausible(now.x_m, now.y_m, now.heading_rad, now.vx_m_s, now.vy_m_s)
         if not (self.odometry.refreshed and sound):

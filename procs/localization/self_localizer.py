@@ -102,7 +102,7 @@ class SelfLocalizer:
         Args:
             motion: by odometry and gyro.
             compass_rad: heading by the compass; None if it is not known.
-            x_m: white points (n) of a new frame, robot frame; none if there is no new frame.
+            x_m: white points (n) of a new frame, robot frame; empty without a new frame.
             y_m: see x_m.
             duration_s: time since the last update.
         """

@@ -95,7 +95,7 @@ class Field(BaseModel):
         return self.width_m / 2
 
     def segments(self) -> list[Segment]:
-        """The middles of all straight lines."""
+        """Returns the middles of all straight lines."""
         inset_m = self.line_width_m / 2
         x_m, y_m = self.half_length_m - inset_m, self.half_width_m - inset_m
         lines = [Segment(Point(0.0, -y_m), Point(0.0, y_m))]
@@ -112,7 +112,7 @@ class Field(BaseModel):
         return lines
 
     def arcs(self) -> list[Arc]:
-        """The middles of all round lines: the centre circle, then the quarter circles in the corners."""
+        """Returns the middles of all round lines: the centre circle, then the quarter circles in the corners."""
         inset_m, quarter = self.line_width_m / 2, math.pi / 2
         arcs = [Arc(Point(0.0, 0.0), self.circle_diameter_m / 2 - inset_m, 0.0, 2 * math.pi)]
         for turns, (x, y) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
@@ -121,43 +121,43 @@ class Field(BaseModel):
         return arcs
 
     def marks(self) -> list[Point]:
-        """The middles of the painted spots: centre, penalty marks, restart marks."""
+        """Returns the middles of the painted spots: centre, penalty marks, restart marks."""
         rows_m = [side * (self.half_length_m - self.penalty_mark_distance_m) for side in SIDES]
         offsets_m = (-self.restart_offset_m, 0.0, self.restart_offset_m)
         return [Point(x_m, y_m) for x_m in (0.0, *rows_m) for y_m in offsets_m]
 
     def restart_spots(self) -> list[Point]:
-        """The marks at which the ball is dropped: the centre and the restart marks, without the penalty marks."""
+        """Returns the marks for dropped balls: the centre and the restart marks, without the penalty marks."""
         return [mark for mark in self.marks() if mark.y_m or not mark.x_m]
 
     def penalty_mark(self, side: float) -> Point:
-        """Mark for penalties against that side."""
+        """Returns the mark for penalties against a side."""
         return Point(side * (self.half_length_m - self.penalty_mark_distance_m), 0.0)
 
     def goal_centre(self, side: float) -> Point:
-        """The middle of the goal mouth, on the outer edge of the goal line."""
+        """Returns the middle of the goal mouth, on the outer edge of the goal line."""
         return Point(side * self.half_length_m, 0.0)
 
     def goal_posts(self, side: float) -> tuple[Point, Point]:
-        """The middles of the two posts, which stand on the goal line; the one with negative y first."""
+        """Returns the middles of the two posts, which stand on the goal line; negative y first."""
         x_m = side * (self.half_length_m - self.line_width_m / 2)
         y_m = (self.goal_width_m + self.post_diameter_m) / 2
         return Point(x_m, -y_m), Point(x_m, y_m)
 
     def in_field(self, x_m: float, y_m: float, margin_m: float = 0.0) -> bool:
-        """Whether a point is on the field, lines included; a positive margin makes the field larger."""
+        """Returns whether a point is on the field, lines included; a positive margin makes the field larger."""
         return abs(x_m) <= self.half_length_m + margin_m and abs(y_m) <= self.half_width_m + margin_m
 
     def in_penalty_area(self, x_m: float, y_m: float, side: float, margin_m: float = 0.0) -> bool:
-        """Whether a point is in that side's penalty area, lines included; a positive margin makes it larger."""
+        """Returns whether a point is in a side's penalty area, lines included; a positive margin makes it larger."""
         return self._in_area(x_m, y_m, side, self.penalty_area_width_m, self.penalty_area_depth_m, margin_m)
 
     def in_goal_area(self, x_m: float, y_m: float, side: float, margin_m: float = 0.0) -> bool:
-        """Whether a point is in that side's goal area, lines included; a positive margin makes it larger."""
+        """Returns whether a point is in a side's goal area, lines included; a positive margin makes it larger."""
         return self._in_area(x_m, y_m, side, self.goal_area_width_m, self.goal_area_depth_m, margin_m)
 
     def in_goal(self, x_m: float, y_m: float, side: float, ball_radius_m: float = 0.0) -> bool:
-        """Whether a ball of that radius (0: a point) is wholly behind that side's goal line and in the goal."""
+        """Returns whether a ball of that radius (0: a point) is wholly behind a side's goal line and in the goal."""
         behind_m = side * x_m - self.half_length_m
         return ball_radius_m < behind_m <= self.goal_depth_m and abs(y_m) < self.goal_width_m / 2
 

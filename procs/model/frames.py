@@ -9,16 +9,16 @@ Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.intp]
 BOUND = 1e4
-"""Metres, radians, m/s and so on beyond which a value is no measurement."""
+"""Largest plausible value of a measurement, in m, rad, m/s and so on."""
 
 
 def plausible(*values: float) -> bool:
-    """Whether all are numbers that something on a field can have; NaN and infinity are none."""
+    """Returns whether all values can be measurements; NaN and infinity cannot."""
     return all(abs(value) < BOUND for value in values)
 
 
 def wrap(angle_rad: float) -> float:
-    """The same direction between -pi and pi."""
+    """Returns the same direction between -pi and pi."""
     return math.remainder(angle_rad, 2 * math.pi)
 
 

@@ -8,30 +8,30 @@ _ASTRONOMICAL = 1e6
 
 
 def wrap_rad(angle_rad: float) -> float:
-    """The same angle between -pi and pi."""
+    """Returns the same angle between -pi and pi."""
     return math.remainder(angle_rad, math.tau)
 
 
 def clamp(value: float, low: float, high: float) -> float:
-    """The value, or the limit that it exceeds."""
+    """Returns the value, or the limit that it exceeds."""
     return min(high, max(low, value))
 
 
 def bearing_rad(start: Point, end: Point) -> float:
-    """Direction from one point to another; 0 if they are the same."""
+    """Returns the direction from one point to another; 0 if they are the same."""
     return math.atan2(end.y_m - start.y_m, end.x_m - start.x_m)
 
 
 def ahead(start: Point, direction_rad: float, distance_m: float) -> Point:
-    """The point that far away in that direction; a negative distance goes backwards."""
+    """Returns the point at a distance in a direction; a negative distance goes backwards."""
     return Point(start.x_m + distance_m * math.cos(direction_rad), start.y_m + distance_m * math.sin(direction_rad))
 
 
 def between(start: Point, end: Point, share: float) -> Point:
-    """The point on the straight line that lies `share` of the way from start to end."""
+    """Returns the point of a straight line that lies `share` of the way from start to end."""
     return Point(start.x_m + share * (end.x_m - start.x_m), start.y_m + share * (end.y_m - start.y_m))
 
 
 def plausible(*values: float) -> bool:
-    """Whether all are numbers that a robot can meet with: no NaN, nothing infinite or astronomical."""
+    """Returns whether all values can be measurements; NaN, infinity and astronomical values cannot."""
     return all(abs(value) < _ASTRONOMICAL for value in values)

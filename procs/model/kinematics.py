@@ -24,14 +24,14 @@ STANDSTILL = Velocity(0.0, 0.0, 0.0)
 
 
 def wheels_of(velocity: Velocity, wheel_distance_m: float) -> Wheels:
-    """Rim speeds in m/s at which no wheel slips; `wheel_distance_m` is from the robot's middle to a wheel."""
+    """Returns rim speeds in m/s without slip; `wheel_distance_m` is from the robot's middle to a wheel."""
     vx, vy, omega = velocity
     turn = wheel_distance_m * omega
     return -SIN_60 * vx + 0.5 * vy + turn, -vy + turn, SIN_60 * vx + 0.5 * vy + turn
 
 
 def velocity_of(wheels: Wheels, wheel_distance_m: float) -> Velocity:
-    """The body's velocity when no wheel slips: the inverse of `wheels_of`."""
+    """Returns the velocity of the body without slip: the inverse of `wheels_of`."""
     first, second, third = wheels
     return Velocity(
         (third - first) * SIN_60 / 1.5,

@@ -12,7 +12,7 @@ _KINDS = frozenset(Kind)
 
 
 class RefereeConfig(Config, Rules):
-    """The match's times and limits."""
+    """Times and limits of the match."""
 
 
 class Referee(Component):

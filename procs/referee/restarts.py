@@ -54,25 +54,25 @@ _LINE_INSET_M = 0.1
 
 
 def team_number(robot: str) -> Team:
-    """Team of a robot's name; NONE for the empty name."""
+    """Returns the team of a robot; NONE for the empty name."""
     if not robot:
         return Team.NONE
     return Team.MAGENTA if team_of(robot) == MAGENTA else Team.CYAN
 
 
 def kick_off(team: Team) -> Restart:
-    """From the centre mark."""
+    """Returns the kick-off of a team, from the centre mark."""
     return Restart(State.KICK_OFF, team, Point(0.0, 0.0))
 
 
 def dropped_ball(place: Point, field: Field) -> Restart:
-    """At the restart spot nearest to the place; the ball of neither team."""
+    """Returns a dropped ball at the restart spot nearest to the place."""
     spot = min(field.restart_spots(), key=lambda mark: (math.dist(mark, place), mark))
     return Restart(State.DROP_BALL, Team.NONE, spot)
 
 
 def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
-    """Throw-in for the other team where the ball went out; a dropped ball without a last touch."""
+    """Returns the throw-in of the other team where the ball went out; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
         return dropped_ball(place, field)
     x_m = _within(place.x_m, field.half_length_m - field.corner_radius_m)
@@ -81,7 +81,7 @@ def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
 
 
 def after_goal_line(place: Point, touched_by: Team, field: Field) -> Restart:
-    """Corner or goal kick; a dropped ball without a last touch."""
+    """Returns a corner or goal kick; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
         return dropped_ball(place, field)
     side = math.copysign(1.0, place.x_m)
@@ -96,13 +96,13 @@ def after_goal_line(place: Point, touched_by: Team, field: Field) -> Restart:
 
 
 def goal_kick(team: Team, y_m: float, field: Field) -> Restart:
-    """For the team, from the restart mark before its goal on the side where the ball went out."""
+    """Returns the goal kick of a team, from the restart mark before its goal where the ball went out."""
     x_m = team.side * (field.half_length_m - field.penalty_mark_distance_m)
     return Restart(State.GOAL_KICK, team, Point(x_m, math.copysign(field.restart_offset_m, y_m)))
 
 
 def after_foul(place: Point, offender: Team, field: Field) -> Restart:
-    """Free kick for the other team at the place, but not nearer to a goal than the penalty marks are."""
+    """Returns the free kick of the other team at the place, at most as near to a goal as the penalty marks."""
     x_m = _within(place.x_m, field.half_length_m - field.penalty_mark_distance_m)
     return Restart(State.FREE_KICK, offender.other, Point(x_m, _within(place.y_m, field.half_width_m - 0.5)))
 

@@ -18,7 +18,7 @@ from procs.referee.positions import misplaced
 from procs.referee.restarts import Restart, State, Team
 from procs.simulation.physics.events import Event, Kind
 
-_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away somebody pushed it
+_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
 _CREW_S = 0.5  # until the report shows a placement
 
 

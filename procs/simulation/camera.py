@@ -15,7 +15,7 @@ from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import CYAN, MAGENTA
 
-_OUT_OF_THIS_WORLD = 1e4  # metres, radians, metres a second
+_FARTHEST = 1e4  # metres, radians, metres a second
 
 
 class CameraConfig(Config):
@@ -59,7 +59,7 @@ class Camera(Component):
 
     @classmethod
     def preload(cls, config: CameraConfig) -> None:
-        """The painted field and the mirror's maps are the same for all robots."""
+        """Computes the painted field and the maps of the mirror, which are the same for all robots."""
         Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, _bodies(config))
 
     def init(self) -> None:
@@ -91,8 +91,8 @@ class Camera(Component):
     def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
         own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
         if own is None and not self._missing:
-            names = ", ".join(robot.name for robot in truth.robots) or "nobody"
-            self.log.warning(f"no pictures: robot '{self._robot}' is not on the field; there is {names}")
+            names = ", ".join(robot.name for robot in truth.robots) or "no robot"
+            self.log.warning(f"no pictures: robot '{self._robot}' is not on the field, which has {names}")
         self._missing = own is None
         return own
 
@@ -121,5 +121,5 @@ def _is_here(robot: true_robot_t) -> bool:
 
 
 def _near(*values: float) -> bool:
-    """Whether these are numbers that something on the field can have; NaN and infinity are none."""
-    return all(abs(value) < _OUT_OF_THIS_WORLD for value in values)
+    """Returns whether the values can belong to something on the field; NaN and infinity cannot."""
+    return all(abs(value) < _FARTHEST for value in values)

@@ -9,14 +9,14 @@ from procs.simulation.radio_links import RadioLinks, RadioSettings
 
 
 class RadioConfig(Config):
-    """How good the radio is."""
+    """Quality of the radio."""
 
     loss: float = Field(default=0.03, ge=0.0, le=1.0)
-    """Probability that a message does not reach a mate, for each mate on its own; 1 is no radio."""
+    """Probability that a message does not reach a mate, independent for each mate; 1 switches the radio off."""
     delay_s: float = Field(default=0.0, ge=0.0)
-    """From sending to arrival, besides the tick that the message takes anyway."""
+    """Time from sending to arrival, besides the tick that every message takes."""
     delay_jitter_s: float = Field(default=0.02, ge=0.0)
-    """A message takes up to that much longer."""
+    """Largest further delay of a message."""
 
 
 class Radio(Component):

@@ -14,7 +14,7 @@ _LIMIT_M = 3.0
 
 
 def draw_beliefs(canvas: Canvas, robot: str, belief: world_model_t) -> None:
-    """A thin ring where the robot believes to be, and an ellipse of two standard deviations around its ball."""
+    """Draws a thin ring at the believed pose, and an ellipse of two standard deviations around the ball."""
     colour = TEAM_COLOURS.get(team_of(robot), UNKNOWN_TEAM)
     if belief.localized:
         canvas.ring((belief.x_m, belief.y_m), 0.28, 0.02, colour)

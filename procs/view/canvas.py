@@ -29,36 +29,36 @@ class Canvas:
         self._origin_px = origin_px
 
     def on(self, picture: Picture) -> "Canvas":
-        """A canvas of the same scale on another picture."""
+        """Returns a canvas of the same scale on another picture."""
         return Canvas(picture, self._origin_px, self.px_per_m)
 
     def disc(self, place: Place, radius_m: float, colour: Colour) -> None:
-        """A filled circle."""
+        """Draws a filled circle."""
         radius = max(1, self._fine(radius_m * self.px_per_m))
         cv2.circle(self.picture, self._pixel(place), radius, colour, cv2.FILLED, cv2.LINE_AA, _SHIFT)
 
     def ring(self, place: Place, radius_m: float, width_m: float, colour: Colour) -> None:
-        """The outline of a circle; `width_m` is that of the line."""
+        """Draws the outline of a circle; `width_m` is that of the line."""
         radius = self._fine(radius_m * self.px_per_m)
         cv2.circle(self.picture, self._pixel(place), radius, colour, self._width(width_m), cv2.LINE_AA, _SHIFT)
 
     def line(self, start: Place, end: Place, width_m: float, colour: Colour) -> None:
-        """A straight line."""
+        """Draws a straight line."""
         width = self._width(width_m)
         cv2.line(self.picture, self._pixel(start), self._pixel(end), colour, width, cv2.LINE_AA, _SHIFT)
 
     def polyline(self, places: Sequence[Place], width_m: float, colour: Colour) -> None:
-        """Straight lines from place to place."""
+        """Draws straight lines from place to place."""
         points = np.array([self._pixel(place) for place in places], np.int32)
         cv2.polylines(self.picture, [points], False, colour, self._width(width_m), cv2.LINE_AA, _SHIFT)
 
     def polygon(self, places: Sequence[Place], colour: Colour) -> None:
-        """A filled polygon."""
+        """Draws a filled polygon."""
         points = np.array([self._pixel(place) for place in places], np.int32)
         cv2.fillPoly(self.picture, [points], colour, cv2.LINE_AA, _SHIFT)
 
     def ellipse(self, place: Place, axes_m: tuple[float, float], angle_deg: float, colour: Colour) -> None:
-        """The outline of an ellipse, one pixel wide; the first half axis lies at `angle_deg` from x."""
+        """Draws the outline of an ellipse, one pixel wide; the first half axis lies at `angle_deg` from x."""
         axes = (self._fine(axes_m[0] * self.px_per_m), self._fine(axes_m[1] * self.px_per_m))
         cv2.ellipse(self.picture, self._pixel(place), axes, -angle_deg, 0, 360, colour, 1, cv2.LINE_AA, _SHIFT)
 

@@ -31,7 +31,7 @@ TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 
 
 def score(state: game_state_t) -> str:
-    """`CYAN 2 : 1 MAGENTA`."""
+    """Returns the score: `CYAN 2 : 1 MAGENTA`."""
     return f"CYAN {state.score_cyan} : {state.score_magenta} MAGENTA"
 
 

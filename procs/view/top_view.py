@@ -36,7 +36,7 @@ class TopView:
     """Draws pictures of one size; cyan's goal is on the left."""
 
     def __init__(self, width_px: int = 1280, field: Field | None = None) -> None:
-        """The height follows from the field; both are even, as video encoders want them."""
+        """The height follows from the field; both are even, as video encoders require."""
         self._field = field or Field()
         margin_m = self._field.border_m
         self._bar_px = round(width_px / 24)
@@ -121,7 +121,7 @@ def _view() -> TopView:
 
 
 def _outline(robot: true_robot_t, radius_m: float) -> list[tuple[float, float]]:
-    """A circle whose front is cut off."""
+    """Returns a circle whose front is cut off."""
     steps = 24
     span_rad = 2 * math.pi - 2 * _MOUTH_RAD
     angles = [robot.heading_rad + _MOUTH_RAD + span_rad * step / steps for step in range(steps + 1)]

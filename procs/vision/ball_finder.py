@@ -50,12 +50,12 @@ class BallFinder:
     deviation_px: float = 0.3
     """Standard deviation of the found centre."""
     least_fit: float = 0.4
-    """Blobs whose area is less than this part of a ball's, or more than a ball's by as much, are none."""
+    """Least ratio of the areas of blob and ball, and of ball and blob; other blobs are not balls."""
     farthest_m: float = 8.0
     """Beyond that nothing is taken for a ball."""
 
     def find(self, pixels: Picture) -> BallSighting | None:
-        """The likeliest ball in a picture, height x width x 3, or None."""
+        """Returns the likeliest ball in a picture, height x width x 3, or None."""
         coarse = cv2.resize(pixels, None, fx=1 / _STEP_PX, fy=1 / _STEP_PX, interpolation=cv2.INTER_NEAREST)
         mask = self.colour.mask(to_hsv(np.asarray(coarse, np.uint8))).view(np.uint8)
         if not mask.any():
@@ -98,7 +98,7 @@ class BallFinder:
         return BallSighting(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, deviation_px), confidence)
 
     def _locate(self, column: float, row: float) -> tuple[float, float, float] | None:
-        """Ball on the ground whose circle has its centre there: x, y in metres, radius in pixels."""
+        """Returns the ball on the ground whose circle has that centre: x, y in metres, radius in pixels."""
         wanted = np.array([column, row])
         looked_at = wanted
         for _ in range(2):  # the centre of the circle is not quite where the ball's centre appears
@@ -112,7 +112,7 @@ class BallFinder:
 
 
 def _cover(window: Picture, solid: Mask) -> Floats:
-    """How far each pixel is covered by the ball, 0..1; `solid` marks those that are of its colour.
+    """Returns the share of each pixel, 0..1, that the ball covers; `solid` marks those of its colour.
 
     Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange.
     """

@@ -34,7 +34,7 @@ class MirrorConfig(Config):
         return scaled(central_part(frame, 1.0), self.size_px, self.size_px)
 
     def mirror(self, roll_deg: float = 0.0, pitch_deg: float = 0.0) -> Mirror:
-        """The mirror itself, tilted about the robot's x and y axis."""
+        """Returns the mirror, tilted about the robot's x and y axis."""
         return Mirror(
             size_px=self.size_px,
             height_m=self.height_m,

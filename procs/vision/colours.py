@@ -30,10 +30,10 @@ class ColourRange(NamedTuple):
     high: Hsv
 
     def mask(self, hsv: Picture) -> Mask:
-        """Which pixels of a picture in HSV, height x width x 3, are of that colour."""
+        """Returns a mask of the pixels of that colour, of a picture in HSV, height x width x 3."""
         return np.asarray(cv2.inRange(hsv, np.array(self.low), np.array(self.high)) > 0)
 
 
 def to_hsv(pixels: Picture) -> Picture:
-    """The picture as hue, saturation and value."""
+    """Returns the picture as hue, saturation and value."""
     return np.asarray(cv2.cvtColor(pixels, cv2.COLOR_BGR2HSV), np.uint8)

@@ -79,7 +79,7 @@ class Mirror:
         return np.asarray(rays[:, :2] * ((self.height_m - plane_m) / down)[:, None])
 
     def radius_px(self, distance_m: float) -> float:
-        """How far from the picture's centre ground at that distance appears, without tilt."""
+        """Returns the radius in the picture at which ground at that distance appears, without tilt."""
         return self.scale_px * math.tan(math.atan2(distance_m, self.height_m) / 2)
 
     def metres_per_px(self, distance_m: float) -> tuple[float, float]:

@@ -43,7 +43,7 @@ class ObstacleFinder:
     """Rays that must meet a robot."""
 
     def find(self, hsv: Picture) -> list[Obstacle]:
-        """All robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
+        """Returns all robots in a scan (rays, samples, 3) in HSV, counter-clockwise."""
         edges_m = self._near_edges(hsv)
         if len(edges_m) < self.least_rays:
             return []
@@ -64,7 +64,7 @@ class ObstacleFinder:
         return np.asarray((self.star.ground_m[rays, starts] + self.star.ground_m[rays, np.maximum(starts - 1, 0)]) / 2)
 
     def _groups(self, edges_m: Floats) -> list[Floats]:
-        """Edge points that may belong together, (n, 2) each: neighbours no farther apart than a ball could hide."""
+        """Edge points that may belong together, (n, 2) each: neighbours with a gap that a ball could hide."""
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
         blur_m = np.array([self.mirror.metres_per_px(math.hypot(*edge))[0] for edge in edges_m])
         breaks = np.flatnonzero(gaps_m > 1.4 * self.radius_m + blur_m)
@@ -96,5 +96,5 @@ def _any_before(mask: Mask, rays: NDArray[np.intp], starts: NDArray[np.intp]) ->
 
 
 def _turn(first: Floats, last: Floats) -> float:
-    """Counter-clockwise angle from one direction to another, -pi..pi."""
+    """Returns the counter-clockwise angle from one direction to another, -pi..pi."""
     return math.remainder(math.atan2(last[1], last[0]) - math.atan2(first[1], first[0]), 2 * math.pi)

@@ -21,9 +21,9 @@ class OmniBallConfig(DetectorConfig):
     deviation_px: float = Setting(default=0.5, gt=0.0)
     """Standard deviation of the ball's centre in the picture, the shaking of the mirror included."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
-    """A blob whose area is less than this part of a ball's is none; a ball more hidden than that is not seen."""
+    """Least visible share of the ball's area; a ball more hidden than that is not seen."""
     farthest_m: float = Setting(default=8.0, gt=0.0)
-    """Beyond that nothing is taken for a ball."""
+    """Largest distance of a ball."""
 
 
 class OmniBall(Detector):

@@ -19,9 +19,9 @@ class OmniFieldConfig(DetectorConfig):
     rays: int = Setting(default=180, ge=16, le=720)
     """Scan lines around the robot."""
     nearest_m: float = Setting(default=0.28, gt=0.0)
-    """Where the rays begin: just outside the robot's own body."""
+    """Begin of the rays: just outside the robot's own body."""
     farthest_m: float = Setting(default=7.0, gt=0.5)
-    """Where the rays end."""
+    """End of the rays."""
     ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
     """Radii of the circles that meet those lines which run towards the robot."""
     most_points: int = Setting(default=150, ge=1)
@@ -53,7 +53,7 @@ class OmniField(Detector):
 
     @classmethod
     def preload(cls, config: OmniFieldConfig) -> None:
-        """The scan lines are the same for all robots."""
+        """Computes the scan lines, which are the same for all robots."""
         _star(config)
         _rings(config)
 

@@ -157,7 +157,7 @@ class BallTracker:
         self._confirmed = {}
 
     def _overruled(self, sighting: Sighting) -> bool:
-        """True if a better source has confirmed the track since the sighting's exposure."""
+        """Returns whether a better source has confirmed the track since the sighting's exposure."""
         exposed_s = self._now_s - sighting.age_s
         return any(
             robot != sighting.robot and seen_s >= exposed_s - 1e-6 and weakness < sighting.weakness

@@ -28,7 +28,7 @@ class _Capture(Skill):
         if self._held_s >= _SURE_S:
             return Step(dribble=True, status=Status.FINAL)
         if not scene.view.ball.known and not scene.holds_ball:
-            return failed("nobody knows where the ball is")
+            return failed("the ball is unknown")
         return Step(self._approach(scene), dribble=self._near(scene))
 
     def _near(self, scene: Scene) -> bool:
@@ -36,7 +36,7 @@ class _Capture(Skill):
 
     @abstractmethod
     def _approach(self, scene: Scene) -> Drive:
-        """How to get to the ball."""
+        """Returns the drive towards the ball."""
 
 
 class GetBall(_Capture):

@@ -9,7 +9,7 @@ from procs.model.field import Field, Point
 
 
 class Status(IntEnum):
-    """How a skill is doing; the numbers are those of the message, after the Fawkes skiller."""
+    """Progress of a skill; the numbers are those of the message, after the Fawkes skiller."""
 
     INACTIVE = 0
     FINAL = 1
@@ -40,7 +40,7 @@ class Scene(NamedTuple):
 
 
 class Drive(NamedTuple):
-    """Where to drive."""
+    """Target of a drive."""
 
     place: Point
     heading_rad: float
@@ -62,7 +62,7 @@ class Step(NamedTuple):
 
 
 def failed(reason: str) -> Step:
-    """The robot stops; says why."""
+    """Returns the step of a failed skill: the robot stops, for a reason."""
     return Step(status=Status.FAILED, reason=reason)
 
 

@@ -25,7 +25,7 @@ class Contacts:
         return touching
 
     def take_collisions(self) -> list[Event]:
-        """The hardest collision of each pair of robots since the last call."""
+        """Returns the hardest collision of each pair of robots since the last call."""
         collisions = sorted(self._collisions.values())
         self._collisions.clear()
         return collisions

@@ -27,7 +27,7 @@ class Drive:
         self._measured_s = 0.0
 
     def command(self, wheels_m_s: Wheels, now_us: int) -> None:
-        """Rim speeds wanted; the motors begin to follow after the delay. NaN stops its wheel."""
+        """Takes the wanted rim speeds; the motors begin to follow after the delay. NaN stops its wheel."""
         limit = self._robot.wheel_limit_m_s
         first, second, third = (min(limit, max(-limit, 0.0 if math.isnan(speed) else speed)) for speed in wheels_m_s)
         self._line.put((first, second, third), now_us)
@@ -49,7 +49,7 @@ class Drive:
         self._measured_s += duration_s
 
     def push(self, velocity: Velocity) -> tuple[float, float, float]:
-        """Force in N along x and y of the robot frame and torque in Nm on a body that moves at `velocity`."""
+        """Returns force in N along x and y of the robot frame and torque in Nm on a body that moves at `velocity`."""
         distance_m, full_slip_m_s = self._robot.wheel_distance_m, self._robot.full_slip_m_s
         (rim_1, rim_2, rim_3), (ground_1, ground_2, ground_3) = self.wheels_m_s, wheels_of(velocity, distance_m)
         first = self._grip_n * math.tanh((rim_1 - ground_1) / full_slip_m_s)
@@ -58,7 +58,7 @@ class Drive:
         return SIN_60 * (third - first), 0.5 * (first + third) - second, distance_m * (first + second + third)
 
     def measured_m_s(self) -> Wheels:
-        """Mean rim speeds since the last call; the speeds now if no time has passed."""
+        """Returns the mean rim speeds since the last call; the present ones if no time has passed."""
         if not self._measured_s:
             return self.wheels_m_s
         first, second, third = (way / self._measured_s for way in self._travelled_m)

@@ -31,7 +31,7 @@ class Push(NamedTuple):
 
 
 class Kicker:
-    """Kicker and ball handling of one robot. Without a ball in the mouth a kick is spent on the air."""
+    """Kicker and ball handling of one robot. Without a ball in the mouth a kick has no effect."""
 
     def __init__(self, mouth: Mouth, kicker: KickerSettings, noise: Noise, rng: np.random.Generator) -> None:
         self.mouth = mouth
@@ -46,15 +46,15 @@ class Kicker:
         self._handling_from_us = 0
 
     def command(self, command: KickerCommand, now_us: int) -> None:
-        """Hands over the driver's newest wish."""
+        """Takes the newest command of the driver."""
         self._line.put(command, now_us)
 
     def charged(self, now_us: int) -> bool:
-        """Whether a kick is possible."""
+        """Returns whether a kick is possible."""
         return now_us >= self._charged_from_us
 
     def act(self, now_us: int, duration_s: float) -> Push | None:
-        """Handles the ball or kicks it, for one step; None if it does not touch the ball."""
+        """Handles or kicks the ball for one step; returns None without an effect on the ball."""
         push = None
         for command in self._line.due(now_us):
             self._dribble = command.dribble

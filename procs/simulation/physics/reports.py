@@ -11,7 +11,7 @@ _TEAMS = {CYAN: game_state_t.TEAM_CYAN, MAGENTA: game_state_t.TEAM_MAGENTA}
 
 
 def event_message(event: Event) -> match_event_t:
-    """An event for the referee; a goal's team is the one that attacks the goal the ball lies in."""
+    """Returns an event for the referee; the team of a goal is the one that attacks that goal."""
     message = match_event_t()
     message.kind = int(event.kind)
     scorer = CYAN if event.x_m > 0 else MAGENTA
@@ -22,7 +22,7 @@ def event_message(event: Event) -> match_event_t:
 
 
 def robot_message(robot: Robot) -> true_robot_t:
-    """A robot's true pose (heading within -pi..pi) and velocity in the world frame."""
+    """Returns a robot's true pose (heading within -pi..pi) and velocity in the world frame."""
     message = true_robot_t()
     message.name = robot.name
     message.x_m, message.y_m = robot.body.position

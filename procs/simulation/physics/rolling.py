@@ -23,11 +23,11 @@ class RollingFriction:
         self.spin_y_m_s = 0.0
 
     def roll(self, vx_m_s: float, vy_m_s: float) -> None:
-        """Something outside makes the ball roll at this velocity, such as the hands that place it."""
+        """Sets the spin to that of a ball that rolls at this velocity."""
         self.spin_x_m_s, self.spin_y_m_s = vx_m_s, vy_m_s
 
     def advance(self, vx_m_s: float, vy_m_s: float, duration_s: float) -> tuple[float, float]:
-        """The ball's velocity `duration_s` later, if nothing but the ground acts on it."""
+        """Returns the velocity of the ball after `duration_s` on the ground, without other forces."""
         slip_x, slip_y = vx_m_s - self.spin_x_m_s, vy_m_s - self.spin_y_m_s
         slip_m_s = math.hypot(slip_x, slip_y)
         loss_m_s = self._sliding_m_s2 * duration_s

@@ -17,7 +17,7 @@ class Encoders:
         self._scales = (1.0 + noise.wheel_scale_sd * rng.standard_normal(3)).tolist()
 
     def read(self, wheels_m_s: Wheels) -> list[float]:
-        """Rim speeds as measured."""
+        """Returns the rim speeds as measured."""
         noise = (self._noise.wheel_speed_sd * self._rng.standard_normal(3)).tolist()
         return [speed * (scale + error) for speed, scale, error in zip(wheels_m_s, self._scales, noise, strict=True)]
 
@@ -31,7 +31,7 @@ class Imu:
         self._drift_rad = 0.0
 
     def read(self, heading_rad: float, yaw_rate_rad_s: float, passed_s: float) -> tuple[float, float]:
-        """Heading (-pi..pi) and yaw rate as measured, `passed_s` after the last reading."""
+        """Returns heading (-pi..pi) and yaw rate as measured, `passed_s` after the last reading."""
         drift, compass, gyro = self._rng.standard_normal(3).tolist()
         self._drift_rad += self._noise.compass_drift_sd_rad * math.sqrt(passed_s / 60.0) * drift
         measured_rad = heading_rad + self._drift_rad + self._noise.compass_sd_rad * compass

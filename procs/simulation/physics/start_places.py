@@ -1,4 +1,4 @@
-"""Where robots stand before the kick-off, and where the ball can be put without standing under a robot."""
+"""Places of robots before the kick-off, and places for the ball that are free of robots."""
 
 import math
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ _PLACES = {1: (0.95, 0.0), 2: (0.3, 0.0), 3: (0.45, -0.4), 4: (0.45, 0.4), 5: (0
 
 
 def starting_pose(robot: str, field: Field) -> Pose:
-    """A place in the own half, facing the other goal; number 1 keeps the goal, others line up along the touch line."""
+    """Returns a place in the own half, facing the other goal: number 1 in the goal, high numbers at the touch line."""
     number = number_of(robot)
     depth, offset = _PLACES.get(number, (0.9 - 0.1 * (number % 9), -0.85))
     side = side_of(team_of(robot))
@@ -30,7 +30,7 @@ def starting_pose(robot: str, field: Field) -> Pose:
 
 
 def free_place(wanted: Point, robots: Iterable[Point], clearance_m: float) -> Point:
-    """A place near the wanted one with at least `clearance_m` to every robot's middle: the wanted one if it is free.
+    """Returns the free place nearest to the wanted one, with `clearance_m` to the middle of every robot.
 
     Each robot in the way pushes the place straight away from itself, a few rounds long; between robots that leave no
     room the place may stay too close.

@@ -59,11 +59,11 @@ class World:
 
     @property
     def ball_in_field(self) -> bool:
-        """Whether the ball is on the field; on the line is on the field."""
+        """True if the ball is on the field, lines included."""
         return self._judge.ball_in_field
 
     def place_ball(self, x_m: float, y_m: float) -> None:
-        """The field crew puts the ball down at rest: inside the border, beside a robot that stands in the way."""
+        """Puts the ball down at rest: inside the border, beside a robot that stands in the way."""
         x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
         y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
         x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))

@@ -24,7 +24,7 @@ class GroundView:
         self._maps = _ground_maps(mirror)
 
     def picture(self, x_m: float, y_m: float, heading_rad: float, right: int = 0, down: int = 0) -> Picture:
-        """The ground seen from a pose in the world; `right` and `down` move the picture by so many half pixels."""
+        """Returns the ground seen from a pose in the world; `right` and `down` shift the picture by half pixels."""
         carpet = self._carpet
         cosine, sine = (f(heading_rad) / carpet.metres_per_px for f in (math.cos, math.sin))
         column, row = (at / carpet.metres_per_px + zero for at, zero in zip((x_m, y_m), carpet.origin_px, strict=True))
@@ -40,12 +40,12 @@ class GroundView:
 
 @lru_cache(maxsize=4)
 def _ground_maps(mirror: Mirror) -> list[list[NDArray[np.float32]]]:
-    """For pictures moved by a half pixel down and to the right, or not; made once a process, for every camera in it."""
+    """Returns the maps of pictures with and without a shift of half a pixel, made once in each process."""
     return [[_ground_map(mirror, right / 2, down / 2) for right in (0, 1)] for down in (0, 1)]
 
 
 def _ground_map(mirror: Mirror, right_px: float, down_px: float) -> NDArray[np.float32]:
-    """Robot frame coordinates of the ground for each pixel of the moved picture, and for a margin around it."""
+    """Returns robot frame coordinates of the ground for each pixel of the moved picture, and for a margin around it."""
     at_px = np.arange(-MARGIN_PX, mirror.size_px + MARGIN_PX)
     columns, rows = np.meshgrid(at_px - right_px, at_px - down_px)
     ground_m = mirror.ground(np.column_stack((columns.ravel(), rows.ravel())))

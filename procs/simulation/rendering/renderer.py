@@ -51,7 +51,7 @@ class Renderer:
         self._seen, self._unseen = _masks(mirror, bodies.robot_radius_m)
 
     def render(self, scene: Scene, shake_px: tuple[float, float] = (0.0, 0.0)) -> Picture:
-        """The picture, size x size x 3, without noise; equal scenes give equal bytes.
+        """Returns the picture, size x size x 3, without noise; equal scenes give equal bytes.
 
         `shake_px` moves everything seen in the mirror by so many columns and rows, at most six, in steps of a half.
         """
@@ -108,7 +108,7 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def _masks(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, Picture]:
-    """Fixed parts of a frame: the robot's own body in the middle, black outside the mirror; made once a process."""
+    """Returns the fixed parts of a frame: the robot's own body, and black outside the mirror; cached."""
     from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
     radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
     bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)

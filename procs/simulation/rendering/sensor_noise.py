@@ -22,7 +22,7 @@ class SensorNoise:
         self._flicker = flicker
 
     def apply(self, frame: Picture, rng: np.random.Generator) -> Picture:
-        """The picture with noise; takes the same count of random numbers from `rng` for every frame."""
+        """Returns the picture with noise; draws equally many random numbers for every frame."""
         top, left = rng.integers(_SPARE_PX, size=2)
         gain = self._brightness * (1.0 + self._flicker * rng.standard_normal())
         if gain != 1.0:

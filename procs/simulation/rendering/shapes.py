@@ -22,7 +22,7 @@ class Bodies:
 
 
 def pillars(at_m: Floats, radius_m: float, height_m: float) -> Floats:
-    """Lower and upper rims of round upright bodies at points (n, 2): (n, corners, 3). Their hull is what one sees."""
+    """Returns the rims (n, corners, 3) of round upright bodies at points (n, 2); their hull is the visible shape."""
     rims = at_m[:, None] + radius_m * np.column_stack((np.cos(_CORNERS_RAD), np.sin(_CORNERS_RAD)))
     return np.concatenate((_at_height(rims, 0.0), _at_height(rims, height_m)), axis=1)
 

@@ -118,7 +118,7 @@ def test_lag_of_an_opponent_is_its_way_behind_by_its_speed() -> None:
     rows = {row.name: row.value for row in rows_of([believed(made) | conducted(made)])}
     assert rows["opponents, lag"] == pytest.approx(0.1)
     assert rows["opponents, position"] == pytest.approx(0.2)
-    assert (rows["opponents known"], rows["opponents that are none"]) == (1.0, 0.0)
+    assert (rows["opponents known"], rows["opponents that do not exist"]) == (1.0, 0.0)
 
 
 @pytest.mark.parametrize(

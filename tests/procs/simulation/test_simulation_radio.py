@@ -1,4 +1,4 @@
-"""The radio: who gets what, when, how much is lost, and the same again with the same seed."""
+"""The radio: receivers, delay, loss, and equal results with equal seeds."""
 
 from typing import Any
 

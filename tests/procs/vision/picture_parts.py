@@ -71,7 +71,7 @@ def shades(count: int, height_px: int = 120, width_px: int = 160) -> list[Pictur
 
 
 def write_folder(folder: Path, pictures: list[Picture]) -> Path:
-    """Without leading zeros in their numbers, and with something that is no picture."""
+    """Writes pictures without leading zeros in their numbers, and a file that is not a picture."""
     folder.mkdir()
     (folder / "readme.txt").write_text("pictures")
     for number, pixels in enumerate(pictures):
@@ -94,7 +94,7 @@ def read(file: Path) -> Picture:
 
 
 class Stream:
-    """A network camera: gives whoever connects the same picture again and again."""
+    """A network camera: sends the same picture to every client again and again."""
 
     def __init__(self, pixels: Picture, port: int = 0) -> None:
         jpeg = cv2.imencode(".jpg", pixels)[1].tobytes()
@@ -127,7 +127,7 @@ class Stream:
         return f"http://127.0.0.1:{self.port}/camera.mjpeg"
 
     def end(self) -> None:
-        """Nobody is served any more."""
+        """Stops the server."""
         self._ending.set()
         self._server.shutdown()
         self._server.server_close()

@@ -121,7 +121,7 @@ def test_a_camera_without_its_robot_says_so_once_and_goes_on() -> None:
         bench.port("ground_truth").put(truth)
         bench.iterate()
     assert bench.port("image").sent == []
-    assert [line.text for line in bench.logged] == ["no pictures: robot 'cyan4' is not on the field; there is cyan1"]
+    assert [line.text for line in bench.logged] == ["no pictures: robot 'cyan4' is not on the field, which has cyan1"]
     truth.robots.append(robot("cyan4", 1.0, 0.0, 0.0))
     bench.port("ground_truth").put(truth)
     bench.iterate()

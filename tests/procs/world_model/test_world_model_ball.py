@@ -133,7 +133,7 @@ def test_fused_ball_beats_the_best_single_robot() -> None:
         for state in course():
             seen = [one.position_m for eye in watchers if (one := eye.look(state[:2]))]
             averages.append(np.mean(seen, axis=0) - state[:2])
-    assert fused <= 0.8 * rms(np.array(averages)), "a plain average of what everybody sees"
+    assert fused <= 0.8 * rms(np.array(averages)), "a plain average of all sightings"
 
 
 def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> float:

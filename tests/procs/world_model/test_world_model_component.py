@@ -85,7 +85,7 @@ class TeamOnBench:
         self.radio = Bench(Radio, "team_cyan/radio", namespaces=names, **settings)
 
     def tick(self, ball_m: Floats | None, blind: tuple[str, ...] = (), others_m: tuple[Floats, ...] = ()) -> None:
-        """Everybody looks, thinks, tells; `blind` ones do not see the ball. They see each other and all the others."""
+        """Runs a tick of all robots, which see each other and `others_m`; the `blind` ones do not see the ball."""
         for robot in self.robots:
             around = [other.pose[:2] for other in self.robots if other is not robot] + list(others_m)
             robot.sense(None if robot.name in blind else ball_m, around)
