@@ -1,4 +1,4 @@
-"""Keeps settings in the host-specific file beside a launch file, whole or not at all."""
+"""Writes settings into the host file beside a launch file, all of them or none."""
 
 import contextlib
 import fcntl
@@ -17,17 +17,17 @@ from fwk.plan.files.source import read_value
 
 @dataclass(frozen=True)
 class Kept:
-    """A setting as the file says it."""
+    """A setting of the host file."""
 
     component: str
-    """Name or pattern."""
+    """Name or pattern of the component."""
     setting: str
-    """Dotted."""
+    """Dotted name of the setting."""
     value: Any
 
     @classmethod
     def of(cls, typed: str) -> "Kept":
-        """From `NAME.SETTING=VALUE`, which was checked already."""
+        """Makes a setting of `NAME.SETTING=VALUE`, which was checked already."""
         path, _, text = typed.partition("=")
         component, _, setting = path.partition(".")
         node = read_value(text, "", Problems())
@@ -35,11 +35,11 @@ class Kept:
 
 
 class KeepError(Exception):
-    """The file could not be changed and is as it was; says why."""
+    """The host file could not be changed and is as it was; the text says why."""
 
 
 def keep(file: Path, settings: Sequence[Kept]) -> None:
-    """Writes settings into the file, which need not be there yet.
+    """Writes settings into the file, which is made if it does not exist.
 
     When this returns, they are on the disk; if the process is killed meanwhile, the file is the old or the new one.
 
@@ -57,7 +57,7 @@ def keep(file: Path, settings: Sequence[Kept]) -> None:
 
 
 def forget(file: Path, paths: Sequence[str]) -> None:
-    """Takes settings, `NAME.SETTING` each, out of the file; removes a file that then holds nothing.
+    """Removes settings, `NAME.SETTING` each, from the file; removes a file that is then empty.
 
     Raises:
         KeepError: one of them is not in it, or it cannot be written; the file is as it was.
@@ -92,7 +92,7 @@ def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
 
 
 def _check_wins(config: dict[str, Any], kept: Kept) -> None:
-    """What stands further down wins; then keeping it here would have no effect."""
+    """Refuses a setting that a later entry of the file overrides: keeping it would have no effect."""
     names = list(config)
     for later in names[names.index(kept.component) + 1 :]:
         below = config[later]
@@ -104,7 +104,7 @@ def _check_wins(config: dict[str, Any], kept: Kept) -> None:
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[int]:
-    """One writer at a time; gives the folder's descriptor."""
+    """Locks the folder for one writer; gives the descriptor of the folder."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -130,7 +130,7 @@ def _write(file: Path, text: str, folder: int) -> None:
 
 
 def _like(descriptor: int, file: Path) -> None:
-    """Mode and owner of the file that is replaced."""
+    """Gives the new file mode and owner of the file that it replaces."""
     old = file.stat()
     os.fchmod(descriptor, old.st_mode & 0o7777)
     with contextlib.suppress(PermissionError):

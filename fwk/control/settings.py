@@ -1,4 +1,4 @@
-"""The settings of a run's components as they are now, where each comes from, and what they may become."""
+"""The settings of a run's components: their values, where each comes from, and the changes that are asked for."""
 
 import dataclasses
 import json
@@ -25,31 +25,31 @@ _NOW = "now"
 
 @dataclass(frozen=True)
 class NewSettings:
-    """All settings that a component gets, and which of them are said anew."""
+    """New settings of a component."""
 
     component: int
     values: dict[str, Any]
     said: dict[str, Any]
-    """Dotted name to value."""
+    """Changed values by dotted name."""
 
     @property
     def text(self) -> str:
-        """All settings, as JSON."""
+        """All settings of the component, as JSON."""
         return json.dumps(self.values)
 
 
 class RunSettings:
-    """What every component is set to."""
+    """The effective settings of all components."""
 
     def __init__(self, plan: Plan) -> None:
         self._plan = plan
         self._values = {component.index: component.config for component in plan.components}
         self._origins = {component.index: dict(component.origins) for component in plan.components}
-        self._asked: dict[int, dict[str, Any]] = {}  # what components get at the next boundary
+        self._asked: dict[int, dict[str, Any]] = {}  # by component: settings from the next boundary on
         self._changed: set[int] = set()
 
     def rows(self, patterns: Sequence[str]) -> list[dict[str, Any]]:
-        """Name, value, origin, type and meaning of every setting; of some components, or single settings.
+        """Returns name, value, origin, type and meaning of all settings, or of those that match the patterns.
 
         Raises:
             RequestError: a pattern means nothing.
@@ -63,12 +63,12 @@ class RunSettings:
         return [row for row in found if not patterns or any(_means(pattern, row) for pattern in patterns)]
 
     def changed(self, components: Sequence[int]) -> dict[str, str]:
-        """Settings of these components that differ from the plan's: by name, as JSON."""
+        """Returns the settings of these components that differ from the plan's: by name, as JSON."""
         some = self._changed.intersection(components)
         return {self._plan.components[index].name: json.dumps(self._values[index]) for index in sorted(some)}
 
     def check(self, sets: Sequence[str]) -> list[NewSettings]:
-        """What components get by `NAME.SETTING=VALUE`, on top of what is asked for already; nothing is changed yet.
+        """Returns what components get by `NAME.SETTING=VALUE`, on top of what is asked for; changes nothing.
 
         Raises:
             RequestError: with every mistake.
@@ -76,7 +76,7 @@ class RunSettings:
         problems = Problems()
         for text in sets:
             if "." not in text.partition("=")[0]:
-                problems.add("", "", f"'{text}' is no NAME.SETTING=VALUE; what belongs to the run as a whole stays")
+                problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; what belongs to the run as a whole stays")
         typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
         wishes = typed.at("config").value if typed.child("config") else {}
         found = [
@@ -97,11 +97,11 @@ class RunSettings:
         return found
 
     def ask(self, new: NewSettings) -> None:
-        """The component gets these at the next boundary."""
+        """Notes that a component gets these settings at the next boundary."""
         self._asked[new.component] = new.values
 
     def take(self, new: NewSettings, origin: str) -> None:
-        """The component has these from now on."""
+        """Notes that a component has these settings from now on."""
         self._values[new.component] = new.values
         self._asked.pop(new.component, None)
         self._origins[new.component] |= dict.fromkeys(new.said, origin)
@@ -116,7 +116,7 @@ class RunSettings:
         values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
         said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
         texts += [
-            f"'{name}' stays as it is while the run goes on; say it in the launch file and start the run again"
+            f"'{name}' stays as it is while the run goes on; set it in the launch file and start the run again"
             for name, value in said.items()
             if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
         ]
@@ -181,7 +181,7 @@ def _value(values: Any, dotted: str) -> Any:
 
 @cache
 def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
-    """Type and meaning of a setting, and whether it can be edited while the run goes on."""
+    """Returns type and meaning of a setting, and whether it can be edited while the run goes on."""
     annotation: Any = kind
     meaning, editable = "", True
     for key in dotted.split("."):
@@ -198,7 +198,7 @@ def _type_name(annotation: Any) -> str:
 
 
 def _field(kind: Any, key: str) -> tuple[Any, str, bool]:
-    """Type and meaning of a field of settings, or of a dataclass in them, and whether it is fixed for the run."""
+    """Returns type and meaning of a field of settings or of a dataclass in them, and whether the run fixes it."""
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
         return found.annotation, found.description or "", bool(found.frozen)

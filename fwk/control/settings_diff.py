@@ -1,4 +1,4 @@
-"""What the launch files say otherwise than a run has it: for taking over edited files without a new start."""
+"""Compares launch files with the settings of a run, to take over edited files without a restart."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +9,7 @@ from fwk.plan.files.overrides import PLACE
 
 
 def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], list[str]]:
-    """`NAME.SETTING=VALUE` for each setting of a run that the freshly loaded plan has otherwise.
+    """Returns `NAME.SETTING=VALUE` for each setting of a run that differs in the freshly loaded plan.
 
     First those that can be changed while the run goes on, then the others. What was typed with `--set` when the run
     began stays.

@@ -1,4 +1,4 @@
-"""Changes or takes out one value in a YAML text and leaves everything else as people wrote it, comments too."""
+"""Sets or removes one value in a YAML text and leaves all other characters as they are, comments too."""
 
 import json
 import math
@@ -16,16 +16,16 @@ _PLAIN_KEY = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
 
 
 class EditError(Exception):
-    """The text cannot be changed without harm; says why."""
+    """The text cannot be changed without touching other values; the text of the error says why."""
 
 
 def with_value(text: str, path: Sequence[str], value: Any) -> str:
-    """The text with `value` at the mapping keys of `path`, which are added where they are missing.
+    """Returns the text with `value` at the mapping keys of `path`, which are added where they are missing.
 
-    The result is read again and compared, so that a text too artful for this is refused, not spoiled.
+    The result is read again and compared, so that a text with aliases, for example, is refused and not spoiled.
 
     Raises:
-        EditError: it is no YAML, or the value cannot be put there.
+        EditError: the text is not YAML, or the value cannot be put there.
     """
     before = read(text)
     changed = _edited(text if text.strip() else "", path, value)
@@ -35,10 +35,10 @@ def with_value(text: str, path: Sequence[str], value: Any) -> str:
 
 
 def without(text: str, path: Sequence[str]) -> str:
-    """The text without the value at the mapping keys of `path`, and without keys that have nothing below them then.
+    """Returns the text without the value at the mapping keys of `path`, and without keys that are then empty.
 
     Raises:
-        EditError: it is no YAML, no such value is there, or it cannot be taken out without touching others.
+        EditError: the text is not YAML, has no such value, or the value cannot be removed without touching others.
     """
     data = read(text)
     depth, below = 0, data
@@ -49,20 +49,20 @@ def without(text: str, path: Sequence[str]) -> str:
         below = below[key]
     changed = _cut(text, path[: depth + 1])
     if not _reads_as(changed, _less(data, path[: depth + 1])):
-        raise EditError(f"'{'.'.join(path)}' cannot be taken out without touching other values; do it by hand")
+        raise EditError(f"'{'.'.join(path)}' cannot be removed without touching other values; do it by hand")
     return changed
 
 
 def read(text: str) -> Any:
-    """The text as plain data; of an empty one, an empty mapping.
+    """Returns the text as plain data; an empty text is an empty mapping.
 
     Raises:
-        EditError: it is no YAML.
+        EditError: the text is not YAML.
     """
     problems = Problems()
     node = read_value(text, "", problems)
     if problems or node is None:
-        raise EditError("it is no YAML; put it right first: fwk check says where")
+        raise EditError("the text is not YAML; correct it first: fwk check says where")
     return node.plain() or {}
 
 
@@ -89,7 +89,7 @@ def _less(data: Any, path: Sequence[str]) -> Any:
 
 
 def _cut(text: str, path: Sequence[str]) -> str:
-    """The text without the pair at `path`, which is there."""
+    """Returns the text without the pair at `path`, which exists."""
     around: Any = None
     name: Any = None
     node: Any = yaml.compose(text, yaml.SafeLoader)
@@ -122,9 +122,9 @@ def _edited(text: str, path: Sequence[str], value: Any) -> str:
 
 def _replaced(text: str, node: yaml.Node, value: Any) -> str:
     start, end = node.start_mark.index, _end(node)
-    gap = " " if start == end else ""  # a key with nothing behind its colon
+    gap = " " if start == end else ""  # a key without a value
     if isinstance(node, yaml.CollectionNode) and not node.flow_style:
-        gap = "  "  # a list may stand as far left as its key, a value on one line may not
+        gap = "  "  # a list may have the indentation of its key, a value on one line may not
     newline = "\n" if text[start:end].endswith("\n") else ""
     return f"{text[:start]}{gap}{flow(value)}{newline}{text[end:]}"
 
@@ -141,7 +141,7 @@ def _inserted(text: str, node: yaml.MappingNode, path: Sequence[str], value: Any
 
 
 def _end(node: yaml.Node) -> int:
-    """Where a value ends; the parser counts what follows a block as part of it."""
+    """Returns where a value ends; the parser counts what follows a block as part of it."""
     if isinstance(node, yaml.CollectionNode) and not node.flow_style and node.value:
         last = node.value[-1]
         return _end(last[1] if isinstance(last, tuple) else last)
@@ -169,7 +169,7 @@ def _key(key: str) -> str:
 
 
 def flow(value: Any) -> str:
-    """A value as YAML on one line."""
+    """Returns a value as YAML on one line."""
     if isinstance(value, dict):
         return "{" + ", ".join(f"{_key(str(key))}: {flow(below)}" for key, below in value.items()) + "}"
     if isinstance(value, list):

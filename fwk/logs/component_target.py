@@ -1,4 +1,4 @@
-"""Lines of text on their way to components that ask for them (`LogLines`)."""
+"""Hands lines of text to components with the aspect `LogLines`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -14,7 +14,7 @@ _decode = decoder(log_t, "fwk/log")
 
 
 class LogTarget:
-    """A sink that hands lines in as what comes from outside: stamped, visible from a tick on, recorded."""
+    """Sink that makes lines messages from outside: stamped, visible from the next tick on, recorded."""
 
     def __init__(self, take_in: Callable[[str, Any], int], log: Logger) -> None:
         self._take_in = take_in
@@ -23,22 +23,22 @@ class LogTarget:
         self._say_us = 0
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Takes a line."""
+        """Takes a line; ignores all other messages."""
         if channel != "fwk/log":
             return
         try:
             self._take_in(LINES, _decode(data))
         except IngressFullError:
             self._dropped += 1
-        except MessageError:  # the other targets name it
+        except MessageError:  # it does not decode; the other targets name it
             return
 
     def tick(self) -> None:
-        """A tick is complete: there is room again to say what there was none for, at most once a second."""
+        """Reports dropped lines, at most once a second: after a tick there is room for the report."""
         now_us = monotonic_us()
         if self._dropped and now_us >= self._say_us:
             dropped, self._dropped, self._say_us = self._dropped, 0, now_us + US_PER_S
             self._log.warning(f"{dropped} lines did not reach the components that ask for lines: too many in one tick")
 
     def close(self) -> None:
-        """The run is over."""
+        """Does nothing."""

@@ -1,4 +1,4 @@
-"""The text log once more for programs: one JSON object a line."""
+"""The text log for programs: one JSON object a line."""
 
 import json
 
@@ -11,13 +11,13 @@ FILE = "fwk.log.jsonl"
 
 
 class JsonLog:
-    """A sink of the gateway: the fields of `core.log_t`, the level as a word."""
+    """Sink of the gateway that writes the fields of `core.log_t`, with the level as a word."""
 
     def __init__(self, file: RotatingFile) -> None:
         self._file = file
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Adds a line of text; anything else is not its business."""
+        """Writes a line of text; ignores all other messages."""
         if channel != "fwk/log":
             return
         line = to_dict(log_t.decode(data))
@@ -25,7 +25,7 @@ class JsonLog:
         self._file.write(json.dumps(line))
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def close(self) -> None:
         """Closes the file."""

@@ -1,4 +1,4 @@
-"""Reads a run's text log, the one for programs, and chooses lines from it."""
+"""Reads the text log for programs of a run and selects lines from it."""
 
 import json
 import re
@@ -14,33 +14,33 @@ from fwk.logs.rotating import read_rotating
 from fwk.model.selection import matches
 from lcmtypes.core import log_t
 
-_WALL_US_MAX = 250_000_000_000 * US_PER_S  # what calendars know
+_WALL_US_MAX = 250_000_000_000 * US_PER_S  # the last year that calendars can express
 
 
 @dataclass(frozen=True)
 class Filter:
-    """Which lines are wanted; what is None is all the same."""
+    """Selection of lines; a field that is None selects all."""
 
     level: str | None = None
-    """This one and worse."""
+    """Least level."""
     component: str | None = None
-    """Name or pattern."""
+    """Name or pattern of the component."""
     tick: tuple[int, int] | None = None
-    """First and last."""
+    """First and last tick."""
     time_us: tuple[int, int] | None = None
-    """Logical time, first and last."""
+    """First and last logical time, in seconds."""
     file: str | None = None
     """Name of the source file, with as many of its folders as wanted."""
     line: int | None = None
     text: re.Pattern[str] | None = None
-    """Found anywhere in the text."""
+    """Pattern found anywhere in the text."""
     since_us: int | None = None
-    """Wall time since the epoch."""
+    """First wall time since the epoch."""
     until_us: int | None = None
-    """The same."""
+    """Last wall time since the epoch."""
 
     def wants(self, line: dict[str, Any]) -> bool:
-        """Whether a line is wanted."""
+        """Returns whether a line is selected."""
         return (
             (self.level is None or LEVELS.get(line["level"], LEVELS["error"]) >= LEVELS[self.level])
             and (self.component is None or matches(line["component"], self.component))
@@ -55,9 +55,9 @@ class Filter:
 
 
 def read_lines(file: Path, goes_on: Callable[[], bool] = lambda: False) -> Iterator[dict[str, Any]]:
-    """The lines of a log as dicts of the fields of `core.log_t`; waits for more as long as `goes_on()` is true.
+    """Yields the lines of a log as dicts of the fields of `core.log_t`; waits for more while `goes_on()` is true.
 
-    What is no such line, as one that a killed run left unfinished, is passed over.
+    Lines that are not such an object, such as the last line of a killed run, are skipped.
     """
     for text in read_rotating(file, goes_on):
         with suppress(ValueError, RecursionError):
@@ -77,7 +77,7 @@ def _is_line(line: Any) -> bool:
 
 
 def from_plain(line: dict[str, Any]) -> log_t:
-    """The message that a line was written from."""
+    """Returns the message that a line was written from."""
     made = log_t()
     for name in log_t.__slots__:
         setattr(made, name, line[name])

@@ -1,4 +1,4 @@
-"""Text files of bounded size and number: written line by line, and read to their end or for as long as they grow."""
+"""Text files of bounded size and number: written line by line, read to their end or for as long as they grow."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -14,10 +14,9 @@ _CHUNK = 1 << 20
 
 
 class RotatingFile:
-    """Appends whole lines. A full file `log` becomes `log.1`, that `log.2`; of more than `files` the oldest goes.
+    """Appends whole lines. A full file `log` becomes `log.1`, that `log.2`; of more than `files` the oldest is removed.
 
-    When the disk is full lines are left out, `report` is told so once, and again when there is room: what is logged
-    goes on.
+    While the disk is full, lines are left out; `report` gets a text when that begins and when it ends.
     """
 
     def __init__(self, path: Path, max_bytes: int, files: int, report: Callable[[str], None]) -> None:
@@ -28,7 +27,7 @@ class RotatingFile:
         self._descriptor = -1
         self._bytes = 0
         self._left_out = 0
-        with suppress(OSError):  # the first line says what is wrong
+        with suppress(OSError):  # the first line reports the reason
             self._open()
 
     def write(self, line: str) -> None:
@@ -82,22 +81,22 @@ class RotatingFile:
 
 
 def names(path: Path, files: int) -> list[Path]:
-    """Where a log of so many files lies, the oldest first."""
+    """Returns the paths of a log of this number of files, the oldest first."""
     return [*(path.with_name(f"{path.name}.{number}") for number in range(files - 1, 0, -1)), path]
 
 
 def read_rotating(path: Path, goes_on: Callable[[], bool] = lambda: False) -> Iterator[str]:
-    """The whole lines of all files of a log, the oldest first; waits for more as long as `goes_on()` is true.
+    """Yields the whole lines of all files of a log, the oldest first; waits for more while `goes_on()` is true.
 
-    What is put aside meanwhile is read to its end. A line that a killed writer left unfinished is passed over.
+    A file that is renamed meanwhile is read to its end. A line that a killed writer left unfinished is skipped.
     """
     file: BinaryIO = open(next(iter(_there(path)), path), "rb")  # noqa: SIM115 - closed below
     following: BinaryIO | None = None
     rest = b""
     try:
         while True:
-            running = goes_on()  # asked first, so that nothing written meanwhile is missed
-            following = _next(path, file)  # also asked first: what was put aside is complete
+            running = goes_on()  # asked first, so that no line written meanwhile is missed
+            following = _next(path, file)  # also asked first: a renamed file is complete
             while chunk := file.read(_CHUNK):
                 *whole, rest = (rest + chunk).split(b"\n")
                 yield from (line.decode(errors="replace") for line in whole)
@@ -115,20 +114,20 @@ def read_rotating(path: Path, goes_on: Callable[[], bool] = lambda: False) -> It
 
 
 def _there(path: Path) -> list[Path]:
-    """The files of a log, the oldest first."""
+    """Returns the existing files of a log, the oldest first."""
     aside = [each for each in path.parent.glob(f"{path.name}.*") if each.suffix[1:].isdecimal()]
     aside.sort(key=lambda each: -int(each.suffix[1:]))
     return [*aside, path] if path.exists() else aside
 
 
 def _next(path: Path, file: BinaryIO) -> BinaryIO | None:
-    """The file that was begun when this one was put aside; of those still there, if it was removed."""
+    """Opens the file that follows this one; if this one was removed, the oldest that exists."""
     own = os.fstat(file.fileno())
     newer: BinaryIO | None = None
     for each in reversed(_there(path)):
         try:
             opened = open(each, "rb")  # noqa: SIM115 - handed out
-        except FileNotFoundError:  # put aside this moment
+        except FileNotFoundError:  # renamed this moment
             if newer:
                 newer.close()
             return _next(path, file)

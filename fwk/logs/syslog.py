@@ -1,4 +1,4 @@
-"""Lines of text to the system's log: the daemon of this machine, or one elsewhere."""
+"""Sends lines of text to a syslog daemon, of this machine or of another one."""
 
 import os
 import socket
@@ -8,16 +8,20 @@ from collections.abc import Callable
 from fwk.clock import US_PER_S
 from lcmtypes.core import log_t
 
-_USER_LEVEL = 1 << 3  # the facility of programs that people start
+_USER_LEVEL = 1 << 3  # facility of programs that people start
 _SEVERITIES = {log_t.DEBUG: 7, log_t.INFO: 6, log_t.WARNING: 4, log_t.ERROR: 3}
-_BYTES_MAX = 8192  # what daemons take at least; more of a line is left out
+_BYTES_MAX = 8192  # all daemons take as much; the rest of a line is left out
 
 
 class Syslog:
-    """A sink of the gateway: one datagram (RFC 3164) for each line.
+    """Sink of the gateway that sends one datagram (RFC 3164) for each line.
 
-    `to` is a unix socket's path, or `ADDRESS:PORT` for UDP, as numbers, because a name may take long to look up. What
-    the daemon does not take at once is missing there and counted; the run neither waits nor fails for it.
+    A line that the daemon does not take at once is missing there and counted; the run neither waits nor fails for it.
+
+    Args:
+        to: path of a unix socket, or `ADDRESS:PORT` for UDP, as numbers, because a name may take long to look up.
+        run: name of the run.
+        report: takes a text when the first line is missing, and at the end.
     """
 
     def __init__(self, to: str, run: str, report: Callable[[str], None]) -> None:
@@ -28,7 +32,7 @@ class Syslog:
         self._missing = 0
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Sends a line of text; anything else is not its business."""
+        """Sends a line of text; ignores all other messages."""
         if channel != "fwk/log":
             return
         sent = self._formatted(log_t.decode(data))
@@ -49,10 +53,10 @@ class Syslog:
             self._report(f"no syslog at {self._to}: {reason}; its lines are in the other targets")
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def close(self) -> None:
-        """Says how many lines it lacks."""
+        """Disconnects, and reports how many lines are missing."""
         self._disconnect()
         if self._missing:
             self._report(f"{self._missing} lines are missing in syslog at {self._to}")

@@ -1,4 +1,4 @@
-"""Where lines of text go: the targets of a plan, each from its own level on."""
+"""The targets of a plan's lines of text, each from its own level on."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -23,7 +23,7 @@ OFF = "off"
 
 
 class Above:
-    """A sink that gets lines of text of one level and worse, and everything else."""
+    """Sink that gives another sink the lines of text of one level and worse, and all other messages."""
 
     def __init__(self, sink: Sink, level: int) -> None:
         self._sink = sink
@@ -32,31 +32,31 @@ class Above:
         self.close = sink.close
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
-        """Passes a message on, or not."""
+        """Passes a message on unless it is a line below the level."""
         if channel != "fwk/log" or data[_LEVEL_AT] >= self._level:
             self._sink.message(channel, data, time_us)
 
 
 def above(sink: Sink, level: str) -> Sink:
-    """The sink itself if it gets all lines; otherwise one before it that keeps some back."""
+    """Returns the sink itself if it gets all lines, otherwise a sink before it that keeps some back."""
     if level == "debug":
         return sink
     return Above(sink, LEVELS.get(level, max(LEVELS.values()) + 1))
 
 
 def syslog(log: LogPlan, run: str, report: Callable[[str], None]) -> list[Sink]:
-    """The system's log, if it is wanted."""
+    """Returns the sink for syslog, if the plan wants it."""
     return [] if log.syslog == OFF else [above(Syslog(log.syslog_to, run, report), log.syslog)]
 
 
 def components(plan: Plan, take_in: Callable[[str, Any], int], log: Logger) -> list[Sink]:
-    """The components that ask for lines, if there are any."""
+    """Returns the sink for components with the aspect `LogLines`, if there are any."""
     wanted = any(channel.name == LINES for channel in plan.channels)
     return [LogTarget(take_in, log)] if wanted else []
 
 
 def files(log: LogPlan, folder: Path, report: Callable[[str], None]) -> list[Sink]:
-    """The text log for people and the one for programs, as far as they are wanted."""
+    """Returns the sinks for the text log for people and that for programs, if the plan wants them."""
 
     def file(name: str) -> RotatingFile:
         return RotatingFile(folder / name, round(log.file_mb * _MB), log.files, report)

@@ -9,13 +9,13 @@ FILE = "fwk.log"
 
 
 class TextLog:
-    """A sink of the gateway: wall time, tick, logical time, level, component, place and text."""
+    """Sink of the gateway that writes wall time, tick, logical time, level, component, place and text of each line."""
 
     def __init__(self, file: RotatingFile) -> None:
         self._file = file
 
     def message(self, channel: str, data: bytes, _time_us: int) -> None:
-        """Adds a line of text; anything else is not its business."""
+        """Writes a line of text; ignores all other messages."""
         if channel != "fwk/log":
             return
         line = log_t.decode(data)
@@ -25,7 +25,7 @@ class TextLog:
         )
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def close(self) -> None:
         """Closes the file."""

@@ -37,7 +37,7 @@ class RunOptions:
     """Lines of text instead of the live display, on a terminal too."""
 
 
-class RunBroken(Exception):  # noqa: N818 - what happened to the run
+class RunBrokenError(Exception):
     """A process that every run needs has ended; says which one and how."""
 
 

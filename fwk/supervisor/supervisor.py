@@ -32,9 +32,9 @@ from fwk.supervisor.host_process import host_processes
 from fwk.supervisor.lifecycle import Lifecycle
 from fwk.supervisor.loop import MainLoop
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.options import RunBroken, RunOptions
+from fwk.supervisor.options import RunBrokenError, RunOptions
 from fwk.supervisor.processes.attach import Attach
-from fwk.supervisor.processes.hosts import Hosts, StartFailure
+from fwk.supervisor.processes.hosts import Hosts, StartFailedError
 from fwk.supervisor.processes.starter import ProcessStarter
 from fwk.supervisor.run_clock import RunClock
 from fwk.supervisor.schedule import Schedule
@@ -136,7 +136,7 @@ class Supervisor:
         self._core.events.watch(gateway, partial(self._on_gateway_end, gateway))
         try:
             return (yield from self._work())
-        except RunBroken as broken:
+        except RunBrokenError as broken:
             self.wall_s = self._status.wall_s
             self.log.error(f"{broken}; the run cannot go on")
             return f"broken: {broken}", True
@@ -154,14 +154,14 @@ class Supervisor:
 
     def _on_gateway_end(self, gateway: GatewayProcess) -> None:
         self._core.events.unwatch(gateway)
-        raise RunBroken(f"the gateway ended: {gateway.gateway_end()}")
+        raise RunBrokenError(f"the gateway ended: {gateway.gateway_end()}")
 
     def _work(self) -> Steps[tuple[str, bool]]:
         # Until the gateway listens: it would miss what is sent before.
         yield from self.loop.tick_log.wait_for(0, self._interrupted)
         try:
             yield from self._hosts.start_all(self._report)
-        except StartFailure as failure:
+        except StartFailedError as failure:
             self.log.error(f"not started:\n{failure}")
             return f"not started: {failure}", True
         for entry in self._core.hosts:
@@ -185,7 +185,7 @@ class Supervisor:
                 for name in (yield from self._hosts.stop_all()):
                     self.log.warning(f"{name} did not stop when asked; killed")
                 return broken
-            except RunBroken as one:
+            except RunBrokenError as one:
                 broken.append(f"{one} while everything was being stopped")
                 self.log.error(broken[-1])
 

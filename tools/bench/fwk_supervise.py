@@ -20,7 +20,7 @@ from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.supervisor.options import RunOptions
-from fwk.supervisor.processes.hosts import StartFailure
+from fwk.supervisor.processes.hosts import StartFailedError
 from fwk.supervisor.processes.zygote import Zygote
 from fwk.supervisor.supervisor import Machine, Supervisor
 from tools.bench import fwk_launch_file
@@ -38,7 +38,7 @@ class MeasuredSupervisor(Supervisor):
         """Starts everything, warms up, answers the driver until it says stop.
 
         Raises:
-            StartFailure: components were not ready.
+            StartFailedError: components were not ready.
         """
         yield from self._hosts.start_all(self._report)
         with control.makefile("rw") as lines:
@@ -88,7 +88,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
         supervisor.loop.tick_log.taken = _NEVER  # there is no gateway to wait for
     try:
         network.run(supervisor.measure(control))
-    except StartFailure as failure:
+    except StartFailedError as failure:
         control.sendall(json.dumps({"error": str(failure)}).encode() + b"\n")
     network.run(supervisor.stop())
     if children:

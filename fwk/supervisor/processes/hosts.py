@@ -12,7 +12,7 @@ from fwk.supervisor.channel_requests import ChannelRequests
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_events import HostLeaves, HostLost, HostReady
 from fwk.supervisor.host_process import HostProcess, HostState
-from fwk.supervisor.options import RunBroken
+from fwk.supervisor.options import RunBrokenError
 from fwk.supervisor.processes.external_process import ExternalProcess
 from fwk.supervisor.processes.fetch_forwarder import FetchForwarder
 from fwk.supervisor.processes.output import CapturedOutput
@@ -28,7 +28,7 @@ NAMED_AFTER_US = US_PER_S // 2
 """A host that waits longer for hosts that it needs is named."""
 
 
-class StartFailure(Exception):  # noqa: N818 - what happened to the run
+class StartFailedError(Exception):
     """Components did not become ready; names each with its reason."""
 
 
@@ -65,7 +65,7 @@ class Hosts:
         """Starts every host and waits until all are ready.
 
         Raises:
-            StartFailure: some are not, with the reasons.
+            StartFailedError: some are not, with the reasons.
         """
         core = self._core
         began_us = core.now_us()
@@ -86,7 +86,7 @@ class Hosts:
         failed = [host for host in core.hosts if host.failed or host.state is HostState.WAITING]
         if failed:
             failed += [host for host in core.hosts if host.state is HostState.LOADED]
-            raise StartFailure("\n".join(f"{host.name}: {host.reason}" for host in failed))
+            raise StartFailedError("\n".join(f"{host.name}: {host.reason}" for host in failed))
         self._started = True
 
     @property
@@ -242,7 +242,7 @@ class Hosts:
     def _read_starter(self) -> None:
         try:
             found = self._starter.events()
-        except RunBroken:
+        except RunBrokenError:
             self._core.events.unwatch(self._starter)
             for host in self._core.hosts:
                 host.pid = 0  # the kernel kills them all

@@ -55,7 +55,7 @@ class ProcessStarter(Protocol):
         """Returns what happened since the last call.
 
         Raises:
-            RunBroken: the starter itself ended, and all hosts with it.
+            RunBrokenError: the starter itself ended, and all hosts with it.
         """
         ...
 

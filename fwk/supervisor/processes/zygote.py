@@ -14,7 +14,7 @@ from fwk.host.process import die_with_parent, end_child, run_forked, wait_for_en
 from fwk.host.process_title import name_process
 from fwk.host.profile import ProfileRequest
 from fwk.model.plan import Plan
-from fwk.supervisor.options import RunBroken
+from fwk.supervisor.options import RunBrokenError
 from fwk.supervisor.processes.forker import Forker
 from fwk.supervisor.processes.starter import Ended, Started
 from fwk.supervisor.processes.zygote_link import (
@@ -84,13 +84,13 @@ class Zygote:
         """Returns what happened since the last call.
 
         Raises:
-            RunBroken: the zygote itself ended, and all hosts with it.
+            RunBrokenError: the zygote itself ended, and all hosts with it.
         """
         try:
             return self._link.events()
         except ZygoteEndedError as error:
             pid, self.pid = self.pid, 0
-            raise RunBroken(f"the zygote ended: {wait_for_end(pid)}") from error
+            raise RunBrokenError(f"the zygote ended: {wait_for_end(pid)}") from error
 
     def close(self) -> None:
         """Ends the zygote; hosts that still run are killed."""

@@ -58,7 +58,7 @@ def values(settings: RunSettings, pattern: str) -> dict[str, object]:
 def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
     (row,) = settings.rows(["a/turner.fixed"])
     assert (row["setting"], row["editable"]) == ("fixed.deep", False)
-    text = "a/turner: 'fixed.deep' stays as it is while the run goes on; say it in the launch file and start"
+    text = "a/turner: 'fixed.deep' stays as it is while the run goes on; set it in the launch file and start"
     with pytest.raises(RequestError, match=re.escape(text)):
         settings.check(["a/turner.fixed.deep=2", "a/turner.gain=1"])
     assert [new.said for new in settings.check(["a/turner.fixed.deep=1"])] == [{"fixed.deep": 1}]
@@ -121,7 +121,7 @@ def test_a_restarted_process_is_told_what_differs_from_the_plan(settings: RunSet
         (["a/turner.gain=true"], "it should be a number"),
         (["a/turnr.gain=1"], "no component 'a/turnr'; did you mean 'a/turner'?"),
         (["c/plain.gain=1"], "c/plain: no setting 'gain'; there is log_level"),
-        (["speed=2"], "'speed=2' is no NAME.SETTING=VALUE"),
+        (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE"),
         (["a/turner.gain"], "'a/turner.gain' is not a PATH=VALUE"),
         (["a/turner.gain=[1"], "'[1' is not a YAML value"),
         (["a/turner.gain=1", "b/turner.names=[x, 1]"], "b/turner: 'names.1' is 1; it should be a valid string"),

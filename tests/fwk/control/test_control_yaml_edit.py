@@ -71,8 +71,8 @@ def test_a_pattern_is_quoted() -> None:
             "config:\n  a/b: &x {gain: 1}\n  c/d: *x\n",
             "'config.a/b.gain' cannot be changed there without touching other",
         ),
-        ("config: [\n", "it is no YAML; put it right first: fwk check says where"),
-        ("a: 1\na: 2\n", "it is no YAML; put it right first: fwk check says where"),
+        ("config: [\n", "the text is not YAML; correct it first: fwk check says where"),
+        ("a: 1\na: 2\n", "the text is not YAML; correct it first: fwk check says where"),
     ],
 )
 def test_what_would_be_spoiled_is_refused(text: str, error: str) -> None:
@@ -105,9 +105,9 @@ def test_a_value_goes_with_what_holds_nothing_else(before: str, after: str) -> N
         ("", "there is no"),
         ("config: {a/b: {x: 1}}", "there is no 'config.a/b.gain'"),
         ("config: {a/b: 3}", "there is no"),
-        ("config: [", "it is no YAML"),
+        ("config: [", "the text is not YAML"),
         ("config:\n  a/b: &x {gain: 1}\n  c/d: *x\n", "without touching other values"),
-        ("config:\n  a/b: {gain: 1}\n  c/d: {<<: *x}\n", "it is no YAML"),
+        ("config:\n  a/b: {gain: 1}\n  c/d: {<<: *x}\n", "the text is not YAML"),
     ],
 )
 def test_what_is_not_there_or_would_be_spoiled_is_not_taken_out(text: str, error: str) -> None:
