@@ -1,7 +1,7 @@
-"""Encoders and decoders of LCM types, straight-line Python made once a type: lcm-gen's bytes in half the time.
+"""Encoders and decoders of LCM types as generated straight-line Python: the bytes of lcm-gen in half the time.
 
-Of a type's members they know what lcm-gen writes into the class. Types with members of rare shapes (arrays of several
-dimensions whose sizes vary, a struct within itself) are left to lcm-gen's own code.
+They are made of what lcm-gen writes into a class about its members. Types with members of rare shapes (arrays of
+several dimensions whose sizes vary, a struct within itself) are left to the code of lcm-gen.
 """
 
 import itertools
@@ -21,18 +21,18 @@ _DECODED = {**_CODES, "boolean": "?"}
 
 Dimensions = list[int | str]
 Member = tuple[str, str, Dimensions]
-"""Name, type name, dimensions; none: a single value."""
+"""Name, type name and dimensions; without dimensions a single value."""
 
 
 class RareShape(Exception):  # noqa: N818 - not an error: the type is left to lcm-gen's code
-    """A member of a shape that is not written here."""
+    """A member has a shape that is left to the code of lcm-gen."""
 
 
 @cache
 def encoder(message_type: type[Any]) -> Encoder | None:
-    """What makes the bytes of a message, after setting its counts to the lengths of its lists; None: a rare shape.
+    """Returns a function that sets the counts of a message and encodes it; None for a rare shape.
 
-    It raises whatever its members' mistakes lead to.
+    The function raises various exceptions for members with wrong values.
     """
     try:
         return _EncoderSource(message_type).function()
@@ -42,7 +42,10 @@ def encoder(message_type: type[Any]) -> Encoder | None:
 
 @cache
 def decoder(message_type: type[Any]) -> Decoder | None:
-    """What makes a message of bytes; None: a rare shape. It raises `ValueError` or `struct.error` for any others."""
+    """Returns a function that decodes bytes; None for a rare shape.
+
+    The function raises `ValueError` or `struct.error` for bytes that are not a message of the type.
+    """
     try:
         return _DecoderSource(message_type).function()
     except RareShape:
@@ -50,7 +53,7 @@ def decoder(message_type: type[Any]) -> Decoder | None:
 
 
 class _Source(ABC):
-    """Lines of a function that grows member by member."""
+    """Source of a function, to which each member of a type adds lines."""
 
     def __init__(self, head: str) -> None:
         self._lines = [head]
@@ -260,7 +263,7 @@ class _DecoderSource(_Source):
             self._loop(kind, length, target)
 
     def _row(self, kind: str, count: int) -> str:
-        """The values of an array whose size is known."""
+        """Returns the expression of the values of an array of fixed size."""
         made = struct.Struct(f">{count}{_DECODED[kind]}")
         unpack = self._constant("unpack", made.unpack_from)
         values = _listed(kind, f"{unpack}(data, {self._place})")
@@ -280,7 +283,7 @@ class _DecoderSource(_Source):
         self._indent -= 1
 
     def _bytes(self, length: str) -> str:
-        """Passes over so many bytes, which have to be there; returns where they begin."""
+        """Writes lines that pass over bytes after checking that they exist; returns where they begin."""
         self._flush_numbers()
         start = self._fresh("start")
         self._line(f"{start} = {self._place}")
@@ -303,12 +306,12 @@ class _DecoderSource(_Source):
 
 
 def _listed(kind: str, values: str) -> str:
-    """As lcm-gen has it: booleans in lists, numbers in tuples."""
+    """Returns the expression of an array as lcm-gen has it: booleans in lists, numbers in tuples."""
     return f"list({values})" if kind == "boolean" else values
 
 
 def _check_fixed(kind: str, dimensions: Dimensions) -> None:
-    """Of several dimensions only two are written here, with numbers, in sizes that are known."""
+    """Leaves arrays of several dimensions to lcm-gen, except numbers in two fixed dimensions."""
     known = len(dimensions) == 2 and all(isinstance(size, int) for size in dimensions)
     if not known or kind not in _ENCODED or kind == "byte":
         raise RareShape

@@ -1,13 +1,13 @@
-"""A full disk: when writing may be tried again."""
+"""Decides when writing may be tried again after a disk was full."""
 
 import os
 from pathlib import Path
 
-_ROOM_BYTES = 1 << 20  # so that one who found no room does not come back for every page that becomes free
+_ROOM_BYTES = 1 << 20  # more than a few free pages, so that writing does not fail again at once
 
 
 def has_room(file: Path) -> bool:
-    """Whether there is room again where a file lies."""
+    """Returns whether the disk of a file has room again."""
     try:
         disk = os.statvfs(file.parent)
     except OSError:

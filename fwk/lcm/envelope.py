@@ -1,7 +1,7 @@
-"""Messages of LCM types without our header: inside a run they travel in an envelope, header first, then their bytes.
+"""Envelopes for messages of types without the header: inside a run a header precedes their bytes.
 
-Outside, on the public bus and in recordings, stand exactly the type's own bytes. A type that has the header needs none
-of this: for it the functions here give its usual codec, chosen once a channel.
+The public bus and recordings carry exactly the bytes of the type. For a type with the header the functions here return
+its ordinary codec.
 """
 
 import struct
@@ -13,28 +13,28 @@ from fwk.lcm import messages
 from fwk.lcm.messages import Header, Message
 
 STAMP = "fwk/stamp"
-"""Channel of the stamps that outside a run go before messages without our header."""
+"""Channel of the stamps that precede messages without the header outside a run."""
 _MARK = int.from_bytes(b"envelope", "big")
 _NUMBERS = struct.Struct(">qqqhI")  # as in an encoded header_t: tick, sequence, time_us, stage, length of the writer
 
 Stamped = Callable[[Any, int, int, int, int, str], bytes]
-"""Takes a message, tick, sequence, time_us, stage and writer; makes what travels inside a run."""
+"""Takes a message, tick, sequence number, time in us, stage and writer; returns the bytes inside a run."""
 
 
 def marked(fingerprint: bytes) -> bytes:
-    """What an envelope begins with, of its content's fingerprint; and the other way round."""
+    """Returns the fingerprint of an envelope from that of its content, and vice versa."""
     return (int.from_bytes(fingerprint, "big") ^ _MARK).to_bytes(8, "big")
 
 
 def fingerprint(message_type: type[Message]) -> bytes:
-    """What messages of this type begin with inside a run."""
+    """Returns the first eight bytes of the messages of a type inside a run."""
     own = messages.fingerprint(message_type)
     return own if messages.has_header(message_type) else marked(own)
 
 
 @cache
 def is_plain(type_name: str) -> bool:
-    """Whether messages of a type travel in an envelope."""
+    """Returns whether messages of a type travel in an envelope."""
     return not messages.has_header(messages.type_named(type_name))
 
 
@@ -47,13 +47,13 @@ def mistake_in(message_type: type[Message]) -> str:
 
 
 def wrapped(plain: bytes, tick: int, sequence: int, time_us: int, stage: int, writer: str) -> bytes:
-    """The envelope of a message: where a type with our header has its header, there is this one, too."""
+    """Returns the envelope of a message; its header is where types with the header have theirs."""
     name = writer.encode() + b"\0"
     return marked(plain[:8]) + _NUMBERS.pack(tick, sequence, time_us, stage, len(name)) + name + plain
 
 
 def content(data: bytes) -> bytes:
-    """What is in an envelope.
+    """Returns the message in an envelope.
 
     Raises:
         MessageError: the bytes end before the header does.
@@ -62,7 +62,7 @@ def content(data: bytes) -> bytes:
 
 
 def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
-    """Decodes what travels inside a run.
+    """Decodes a message as it travels inside a run.
 
     Raises:
         MessageError: wrong type or broken bytes.
@@ -71,13 +71,13 @@ def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
 
 
 def decoder(message_type: type[Message], channel: str) -> Callable[[bytes], Any]:
-    """`decode` for the messages of a channel."""
+    """Returns the function that decodes messages of a channel."""
     decode = messages.decoder(message_type, channel)
     return decode if messages.has_header(message_type) else lambda data: decode(content(data))
 
 
 def stamper(message_type: type[Message], channel: str) -> Stamped:
-    """What stamps and encodes the messages of a channel that no component writes."""
+    """Returns a function that stamps and encodes messages of a channel that no component writes."""
     encode = messages.encoder(message_type, channel)
 
     def in_header(message: Any, tick: int, sequence: int, time_us: int, stage: int, writer: str) -> bytes:

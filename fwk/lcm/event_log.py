@@ -1,4 +1,4 @@
-"""LCM event logs: the format of lcm-logger and lcm-logplayer, written and read with damaged files in mind."""
+"""LCM event logs, the files of lcm-logger and lcm-logplayer; damaged files stay readable."""
 
 import os
 import stat
@@ -18,28 +18,28 @@ _WINDOW_BYTES = 1 << 20
 
 
 class LogError(Exception):
-    """A log that cannot be opened or holds nothing usable; says which file and why."""
+    """A log cannot be opened or holds nothing usable; the text names the file and the reason."""
 
 
 class Event(NamedTuple):
-    """One message of a log."""
+    """A message of a log."""
 
     number: int
-    """Counted by the writer from 0; a gap says that the writer dropped events."""
+    """Number of the event, from 0; a gap means that the writer dropped events."""
     time_us: int
-    """Logical time in logs of this framework, time of receipt in those of lcm-logger."""
+    """Logical time in recordings of this framework, time of receipt in logs of lcm-logger, in us."""
     channel: str
     data: bytes
     in_envelope: bool = False
-    """Whether `data` is the message of a type without our header, joined with its stamp."""
+    """Whether `data` is a message of a type without the header, joined with its stamp."""
 
 
 class LogWriter:
     """Writes a log that lcm-logplayer plays; an existing file is replaced.
 
-    When the disk is full the events at hand are dropped and counted in `dropped`, `report` is told so once, and again
-    when there is room and writing goes on: a recording never stops what it records. Whatever kills the writer, the file
-    is readable up to its last `flush`.
+    While the disk is full, events are dropped and counted in `dropped`; `report` gets a message when this begins and
+    when writing continues, so a recording never stops the run. However the writer ends, the file is readable up to the
+    last `flush`.
 
     Raises:
         LogError: the file cannot be created.
@@ -49,7 +49,7 @@ class LogWriter:
         self.path = path
         self.dropped = 0
         self.events = 0
-        """Events appended, with those dropped."""
+        """Number of appended events, including dropped ones."""
         self._report = report
         self._full = False
         self._buffer = bytearray()
@@ -58,14 +58,14 @@ class LogWriter:
         self._good_bytes = 0  # length of the file up to its last whole event
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
-            if path.is_fifo():  # opening it would stand still until somebody reads
+            if path.is_fifo():  # opening it would block until a program reads
                 raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; take a file")
             self._file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
         except OSError as error:
             raise LogError(f"{path}: cannot write a log there: {error.strerror}") from error
 
     def append(self, channel: str, data: bytes, time_us: int) -> None:
-        """Adds an event; it reaches the file when the buffer is full or at the next `flush`.
+        """Adds an event, which reaches the file when the buffer is full or at the next `flush`.
 
         Raises:
             ValueError: the channel's name is empty or too long, or the message larger than any LCM message.
@@ -82,7 +82,7 @@ class LogWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Hands everything appended so far to the operating system."""
+        """Hands all appended events to the operating system."""
         if not self._buffered:
             return
         data, events = self._buffer, self._buffered
@@ -93,7 +93,7 @@ class LogWriter:
             self._write(data, events)
 
     def close(self) -> None:
-        """Writes the rest and closes the file; more than once does no harm."""
+        """Writes the rest and closes the file; further calls have no effect."""
         if not self._file.closed:
             self.flush()
             self._file.close()
@@ -135,14 +135,13 @@ class LogWriter:
 
 
 class LogReader:
-    """Iterates over the events of any LCM log, as often as wanted.
+    """Iterates over the events of any LCM log, any number of times.
 
-    A damaged place costs the events that it touches: what follows an event must be another one or the end of the file,
-    otherwise its length cannot be trusted. Reading goes on at the next whole event, and `skipped_bytes` counts what was
-    passed over by the newest iteration.
+    Damage costs only the events that it touches: an event counts if another event or the end of the file follows it.
+    Reading continues at the next whole event, and `skipped_bytes` counts the bytes that the newest iteration skipped.
 
     Raises:
-        LogError: the file is missing or no ordinary file.
+        LogError: the file does not exist or is not an ordinary file.
     """
 
     def __init__(self, path: Path) -> None:
@@ -206,14 +205,14 @@ class _Window:
         return self._bytes[begin : begin + size]
 
     def peek(self, offset: int) -> bytes:
-        """The next four bytes, fewer at the end of the file."""
+        """Returns the next four bytes, fewer at the end of the file."""
         begin = offset - self._start
         if begin + 4 <= len(self._bytes):
             return self._bytes[begin : begin + 4]
         return os.pread(self._descriptor, 4, offset)
 
     def find_sync(self, offset: int) -> int:
-        """Where the next sync word begins, or the end of the file."""
+        """Returns the position of the next sync word, or the end of the file."""
         while offset < self.file_bytes:
             if len(self.read(offset, 4)) < 4:
                 break

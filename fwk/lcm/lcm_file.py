@@ -12,11 +12,11 @@ _TOKEN = re.compile(
 )
 INTEGERS = {"int8_t": 1, "int16_t": 2, "int32_t": 4, "int64_t": 8}
 SIZES = {**INTEGERS, "float": 4, "double": 8, "byte": 1, "boolean": 1, "string": 5}
-"""Bytes of a value of each primitive type; of a string, those of an empty one."""
+"""Bytes of a value of each primitive type; for a string those of an empty one."""
 
 
 class LcmSyntaxError(Exception):
-    """An .lcm file that cannot be read; the text names file, line and what is expected there."""
+    """An .lcm file cannot be read; the text names file, line and what is expected there."""
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class Member:
     line: int
     dimensions: tuple[str, ...] = ()
     value: str = ""
-    """Of a constant; empty for a member."""
+    """Value of a constant; empty for a member."""
 
 
 @dataclass(frozen=True)
 class Struct:
-    """One message type."""
+    """A message type."""
 
     package: str
     name: str
@@ -48,13 +48,13 @@ class Struct:
         return f"{self.package}.{self.name}"
 
     def full_type(self, member: Member) -> str:
-        """Type of a member; that of a struct with its package."""
+        """Returns the type of a member; a struct's type with its package."""
         return member.type if member.type in SIZES or "." in member.type else f"{self.package}.{member.type}"
 
 
 @dataclass(frozen=True)
 class LcmFile:
-    """What one .lcm file defines."""
+    """Content of an .lcm file."""
 
     path: Path
     text: str
@@ -131,7 +131,7 @@ class _Parser:
         return LcmSyntaxError(f"{self.path}:{line}: {text}")
 
     def _sign(self, wanted: str) -> None:
-        """Takes a sign; one that is missing is missing behind the token before it."""
+        """Takes a sign; a missing one is reported after the preceding token."""
         if self._next.text != wanted:
             before = self.tokens[self.at - 1]
             raise self._wrong(before.line, f"'{wanted}' is missing after '{before.text}'")

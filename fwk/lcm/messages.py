@@ -1,4 +1,4 @@
-"""What the framework knows of LCM types: fingerprints, headers in raw bytes, counts, and readable errors."""
+"""LCM types and messages: fingerprints, headers in raw bytes, counts, and readable errors."""
 
 import struct
 from collections.abc import Callable, Mapping, Sized
@@ -10,7 +10,7 @@ from lcmtypes.core import header_t
 
 
 class Message(Protocol):
-    """Any class that lcm-gen wrote."""
+    """A class that lcm-gen generated."""
 
     __slots__: ClassVar[list[str]]
     __typenames__: ClassVar[list[str]]
@@ -25,13 +25,13 @@ class Message(Protocol):
 
 @runtime_checkable
 class Stamped(Protocol):
-    """A message of an interface: its first member is the header."""
+    """A message of an interface, whose first member is the header."""
 
     header: header_t
 
 
 class MessageError(Exception):
-    """A message that cannot be encoded or decoded; says which channel, type and field."""
+    """A message cannot be encoded or decoded; the text names channel, type and field."""
 
 
 _NUMBERS = struct.Struct(">qqqhI")  # tick, sequence, time_us, stage, length of the writer's name with its zero byte
@@ -41,7 +41,7 @@ HEADER_SIZE = _FINGERPRINT_SIZE + _NUMBERS.size
 
 
 class Header:
-    """A message's header, read from the raw bytes without decoding the rest."""
+    """Header of a message, read from the raw bytes without decoding the rest."""
 
     __slots__ = ("end", "sequence", "stage", "tick", "time_us", "writer")
 
@@ -70,17 +70,17 @@ class Header:
 
 
 def sequence_of(data: bytes) -> int:
-    """Sequence number in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    """Returns the sequence number of an encoded message of at least `HEADER_SIZE` bytes."""
     return int.from_bytes(data[16:24], "big", signed=True)
 
 
 def tick_and_sequence_of(data: bytes) -> tuple[int, int]:
-    """Tick and sequence number in the header of an encoded message of at least `HEADER_SIZE` bytes."""
+    """Returns tick and sequence number of an encoded message of at least `HEADER_SIZE` bytes."""
     return _TICK_AND_SEQUENCE(data, _FINGERPRINT_SIZE)
 
 
 def type_name(message_type: type[Message]) -> str:
-    """Name as in the .lcm files: `core.frame_t`."""
+    """Returns the name of a type as in .lcm files: `core.frame_t`."""
     return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"
 
 
@@ -108,22 +108,22 @@ def type_named(name: str) -> type[Message]:
 
 
 def fingerprint(message_type: type[Message]) -> bytes:
-    """The eight bytes that every message of this type begins with."""
+    """Returns the first eight bytes of every message of a type."""
     return message_type._get_packed_fingerprint()
 
 
 def is_same_type(one: type[Message], other: type[Message]) -> bool:
-    """Whether two types are the same, by name too: LCM gives types with the same members the same fingerprint."""
+    """Returns whether fingerprint and name agree; types with the same members have the same fingerprint."""
     return fingerprint(one) == fingerprint(other) and type_name(one) == type_name(other)
 
 
 def has_header(message_type: type[Message]) -> bool:
-    """Whether the type is an interface: its first member is the header."""
+    """Returns whether a type is an interface, whose first member is the header."""
     return list(message_type.__slots__[:1]) == ["header"] and message_type.__typenames__[0].endswith("core.header_t")
 
 
 def has_second(message_type: type[Message], name: str, kind: str) -> bool:
-    """Whether the type's second member is `kind name;`: what makes commands and replies of interfaces."""
+    """Returns whether the second member of a type is `kind name;`, as in requests and replies."""
     return message_type.__slots__[1:2] == [name] and message_type.__typenames__[1].endswith(kind)
 
 
@@ -131,13 +131,13 @@ def decode(message_type: type[Message], data: bytes, channel: str) -> Any:
     """Decodes a message.
 
     Raises:
-        MessageError: wrong type or broken bytes; names channel, expected and found fingerprint.
+        MessageError: the bytes are damaged or of another type; the text names channel and fingerprints.
     """
     return decoder(message_type, channel)(data)
 
 
 def decoder(message_type: type[Message], channel: str) -> Callable[[bytes], Any]:
-    """`decode` for the messages of a channel."""
+    """Returns the function that decodes messages of a channel."""
     decode = codec.decoder(message_type) or message_type.decode
 
     def decoded(data: bytes) -> Any:
@@ -159,13 +159,13 @@ def encode(message: Message, channel: str) -> bytes:
     """Encodes a message after setting its counts to the lengths of its lists.
 
     Raises:
-        MessageError: a field holds something that its type cannot; names channel, field, type and value.
+        MessageError: a field holds a value that its type cannot; the text names channel, field, type and value.
     """
     return encoder(type(message), channel)(message)
 
 
 def encoder(message_type: type[Message], channel: str) -> Callable[[Any], bytes]:
-    """`encode` for the messages of a channel."""
+    """Returns the function that encodes messages of a channel."""
     encode = codec.encoder(message_type) or _counted_and_encoded
 
     def encoded(message: Any) -> bytes:
@@ -221,7 +221,7 @@ _SHOWN = 60  # characters of a value that does not fit
 
 
 def _culprit(message: Any, message_type: type[Message], path: str = "") -> str:
-    """The first member that does not fit its type, with its path, such as `points[2].x_m is 'a', not a double`."""
+    """Returns the first member whose value does not fit, such as `points[2].x_m is 'a', not a double`."""
     if not isinstance(message, message_type):
         where = f"{path} is" if path else "it is"
         return f"{where} a {type(message).__name__}, not a {type_name(message_type)}"
@@ -236,7 +236,7 @@ def _culprit(message: Any, message_type: type[Message], path: str = "") -> str:
 
 
 def _wrong_shape(value: Any, dimensions: list[int | str], path: str) -> str:
-    """What is wrong with the fixed sizes of an array; `?` stands for a size that may vary."""
+    """Returns the mistake in the sizes of an array; `?` means a size that may vary."""
     wanted = [size if isinstance(size, int) else "?" for size in dimensions]
     found = _shape(value, len(dimensions))
     if len(found) == len(wanted) and all(b in ("?", a) for a, b in zip(found, wanted, strict=True)):
@@ -248,7 +248,7 @@ def _wrong_shape(value: Any, dimensions: list[int | str], path: str) -> str:
 
 
 def _shape(value: Any, depth: int) -> list[int]:
-    """Sizes of nested sequences; of ragged ones the first that differs from the others shows."""
+    """Returns the sizes of nested sequences; of ragged ones the first that differs."""
     if not depth or isinstance(value, str) or not isinstance(value, Sized):
         return []
     if isinstance(value, bytes | bytearray):
@@ -289,7 +289,7 @@ def _brief(value: Any) -> str:
 
 
 def to_dict(message: Any) -> Any:
-    """A message as plain dicts, lists and values, for showing and comparing."""
+    """Returns a message as plain dicts, lists and values."""
     if hasattr(message, "__typenames__"):
         return {name: to_dict(getattr(message, name)) for name in message.__slots__}
     if isinstance(message, (list, tuple)):
@@ -298,7 +298,7 @@ def to_dict(message: Any) -> Any:
 
 
 def of_dict(message_type: type[Message], members: Mapping[str, Any]) -> Any:
-    """Makes a message of members given as plain data: a dict becomes a struct, a list of dicts an array of structs.
+    """Returns a message of members given as plain data; a dict becomes a struct, a list of dicts an array of them.
 
     Raises:
         MessageError: the type has no such member.

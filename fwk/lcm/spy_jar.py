@@ -1,4 +1,4 @@
-"""lcm-spy with our types: Java classes of all .lcm files in one jar, built once for each content."""
+"""lcm-spy with the types of a run: Java classes of all .lcm files in one jar, built once for each content."""
 
 import hashlib
 import os
@@ -16,36 +16,36 @@ _MEMORY = "-Xmx1g"  # lcm-spy's own limit of 128 MB makes it freeze on large mes
 
 
 class SpyError(Exception):
-    """lcm-spy or its jar cannot be had; says what is missing and what to type."""
+    """lcm-spy or its jar is not available; the text names what is missing and the command that helps."""
 
 
 def lcm_spy() -> Path:
-    """The lcm-spy program that the lcm wheel brings."""
+    """Returns the path of the lcm-spy program in the lcm wheel."""
     return lcm_gen().with_name("lcm-spy")
 
 
 def lcm_jar() -> Path:
-    """LCM's own Java classes, of the same wheel."""
+    """Returns the path of LCM's Java classes in the lcm wheel."""
     return Path(lcm.__file__).parent.parent / "share" / "java" / "lcm.jar"
 
 
 def cache_folder() -> Path:
-    """Where jars are kept: `$XDG_CACHE_HOME/fwk` or `~/.cache/fwk`."""
+    """Returns the folder of built jars: `$XDG_CACHE_HOME/fwk` or `~/.cache/fwk`."""
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "fwk"
 
 
 def class_path(jar: Path) -> str:
-    """What Java programs need to read and write our types."""
+    """Returns the Java class path for reading and writing the types of `folders`."""
     return os.pathsep.join([str(jar), str(lcm_jar())])
 
 
 def build_jar(folders: Sequence[Path], cache: Path) -> Path:
-    """The jar of all .lcm files in `folders`, from the cache if it has been built before.
+    """Returns the jar of all .lcm files in `folders`, from the cache if it exists.
 
-    Of a type that several folders define the first folder's counts, as in Python.
+    If several folders define a type, the first one counts, as in Python.
 
     Raises:
-        SpyError: no .lcm files, no Java compiler, or a file that lcm-gen or javac refuses.
+        SpyError: there are no .lcm files or no Java compiler, or lcm-gen or javac refuses a file.
     """
     sources = {folder: found for folder in folders if (found := sorted(folder.glob("*.lcm")))}
     if not sources:
@@ -59,15 +59,15 @@ def build_jar(folders: Sequence[Path], cache: Path) -> Path:
         with tempfile.TemporaryDirectory(dir=cache, prefix="building-") as workshop:
             os.replace(
                 _build(list(sources.values()), Path(workshop)), jar
-            )  # whole or not at all, whoever else builds it now
+            )  # atomic, as another process may build it as well
     return jar
 
 
 def start(jar: Path, url: str) -> None:
-    """Becomes lcm-spy, listening on `url`; does not return.
+    """Replaces the process by lcm-spy, which listens on `url`; does not return.
 
     Raises:
-        SpyError: there is no Java or no display.
+        SpyError: Java or a display is missing.
     """
     _require("java", "default-jre")
     if not os.environ.get("DISPLAY"):

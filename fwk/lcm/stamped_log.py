@@ -1,4 +1,4 @@
-"""Reads logs with each message of a type without our header put back into its envelope, as it was inside the run."""
+"""Reads logs with messages of types without the header put back into their envelopes."""
 
 from collections.abc import Iterator
 
@@ -12,10 +12,10 @@ _decode = messages.decoder(stamp_t, STAMP)
 
 
 class StampedLog(LogReader):
-    """A log whose stamps are joined to what they belong to; the stamps themselves come as they are.
+    """A log whose stamps are joined to their messages; the stamps themselves are events as well.
 
-    A stamp belongs to the next message on its channel: other programs' messages may stand between them in what a
-    logger elsewhere heard. After a damaged place none is trusted.
+    A stamp belongs to the next message on its channel; a logger elsewhere may have put messages of other programs in
+    between. Stamps before damage are not used after it.
     """
 
     def __iter__(self) -> Iterator[Event]:
@@ -38,7 +38,7 @@ class StampedLog(LogReader):
 
 
 def _stamp(data: bytes) -> stamp_t | None:
-    """The stamp; None if it is broken: what follows has none then."""
+    """Returns the stamp of an event; None if it is damaged."""
     try:
         stamp: stamp_t = _decode(data)
     except MessageError:

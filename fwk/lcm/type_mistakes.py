@@ -10,7 +10,7 @@ from pathlib import Path
 from fwk.lcm.lcm_file import INTEGERS, SIZES, LcmFile, Member, Struct
 
 SIZE_MAX = 16 << 20
-"""Bytes of a message without its arrays of variable length; larger data belongs into a ring or several messages."""
+"""Largest size of a message without its arrays of variable length; larger data belongs into several messages."""
 _STRUCT = re.compile(r"\bstruct\s+(\w+)")
 _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
 
@@ -83,7 +83,7 @@ def _type_mistake(struct: Struct, member: Member, structs: Mapping[str, Struct])
 
 
 def _installed(package: str) -> set[str]:
-    """Names of the structs of a package in all folders where Python finds message types."""
+    """Returns the names of a package's structs in all folders where Python finds message types."""
     found: set[str] = set()
     for folder in [Path(entry) / "lcmtypes" for entry in sys.path]:
         found |= {file.stem for file in (folder / package.replace(".", "/")).glob("*.pyi")}
@@ -110,7 +110,7 @@ def _dimension_mistake(struct: Struct, member: Member) -> str:
 
 
 def _fixed(struct: Struct, member: Member) -> int | None:
-    """Number of values of a member; None: it has variable length."""
+    """Returns the number of values of a member; None for a variable length."""
     values = {constant.name: constant.value for constant in struct.constants}
     sizes = [values.get(dimension, dimension) for dimension in member.dimensions]
     try:
@@ -120,7 +120,7 @@ def _fixed(struct: Struct, member: Member) -> int | None:
 
 
 def _ring(struct: Struct, structs: Mapping[str, Struct], way: list[str]) -> list[str]:
-    """Names of structs that contain each other, from this one down; empty if there are none."""
+    """Returns the names of structs that contain each other, from this one on; empty if there are none."""
     if struct.full_name in way:
         return [*way[way.index(struct.full_name) :], struct.full_name]
     for member in struct.members:
@@ -133,7 +133,7 @@ def _ring(struct: Struct, structs: Mapping[str, Struct], way: list[str]) -> list
 
 
 def _size(struct: Struct, structs: Mapping[str, Struct]) -> tuple[int, Member | None]:
-    """Bytes of a message with empty strings and arrays, and its largest member."""
+    """Returns the size of a message with empty strings and arrays in bytes, and its largest member."""
     sizes: list[tuple[int, Member]] = []
     for member in struct.members:
         inner = structs.get(struct.full_type(member))

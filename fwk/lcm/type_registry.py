@@ -1,4 +1,4 @@
-"""Finds the LCM type of recorded bytes by their fingerprint, among all generated types."""
+"""Registry of all generated types, which finds the type of encoded messages by their fingerprint."""
 
 import importlib
 import pkgutil
@@ -16,16 +16,16 @@ MessageType = type[messages.Message]
 
 
 def put_first(folders: Sequence[str]) -> None:
-    """Puts folders in front of the module search path, in this order: their modules win over installed ones."""
+    """Puts folders in front of the module search path, in this order."""
     sys.path[:] = [*folders, *(entry for entry in sys.path if entry not in folders)]
     importlib.invalidate_caches()
 
 
 def use_types_of(folder: Path) -> None:
-    """Adds the types of `folder`/lcmtypes/*.lcm, generating their classes where needed; no such folder adds nothing.
+    """Adds the types of `folder`/lcmtypes/*.lcm, if there are any, and generates their classes where needed.
 
     Raises:
-        TypeGenerationError: an .lcm file does not parse.
+        TypeGenerationError: an .lcm file has mistakes.
     """
     if any((folder / "lcmtypes").glob("*.lcm")):
         typegen.generate((folder / "lcmtypes").resolve())
@@ -36,13 +36,13 @@ def use_types_of(folder: Path) -> None:
 
 
 def source_folders() -> list[Path]:
-    """The folders of all .lcm files in use, each once."""
+    """Returns the folders of all .lcm files in use, each once."""
     return list(dict.fromkeys(Path(folder).resolve() for folder in lcmtypes.__path__))
 
 
 @cache
 def by_fingerprint() -> dict[bytes, tuple[MessageType, ...]]:
-    """All generated types. Those with the same members have the same fingerprint: LCM leaves the struct's name out."""
+    """Returns all generated types by fingerprint; several types with the same members have the same."""
     found: dict[bytes, tuple[MessageType, ...]] = {}
     for package in sorted(module.name for module in pkgutil.iter_modules(lcmtypes.__path__) if module.ispkg):
         for _, made in sorted(vars(import_module(f"lcmtypes.{package}")).items()):
@@ -53,22 +53,22 @@ def by_fingerprint() -> dict[bytes, tuple[MessageType, ...]]:
 
 
 def types_of(data: bytes) -> tuple[MessageType, ...]:
-    """The types that a message may be of, also one in its envelope; they all decode it alike. Empty: unknown."""
+    """Returns the types that a message, perhaps in its envelope, may have; empty if none is known."""
     return by_fingerprint().get(data[:8]) or _in_envelopes().get(data[:8], ())
 
 
 def decoded(data: bytes) -> Any:
-    """The message; that in an envelope without it. Raises whatever generated code raises, or `LookupError`."""
+    """Returns a decoded message, without its envelope. Raises exceptions of generated code, or `LookupError`."""
     return types_of(data)[0].decode(envelope.content(data) if in_envelope(data) else data)
 
 
 def in_envelope(data: bytes) -> bool:
-    """Whether these bytes are the message of a known type without our header, in its envelope."""
+    """Returns whether the bytes are a message of a known type without the header, in its envelope."""
     return data[:8] in _in_envelopes()
 
 
 def is_interface(data: bytes) -> bool:
-    """Whether a message has a header, by its type: its own, or that of an envelope."""
+    """Returns whether a message has a header, its own or that of an envelope."""
     return data[:8] in _interfaces()
 
 
@@ -87,7 +87,7 @@ def _in_envelopes() -> dict[bytes, tuple[MessageType, ...]]:
 
 
 def header_of(data: bytes) -> messages.Header | None:
-    """The header of a message of an interface; None for everything else."""
+    """Returns the header of a message; None if it has none."""
     if not is_interface(data):
         return None
     try:

@@ -17,7 +17,7 @@ DATAGRAM_MAX = 65_535
 
 
 def datagrams(number: int, channel: bytes, data: bytes) -> list[bytes]:
-    """The datagrams of one message.
+    """Returns the datagrams of a message.
 
     Raises:
         MessageError: the message is larger than LCM's 256 MiB or the channel name longer than 63 bytes.
@@ -43,7 +43,7 @@ def in_one(number: int, channel: bytes, data: bytes) -> bytes:
 
 
 def is_short(datagram: bytes) -> bool:
-    """Whether it looks like a message that came in one datagram."""
+    """Returns whether a datagram looks like a whole message."""
     return datagram.startswith(_SHORT_MAGIC)
 
 
@@ -56,17 +56,17 @@ class _Unfinished:
         self._bodies: dict[int, tuple[int, bytes]] = {}
 
     def add(self, part: int, offset: int, body: bytes) -> bool:
-        """Takes a fragment; says whether it was the last. Memory is used for what came, not for what is announced."""
+        """Takes a fragment; returns whether it was the last. Memory grows with the fragments, not in advance."""
         if part not in self._bodies:
             self._bodies[part] = offset, body
             self.bytes += len(body)
         return len(self._bodies) == self.count
 
     def data(self) -> bytes:
-        """All of it.
+        """Returns the whole message.
 
         Raises:
-            MessageError: the fragments do not lie one behind the other.
+            MessageError: the fragments are not adjacent.
         """
         bodies, expected = [], 0
         for _, (offset, body) in sorted(self._bodies.items()):
@@ -87,10 +87,10 @@ class Assembler:
         self._bytes = 0  # in all of them
 
     def feed(self, datagram: bytes, source_port: int) -> tuple[bytes, bytes] | None:
-        """Takes a datagram; gives (channel, data) when it completes a message.
+        """Takes a datagram; returns (channel, data) if it completes a message.
 
         Raises:
-            MessageError: it is not of LCM's format.
+            MessageError: the datagram does not have LCM's format.
         """
         magic = datagram[:4]
         if magic == _SHORT_MAGIC:

@@ -1,4 +1,4 @@
-"""The table of interface instances: which channels there are, who has them open, and how that changes between ticks."""
+"""Channel table: dynamic channels, their readers and writers, and the facts that change them at boundaries."""
 
 import json
 from bisect import insort
@@ -19,18 +19,18 @@ EventKind = Literal[
 
 @dataclass(frozen=True)
 class BlackboardEvent:
-    """Something that happened on the blackboard between two ticks."""
+    """An event on the blackboard at a boundary."""
 
     kind: EventKind
     channel: str
     type_name: str
     component: str
-    """Who came or went; who opened a created instance first, and had a destroyed one last."""
+    """Component that came or went; of a created channel its first user, of a destroyed one its last."""
 
 
 @dataclass(frozen=True)
 class Opening:
-    """A channel opened at run time: `handle` is the number that the component gave it."""
+    """An open dynamic channel; `handle` is the number that the component gave its request."""
 
     component: int
     handle: int
@@ -39,20 +39,20 @@ class Opening:
     type_name: str
     fingerprint: str
     sequence: int = 0
-    """Of a writer: number of the newest message so far."""
+    """For a writer: sequence number of the newest message."""
 
     @property
     def begins(self) -> bytes:
-        """What its messages begin with."""
+        """First eight bytes of its messages inside a run."""
         return envelope.fingerprint(messages.type_named(self.type_name))
 
 
 @dataclass(frozen=True)
 class Fact:
-    """One decision or observation of the supervisor, in the order in which it is to be taken over.
+    """A decision or observation of the supervisor; facts are applied in their order.
 
-    read, write: a component has a channel open. close: it has not any more. refuse: it does not get it. come, go: a
-    component takes part in the run, or does not any more, and with it goes everything that it had opened.
+    read, write: a component has a channel open. close: it no longer has. refuse: its request is refused. come, go: a
+    component begins or ceases to take part in the run; everything that it had opened is closed when it goes.
     """
 
     kind: FactKind
@@ -62,11 +62,11 @@ class Fact:
     reason: str = ""
 
     def numbered(self, sequence: int) -> "Fact":
-        """With the number of the channel's newest message so far."""
+        """Returns the fact with the sequence number of the channel's newest message."""
         return replace(self, opening=replace(self.opening, sequence=sequence)) if self.opening else self
 
     def plain(self) -> list[Any]:
-        """As plain data for JSON."""
+        """Returns plain data for JSON."""
         made: list[Any] = [self.kind, self.component, self.handle]
         if self.opening:
             each = self.opening
@@ -75,7 +75,7 @@ class Fact:
 
     @classmethod
     def of(cls, data: Sequence[Any]) -> "Fact":
-        """Reads back what `plain` gave."""
+        """Returns the fact of plain data from `plain`."""
         kind, component, handle, *rest = data
         if kind in ("read", "write", "close"):
             return cls(kind, component, handle, Opening(component, handle, *rest))
@@ -84,21 +84,21 @@ class Fact:
 
 @dataclass(frozen=True)
 class InstanceView:
-    """A channel of the blackboard as it is in a tick."""
+    """A channel as it is in a tick."""
 
     name: str
     type_name: str
     writer: str
-    """Full name of the component that writes it; empty: nobody does."""
+    """Full name of the component that writes it; empty if there is none."""
     readers: tuple[str, ...]
-    """Full names of the components that read it, ordered."""
+    """Full names of the components that read it, in alphabetical order."""
     declared: bool
-    """Whether the plan has it; otherwise it was opened at run time, and lives as long as somebody has it open."""
+    """Whether the plan has it; a dynamic channel exists while a component has it open."""
 
 
 @dataclass
 class Instance:
-    """A row of the table."""
+    """A channel in the table."""
 
     index: int
     name: str
@@ -106,17 +106,17 @@ class Instance:
     declared_writer: int = NOBODY
     declared_readers: tuple[int, ...] = ()
     declared: bool = True
-    """Whether the plan has it; otherwise it lives as long as somebody has it open."""
+    """Whether the plan has it; a dynamic channel exists while a component has it open."""
     fingerprint: str = ""
-    """Of one that was opened at run time."""
+    """Fingerprint of a dynamic channel's type."""
     writer: tuple[int, int] | None = None
-    """Component and handle of who opened it for writing at run time."""
+    """Component and handle of the opened writer."""
     readers: list[tuple[int, int]] = field(default_factory=list)
-    """Component and handle of everybody who opened it for reading at run time, in order."""
+    """Component and handle of each opened reader, in order."""
 
 
 class ChannelTable:
-    """All instances of a run. Equal facts in equal order make equal tables, in whichever process."""
+    """All channels of a run. Equal facts in equal order make equal tables in every process."""
 
     def __init__(self, plan: Plan) -> None:
         self.names = [component.name for component in plan.components]
@@ -130,40 +130,40 @@ class ChannelTable:
         self._declared = len(self._by_name)
 
     def find(self, name: str) -> Instance | None:
-        """The instance of that name, if there is one."""
+        """Returns the channel of a name; None if there is none."""
         return self._by_name.get(name)
 
     def matching(self, pattern: str) -> list[Instance]:
-        """Instances whose names fit, ordered by name."""
+        """Returns the channels whose names match, ordered by name."""
         return [self._by_name[name] for name in sorted(self._by_name) if fnmatchcase(name, pattern)]
 
     def writer(self, instance: Instance) -> str:
-        """Full name of the component that writes it now; empty: nobody does."""
+        """Returns the full name of the component that writes a channel now; empty if there is none."""
         index = instance.writer[0] if instance.writer else instance.declared_writer
         return self.names[index] if index in self.present else ""
 
     def readers(self, instance: Instance) -> tuple[str, ...]:
-        """Full names of the components that read it now, ordered."""
+        """Returns the full names of the components that read a channel now, in alphabetical order."""
         indices = {*instance.declared_readers, *(component for component, _ in instance.readers)} & self.present
         return tuple(sorted(self.names[index] for index in indices))
 
     def view(self, instance: Instance) -> InstanceView:
-        """For those who want to know."""
+        """Returns the channel as components see it."""
         writer, readers = self.writer(instance), self.readers(instance)
         return InstanceView(instance.name, instance.type_name, writer, readers, instance.declared)
 
     def index_of(self, name: str, fingerprint: str) -> int | None:
-        """Index of a channel that there is or was: one that is opened again with name and type keeps its index."""
+        """Returns the index of a present or former channel; one that is opened again with its type keeps it."""
         instance = self._by_name.get(name)
         return instance.index if instance else self._indices.get((name, fingerprint))
 
     @property
     def known(self) -> int:
-        """How many indices are taken."""
+        """Number of indices in use."""
         return self._declared + len(self._indices)
 
     def opened_by(self, component: int) -> list[Fact]:
-        """What a component has open that it opened at run time, as facts that close it."""
+        """Returns facts that close everything that a component has opened."""
         found = []
         for instance in self._by_name.values():
             opened = [*([instance.writer] if instance.writer else []), *instance.readers]
@@ -172,7 +172,7 @@ class ChannelTable:
         return [Fact("close", component, handle, _opening(component, handle, instance)) for handle, instance in found]
 
     def snapshot(self) -> list[Fact]:
-        """Facts that make this table from an empty one."""
+        """Returns facts that make this table from an empty one."""
         made = [Fact("come", component) for component in sorted(self.present)]
         for name in sorted(self._by_name):
             instance = self._by_name[name]
@@ -182,7 +182,7 @@ class ChannelTable:
         return made
 
     def apply(self, facts: Iterable[Fact]) -> list[BlackboardEvent]:
-        """Takes facts over; returns what happened by that."""
+        """Applies facts; returns the events that follow from them."""
         events: list[BlackboardEvent] = []
         for fact in facts:
             if fact.kind == "come":
@@ -240,7 +240,7 @@ class ChannelTable:
         return events
 
     def _presence(self, component: int, how: Literal["added", "removed"]) -> list[BlackboardEvent]:
-        """A component comes or goes: what that means for the channels that it declares."""
+        """Returns the events of a component that comes or goes, for the channels that it declares."""
         events = []
         for instance in self._by_name.values():
             if instance.declared_writer == component:
@@ -258,7 +258,7 @@ def _opening(component: int, handle: int, instance: Instance) -> Opening:
 
 
 def facts_of(text: str) -> list[Fact]:
-    """Reads facts from the text that a starting host gets.
+    """Returns the facts of the text that a starting host gets.
 
     Raises:
         ValueError, TypeError, LookupError: the text is something else.
@@ -267,7 +267,7 @@ def facts_of(text: str) -> list[Fact]:
 
 
 def text_of(facts: Iterable[Fact]) -> str:
-    """Writes facts as the text that a starting host gets."""
+    """Returns the text of facts that a starting host gets."""
     return json.dumps([fact.plain() for fact in facts], separators=(",", ":"))
 
 

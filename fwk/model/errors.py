@@ -1,4 +1,4 @@
-"""Mistakes in a launch file: collected, so that one run shows them all, and worded alike."""
+"""Mistakes in launch files, collected so that one check reports them all."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -9,21 +9,21 @@ _LISTED = 12
 
 @dataclass(frozen=True)
 class Problem:
-    """One mistake: `launch/robot.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
+    """A mistake: `launch/robot.yaml:41: cyan1/omni_ball: no setting 'gian'; did you mean 'gain'?`."""
 
     place: str
-    """File and line, or the option that was typed."""
+    """File and line, or the command-line option."""
     who: str
-    """The component concerned; empty where the mistake is nobody's own."""
+    """Name of the component; empty if the mistake concerns no single component."""
     text: str
-    """What is wrong, and what would be right."""
+    """The mistake, and what would be right."""
 
     def __str__(self) -> str:
         return ": ".join(part for part in (self.place, self.who, self.text) if part)
 
 
 class PlanError(Exception):
-    """A launch file that cannot be run; its text is one line a mistake, in the order of files and lines."""
+    """A launch file has mistakes; the text has a line for each, in the order of files and lines."""
 
     def __init__(self, problems: Iterable[Problem]) -> None:
         self.problems = tuple(problems)
@@ -33,7 +33,7 @@ class PlanError(Exception):
 class Problems:
     """Collects mistakes.
 
-    A mistake in a template shows in every robot that uses it; it is then told once, with the number of the others.
+    A mistake in a template occurs in every robot that uses it; it is reported once, with their number.
     """
 
     def __init__(self) -> None:
@@ -43,7 +43,7 @@ class Problems:
         return bool(self._found)
 
     def add(self, place: str, who: str, text: str) -> None:
-        """Takes a mistake."""
+        """Adds a mistake."""
         namespace = who.rpartition("/")[0]
         alike = text.replace(f"{namespace}/", "{namespace}/") if namespace else text
         self._found.setdefault((place, alike), []).append(Problem(place, who, text))
@@ -70,7 +70,7 @@ def _position(problem: Problem) -> tuple[bool, str, int]:
 
 
 def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str = "") -> str:
-    """What would be right instead of `word`: the nearest known word, or else `otherwise`, or else what there is."""
+    """Returns a hint for a wrong word: the nearest known word, otherwise `otherwise`, otherwise all known words."""
     names = sorted(known)
     # Names share their namespace or package, which alone would make them alike.
     own = [name for name in names if get_close_matches(_last_part(word), [_last_part(name)], 1)]

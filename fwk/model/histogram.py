@@ -1,4 +1,4 @@
-"""A histogram of durations: constant memory, each duration known to a sixteenth of itself."""
+"""Histogram of durations with constant memory and a resolution of one sixteenth."""
 
 from collections.abc import Iterable
 from typing import Any
@@ -29,23 +29,23 @@ class Histogram:
 
     @classmethod
     def of(cls, counts: Iterable[tuple[int, int]], total_us: int, worst_us: int) -> "Histogram":
-        """One from its parts."""
+        """Returns a histogram with these counts."""
         made = cls()
         made.counts, made.total_us, made.worst_us = dict(counts), total_us, worst_us
         return made
 
     @property
     def count(self) -> int:
-        """How many durations."""
+        """Number of durations."""
         return sum(self.counts.values())
 
     @property
     def mean_us(self) -> float:
-        """Their mean; 0 if there are none."""
+        """Mean duration in us; 0 if there are none."""
         return self.total_us / self.count if self.counts else 0.0
 
     def percentile_us(self, percent: float) -> int:
-        """The duration that so many percent of all do not exceed; 0 if there are none."""
+        """Returns the duration in us that `percent` of all durations do not exceed; 0 if there are none."""
         wanted, found = self.count * percent / 100, 0
         for bucket, count in sorted(self.counts.items()):
             found += count
@@ -54,11 +54,11 @@ class Histogram:
         return 0
 
     def rows(self) -> list[tuple[int, int]]:
-        """The longest duration that each bucket counts, and how many it has, the shortest first."""
+        """Yields the longest duration of each bucket in us and its count, shortest first."""
         return [(longest_us(bucket), count) for bucket, count in sorted(self.counts.items())]
 
     def since(self, before: "Histogram") -> "Histogram":
-        """What was counted after `before` was taken of the same histogram; its worst is that of the highest bucket."""
+        """Returns the durations counted since `before`; its worst is the longest of the highest bucket."""
         left = {bucket: count - before.counts.get(bucket, 0) for bucket, count in self.counts.items()}
         if min(left.values(), default=0) < 0 or self.total_us < before.total_us:  # it began anew meanwhile
             return self
@@ -67,17 +67,17 @@ class Histogram:
         return Histogram.of(counts.items(), self.total_us - before.total_us, worst_us)
 
     def to_json(self) -> dict[str, Any]:
-        """Plain data for JSON."""
+        """Returns plain data for JSON."""
         return {"counts": sorted(self.counts.items()), "total_us": self.total_us, "worst_us": self.worst_us}
 
     @classmethod
     def from_json(cls, data: dict[str, Any]) -> "Histogram":
-        """Reads back what `to_json` gave."""
+        """Returns the histogram of plain data from `to_json`."""
         return cls.of(((bucket, count) for bucket, count in data["counts"]), data["total_us"], data["worst_us"])
 
 
 def longest_us(bucket: int) -> int:
-    """The longest duration that a bucket counts."""
+    """Returns the longest duration of a bucket in us."""
     if bucket < _EXACT:
         return bucket
     shift = (bucket >> _FINE_BITS) - 1

@@ -1,21 +1,20 @@
-"""Which names components and channels may have."""
+"""Rules for names of components and channels."""
 
 import re
 
 CHANNEL_BYTES = 63  # LCM_MAX_CHANNEL_NAME_LENGTH
 RESERVED = "fwk/"
 LINES = "fwk/lines"
-"""The channel on which the gateway gives lines of text to components that are targets of the log."""
+"""Channel of log lines for components with the aspect `LogLines`."""
 
 _NAME = re.compile(r"[A-Za-z_][\w-]*(/[A-Za-z_][\w-]*)*", re.ASCII)
 _PATTERN = re.compile(r"(?=.*\*)[\w*-]+(/[\w*-]+)*/[A-Za-z_][\w-]*", re.ASCII)
 
 
 def mistake_in(name: str) -> str:
-    """What is wrong with the name of a component or a channel; empty if nothing.
+    """Returns the mistake in the name of a component or a channel; empty if there is none.
 
-    LCM takes a channel name as a regular expression when somebody subscribes, so only characters without a meaning
-    there are allowed.
+    LCM subscribes with regular expressions, so only characters without a special meaning are allowed.
     """
     size = len(name.encode(errors="surrogatepass"))  # half a surrogate is refused below
     if size > CHANNEL_BYTES:
@@ -28,7 +27,7 @@ def mistake_in(name: str) -> str:
 
 
 def mistake_in_pattern(pattern: str) -> str:
-    """What is wrong with the pattern of a port of many instances; empty if nothing."""
+    """Returns the mistake in the pattern of an `Each` port; empty if there is none."""
     if not _PATTERN.fullmatch(pattern):
         right = "put '*' for the namespace and a name after the last '/', such as */ball"
         return f"'{pattern}' is not a valid pattern; {right}"

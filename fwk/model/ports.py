@@ -1,4 +1,4 @@
-"""The UDP port numbers of a run."""
+"""UDP port numbers of a run."""
 
 from dataclasses import dataclass
 
@@ -9,7 +9,7 @@ STAGES_MAX = 30
 
 @dataclass(frozen=True)
 class Ports:
-    """All ports of a run, counted from its bus port.
+    """The ports of a run, counted from its bus port.
 
     A host sends from its own port; so does the gateway, which is the host after the last.
     """
@@ -20,31 +20,31 @@ class Ports:
 
     @classmethod
     def of(cls, plan: Plan) -> "Ports":
-        """The ports of a plan."""
+        """Returns the ports of a plan."""
         return cls(plan.bus_port, len(plan.hosts), len(plan.channels) + plan.spare_channels)
 
     @property
     def sync(self) -> int:
-        """Dones and states, to the supervisor."""
+        """Port of dones and states, to the supervisor."""
         return self.base
 
     def stage(self, index: int) -> int:
-        """Ticks of a stage."""
+        """Returns the port of the ticks of a stage."""
         return self.base + 1 + index
 
     @property
     def record(self) -> int:
-        """Tick records, to recorder and gateway."""
+        """Port of tick records, to the gateway."""
         return self.base + 1 + STAGES_MAX
 
     @property
     def log(self) -> int:
-        """Lines of text."""
+        """Port of log lines."""
         return self.record + 1
 
     @property
     def status(self) -> int:
-        """The supervisor's view of the run."""
+        """Port of the supervisor's status."""
         return self.record + 2
 
     @property
@@ -53,7 +53,7 @@ class Ports:
         return self.record + 3
 
     def host(self, index: int) -> int:
-        """The port that a host sends from and can be asked at."""
+        """Returns the port that a host sends from and receives fetches at."""
         return self.supervisor + 1 + index
 
     @property
@@ -67,7 +67,7 @@ class Ports:
         return range(self.supervisor, self.host(self.gateway) + 1)
 
     def channel(self, index: int) -> int:
-        """Messages of a channel."""
+        """Returns the port of a channel's messages."""
         return self.host(self.hosts + 1) + index
 
     @property

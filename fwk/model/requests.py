@@ -1,4 +1,4 @@
-"""Boundary requests and losses as they stand in a done."""
+"""Boundary requests and loss reports in a done."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -44,7 +44,7 @@ def plugin_request(component: int, action: str, names: Iterable[str]) -> plugin_
 
 
 def channel_request(component: int, request: Sequence[Any]) -> channel_request_t:
-    """Returns the request of a component for a dynamic channel, from what `Blackboard.take` returns."""
+    """Returns the request of a component for a dynamic channel, from what `Blackboard._take` returns."""
     kind, handle, *rest = request
     made = channel_request_t()
     made.component, made.kind, made.handle = component, _CHANNEL_KIND_NUMBERS[kind], handle
@@ -55,7 +55,7 @@ def channel_request(component: int, request: Sequence[Any]) -> channel_request_t
 
 
 def channel_request_of(message: channel_request_t) -> list[Any]:
-    """Returns the request as `Blackboard.take` returned it."""
+    """Returns the request as `Blackboard._take` returned it."""
     kind = _CHANNEL_KINDS[message.kind]
     if message.kind == channel_request_t.CLOSE:
         return [kind, message.handle]

@@ -1,4 +1,4 @@
-"""Which components a pattern means: in settings, groups of a process, `--only` and `--without`."""
+"""Selection of components by patterns, in settings, hosts, `--only` and `--without`."""
 
 from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
@@ -7,18 +7,18 @@ from fwk.model.errors import Problems, hint
 
 
 def matches(name: str, pattern: str) -> bool:
-    """Whether a pattern means a component: its name, with `*` for any part, or a namespace for all that is in it."""
+    """Returns whether a pattern selects a component: by its name with `*` for any part, or by its namespace."""
     return fnmatchcase(name, pattern) or name.startswith(f"{pattern}/")
 
 
 def nearest(pattern: str, names: Sequence[str]) -> str:
-    """What would be right instead of a pattern that means no component."""
+    """Returns a hint for a pattern that selects no component."""
     namespaces = [name.rpartition("/")[0] for name in names if "/" in name]
     return hint(pattern, dict.fromkeys(names if "/" in pattern else [*namespaces, *names]))
 
 
 def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], problems: Problems) -> list[str]:
-    """The names that `--only` and `--without` leave."""
+    """Returns the names that `--only` and `--without` select."""
     idle = False
     for option, patterns in (("--only", only), ("--without", without)):
         for pattern in patterns:
@@ -39,7 +39,7 @@ def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], pr
 def groups_of(
     names: Sequence[str], groups: Mapping[str, Sequence[str]], places: Mapping[str, str], problems: Problems
 ) -> dict[str, str]:
-    """Component to the name of its group. `places` says where each group stands."""
+    """Returns the group of each component in a group; `places` are the places of the groups in the files."""
     found: dict[str, str] = {}
     for group, patterns in groups.items():
         if group in names:

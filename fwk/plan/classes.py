@@ -20,23 +20,23 @@ from fwk.model.errors import hint
 from fwk.plan.packages import component_packages
 
 INSTALLED = Path(__file__).resolve().parents[2]
-"""Where `fwk` and the installed packages of components lie side by side."""
+"""Folder of `fwk` and of the installed packages of components."""
 _DEPTH = 2  # folders below a folder of modules that are searched for a module to propose
 _FILES_MAX = 200  # of a folder, looked at for that
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 
 
 class UnusableError(Exception):
-    """What `use:` names cannot be used; says why and what would be right."""
+    """The value of `use:` cannot be used; the text gives the reason and what would be right."""
 
 
 def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
     """Imports a module and reads the class of its one component, or of the one named behind a colon.
 
-    `folders` are searched for the nearest name when there is no such module.
+    `folders` are searched for the nearest name if the module does not exist.
 
     Raises:
-        UnusableError: no such module or class, several components, or the module or the class has a mistake.
+        UnusableError: the module or class does not exist or has a mistake, or the module has several components.
     """
     if not _USE.fullmatch(use):
         raise UnusableError(f"'{use}' is not a module; write it as in Python: drivers.wheels, or drivers.wheels:Wheels")
@@ -49,10 +49,10 @@ def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
 
 
 def find_object(use: str, folders: Sequence[str] = ()) -> object:
-    """What `module:name` stands for.
+    """Returns the object that `module:name` names.
 
     Raises:
-        UnusableError: no such module or name.
+        UnusableError: the module or name does not exist.
     """
     name, _, wanted = use.partition(":")
     if not wanted or not _USE.fullmatch(use):
@@ -67,7 +67,7 @@ def imported(name: str, folders: Sequence[str] = ()) -> ModuleType:
     """Imports a module.
 
     Raises:
-        UnusableError: there is no such module, or its import fails; then with the line of the file that is to blame.
+        UnusableError: the module does not exist, or its import fails; the text names the line that fails.
     """
     try:
         return import_module(name)
@@ -87,7 +87,7 @@ def _failure(name: str, error: BaseException) -> str:
 
 
 def _setting_mistake(error: BaseException) -> str:
-    """What is wrong with a class of settings that has a type that no file can hold, such as an array."""
+    """Returns the mistake of a settings class with a type that no file can hold, such as an array."""
     found = isinstance(error, PydanticUserError) and re.search(
         r"schema for (?:<class '([^']*)'>|(\S+?)\.? )", str(error)
     )
@@ -98,7 +98,7 @@ def _setting_mistake(error: BaseException) -> str:
 
 
 def _blamed(trace: TracebackType | None) -> str:
-    """The innermost line that belongs to no library."""
+    """Returns the innermost line of a traceback outside the libraries."""
     libraries = (sysconfig.get_path("stdlib"), sysconfig.get_path("purelib"), sysconfig.get_path("platlib"))
     here = str(Path(__file__).parent)
     for frame in reversed(traceback.extract_tb(trace)):
@@ -113,7 +113,7 @@ def _shown(file: str) -> str:
 
 
 def _missing(name: str, folders: Sequence[str]) -> str:
-    """What would be right instead of a module that does not exist: one with a similar name, or the author's own."""
+    """Returns a hint for a module that does not exist: a similar name, or the author's own modules."""
     if reason := _hidden(name):
         return reason
     own, installed = _modules_in(folders), _modules_in([str(INSTALLED)])
@@ -122,7 +122,7 @@ def _missing(name: str, folders: Sequence[str]) -> str:
 
 
 def _beside(name: str, modules: Sequence[str]) -> list[str]:
-    """The modules in the same package as a missing one, or in the nearest package around it that exists."""
+    """Returns the modules in the package of a missing one, or in the nearest package around it that exists."""
     package = name.rpartition(".")[0]
     while package:
         if found := [module for module in modules if module.startswith(f"{package}.")]:
@@ -132,7 +132,7 @@ def _beside(name: str, modules: Sequence[str]) -> list[str]:
 
 
 def _modules_in(folders: Sequence[str]) -> list[str]:
-    """Names of the modules in folders, and in the packages below them; of installed ones, the announced packages."""
+    """Returns the names of modules in folders and their packages; of installed ones, those of announced packages."""
     found: set[str] = set()
     for folder in folders:
         starts = [f"{folder}/{name}" for name in component_packages()] if folder == str(INSTALLED) else [folder]
@@ -142,7 +142,7 @@ def _modules_in(folders: Sequence[str]) -> list[str]:
 
 
 def _python_files(folder: str, depth: int) -> Iterator[str]:
-    """The modules in a folder and, of the folders below, in those that hold a few files, as packages do."""
+    """Returns the modules of a folder, and of folders below with as few files as packages have."""
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)[:_FILES_MAX]
     except OSError:
@@ -156,7 +156,7 @@ def _python_files(folder: str, depth: int) -> Iterator[str]:
 
 
 def _hidden(name: str) -> str:
-    """That a file `__init__.py` of the author hides the installed modules of a package, if that is the reason."""
+    """Returns the message that an `__init__.py` of the author hides an installed package; empty if none does."""
     package = name.partition(".")[0]
     file = getattr(sys.modules.get(package), "__file__", None)
     if package not in component_packages() or not file or Path(file).is_relative_to(INSTALLED):
@@ -171,7 +171,7 @@ def _public(module: ModuleType) -> list[str]:
 
 
 def components_in(module: ModuleType) -> dict[str, type[Component]]:
-    """The components that a module defines, by name."""
+    """Returns the component classes that a module defines, by name."""
     return {
         name: value
         for name, value in vars(module).items()

@@ -1,4 +1,4 @@
-"""Shares components out to processes."""
+"""Assigns components to host processes."""
 
 from collections.abc import Collection, Mapping, Sequence
 from typing import Literal
@@ -16,11 +16,10 @@ def share_out(
     later: Collection[str] = (),
     alone: Collection[str] = (),
 ) -> tuple[HostPlan, ...]:
-    """Hosts in the order of their first component.
+    """Returns the hosts in the order of their first component.
 
-    `process`: one a component, unless `groups` (component to group) says otherwise; `robot`: one a namespace; `single`:
-    one for all. Those of `later` do not start with the run, so they keep processes of their own; those in
-    `alone` have one each in any case.
+    `process`: one for each component or group of `groups` (component to group); `robot`: one for each namespace;
+    `single`: one for all. Components of `later`, which do not start with the run, and of `alone` have a process each.
     """
     members: dict[str, list[int]] = {}
     for index, name in enumerate(names):

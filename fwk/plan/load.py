@@ -1,4 +1,4 @@
-"""Loads a launch file: from its name and the options typed with it to a checked plan, or to all its mistakes."""
+"""Loads a launch file: from its name and command-line options to a checked plan, or to all its mistakes."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -39,29 +39,29 @@ SPARE_CHANNELS = 64
 
 @dataclass(frozen=True)
 class LaunchOptions:
-    """What was typed with the launch file; None: as the file says."""
+    """Command-line options that change the plan; None: the value of the launch file."""
 
     sets: Sequence[str] = ()
     """Settings as `PATH=VALUE`."""
     hosting: Hosting = "process"
     only: Sequence[str] = ()
-    """Patterns of the components to run; none: all."""
+    """Patterns of the components to run; empty: all."""
     without: Sequence[str] = ()
     """Patterns of the components to leave out."""
     seed: int | None = None
     speed: float | None = None
-    """Logical seconds per wall second; 0: as fast as it goes."""
+    """Logical seconds per wall second; 0: as fast as possible."""
     bus_port: int | None = None
 
 
 def load_plan(file: str, options: LaunchOptions = LaunchOptions()) -> Plan:
-    """Finds, reads and checks a launch file, and imports everything it uses.
+    """Finds, reads and checks a launch file, and imports everything that it uses.
 
-    The whole file is checked, those components too that `only` and `without` leave out. Where they take a channel's
-    writer away, the channel has none and its readers never see a value.
+    The whole file is checked, including components that `only` and `without` leave out. A channel whose writer is left
+    out has no writer, and its readers never see a value.
 
     Raises:
-        PlanError: with every mistake that was found.
+        PlanError: the file has mistakes; the text has a line for each.
     """
     problems = Problems()
     path = find_launch_file(file, problems)
@@ -93,7 +93,7 @@ class _Loading:
         components = resolve(files, asked, stages, self.folders, problems)
         outside = outside_of(files, problems)
         whole = self._wire(components, outside, files.may_hide)
-        granted = granted_by([each.wish for each in components], whole)
+        granted = granted_by([each.spec for each in components], whole)
         needs = needs_of(asked, granted, files, problems)
         check_starts(asked, needs, problems)
         names = [each.name for each in asked]
@@ -140,7 +140,7 @@ class _Loading:
         def report(name: str, port: str | None, text: str) -> None:
             self.problems.add(by_name[name].place(port), name, text)
 
-        return wire([each.wish for each in components], report, outside, may_lack_writer)
+        return wire([each.spec for each in components], report, outside, may_lack_writer)
 
     def _shared(self) -> dict[str, Any]:
         files, options, problems = self.files, self.options, self.problems

@@ -9,5 +9,5 @@ GROUP = "fwk.components"
 
 @cache
 def component_packages() -> tuple[str, ...]:
-    """Names of the announced packages, sorted."""
+    """Returns the names of the announced packages, sorted."""
     return tuple(sorted({entry.value for entry in entry_points(group=GROUP)}))

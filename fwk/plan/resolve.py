@@ -14,12 +14,12 @@ from fwk.plan.files.settings import effective
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
 from fwk.plan.stages import stages_in, turns_of
-from fwk.plan.wiring.component_spec import Wish
+from fwk.plan.wiring.component_spec import ComponentSpec
 
 
 @dataclass(frozen=True)
 class Resolved:
-    """A component with everything that can be said without the others."""
+    """A component with everything that does not depend on other components."""
 
     asked: Asked
     declaration: Declaration
@@ -31,20 +31,20 @@ class Resolved:
 
     @property
     def rate_hz(self) -> float | None:
-        """Of a continuous component."""
+        """Rate of a continuous component, in Hz; None for a component with stages."""
         said = self.asked.entry.rate_hz
         return self.declaration.rate_hz if said is None or self.declaration.rate_hz is None else said
 
     @property
-    def wish(self) -> Wish:
-        """What wiring needs to know."""
+    def spec(self) -> ComponentSpec:
+        """The component as wiring needs it."""
         channels = self.asked.node.child("channels")
         said = {port: str(name) for port, name in channels.plain().items()} if channels else {}
         providers = self.asked.node.child("providers")
-        return Wish(self.asked.name, self.declaration, said, providers.plain() if providers else {})
+        return ComponentSpec(self.asked.name, self.declaration, said, providers.plain() if providers else {})
 
     def place(self, port: str | None) -> str:
-        """Where the channel of a port stands; where the component stands, if the file does not say it."""
+        """Returns the place of a port's channel in the files; by default the place of the component."""
         return self.asked.node.at("channels", port).place if port and self._says(port) else self.asked.node.place
 
     def _says(self, port: str) -> bool:
@@ -52,7 +52,7 @@ class Resolved:
 
 
 def add_settings(files: Files, components: Sequence[Asked], problems: Problems) -> None:
-    """Gives the components what the `config:` sections say of them by pattern."""
+    """Adds the settings of the `config:` sections, which name components by patterns."""
     names = [asked.name for asked in components]
     for number, layer in enumerate(files.layers):
         for pattern in layer.content.config:
@@ -73,7 +73,7 @@ def _report(problems: Problems, who: str, place: str, text: str) -> None:
 def resolve(
     files: Files, components: Sequence[Asked], stages: Sequence[str], folders: Sequence[str], problems: Problems
 ) -> list[Resolved]:
-    """Finds the classes and lays the settings together; components without a usable class are left out and reported."""
+    """Finds the classes and merges the settings; components without a usable class are reported and left out."""
     classes: dict[str, Declaration | str] = {}
     found = []
     for asked in components:
@@ -111,7 +111,7 @@ def _check_ports(asked: Asked, declared: Declaration, problems: Problems) -> Non
 
 
 def check_clock(found: Sequence[Resolved], clock: str, problems: Problems) -> None:
-    """Whether the clock on the wall is a second source of time, beside a component that is one."""
+    """Refuses `clock: wall` beside a component that is a time source."""
     for owner in found if clock == "wall" else ():
         if "time_source" in owner.declaration.aspects.values():
             name = owner.asked.name

@@ -10,7 +10,7 @@ from fwk.lcm.messages import type_named
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
 from fwk.model.sections import RestartPolicy
 from fwk.plan.load import SPARE_CHANNELS
-from fwk.plan.wiring.component_spec import Wish
+from fwk.plan.wiring.component_spec import ComponentSpec
 from fwk.plan.wiring.needs import granted_by
 from fwk.plan.wiring.wiring import wire
 
@@ -34,38 +34,40 @@ def plan_of(
         ValueError: the components do not fit together.
     """
     mistakes: list[str] = []
-    wishes = [Wish(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()]
+    specs = [
+        ComponentSpec(name, declaration(kind), (channels or {}).get(name, {})) for name, kind in components.items()
+    ]
     outside = {channel: type_named(kind) for channel, kind in fields.get("outside", {}).items()}
-    wiring = wire(wishes, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
+    wiring = wire(specs, lambda name, _, text: mistakes.append(f"{name}: {text}"), outside)
     if mistakes:
         raise ValueError("\n".join(mistakes))
-    names, granted = list(components), granted_by(wishes, wiring)
+    names, granted = list(components), granted_by(specs, wiring)
     shared = [list(group) for group in groups or ()]
     grouped = {name for group in shared for name in group}
     shared += [[name] for name in names if name not in grouped]
     host_of = {name: index for index, group in enumerate(shared) for name in group}
     planned = []
-    for index, (wish, ports) in enumerate(zip(wishes, wiring.ports, strict=True)):
-        kind, config_type = wish.declaration.component, wish.declaration.config
-        every, offset = (turns or {}).get(wish.name, (wish.declaration.every, wish.declaration.offset))
-        config = config_type(**(settings or {}).get(wish.name, {})).model_dump()
+    for index, (spec, ports) in enumerate(zip(specs, wiring.ports, strict=True)):
+        kind, config_type = spec.declaration.component, spec.declaration.config
+        every, offset = (turns or {}).get(spec.name, (spec.declaration.every, spec.declaration.offset))
+        config = config_type(**(settings or {}).get(spec.name, {})).model_dump()
         planned.append(
             ComponentPlan(
                 index=index,
-                name=wish.name,
+                name=spec.name,
                 module=kind.__module__,
                 class_name=kind.__qualname__,
-                stages=tuple(stages.index(stage) for stage in wish.declaration.stages),
+                stages=tuple(stages.index(stage) for stage in spec.declaration.stages),
                 config=config,
                 origins={},
                 channels=ports,
-                host=host_of[wish.name],
+                host=host_of[spec.name],
                 restart=restart or RestartPolicy(),
-                rate_hz=wish.declaration.rate_hz,
+                rate_hz=spec.declaration.rate_hz,
                 every=every,
                 offset=offset,
-                opens="blackboard" in wish.declaration.aspects.values(),
-                needs=tuple(sorted(map(names.index, granted.get(wish.name, ())))),
+                opens="blackboard" in spec.declaration.aspects.values(),
+                needs=tuple(sorted(map(names.index, granted.get(spec.name, ())))),
             )
         )
     hosts = [

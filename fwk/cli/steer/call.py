@@ -90,7 +90,7 @@ def _encoded(gateway: client.Client, name: str, fields: list[str], chosen: str |
     known = {channel.partition("@")[0]: kind for channel, kind in types.items() if channel.endswith(f"@{OUTSIDE}")}
     if name not in known:
         otherwise = "" if known else "no component of this run has a port for commands"
-        raise RefusedError(f"nobody carries out '{name}'; {hint(name, known, otherwise)}")
+        raise RefusedError(f"no component carries out '{name}'; {hint(name, known, otherwise)}")
     for folder in ask(chosen, "run")["folders"]:
         use_types_of(Path(folder))
     try:

@@ -1,4 +1,4 @@
-"""Makes a user's own folder usable: its modules can be imported, and its .lcm files become Python classes."""
+"""Makes the folders of a launch file importable and generates the classes of their .lcm files."""
 
 import importlib
 import re
@@ -16,7 +16,7 @@ _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
 
 
 def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
-    """Where the modules and .lcm files of launch files are looked for, besides the installed ones.
+    """Returns the folders that are searched for modules and .lcm files, besides the installed ones.
 
     These are the folder of each launch file, and its parent folder if the folder is called `launch` or if the parent
     has a folder `lcmtypes` or one named like an installed package of components.
@@ -32,7 +32,7 @@ def folders_of(launch_folders: Sequence[Path]) -> tuple[str, ...]:
 
 
 def join(folders: Sequence[str], problems: Problems) -> None:
-    """Puts folders on the path of modules, before the installed ones, and generates their types."""
+    """Puts folders on the module search path, before the installed ones, and generates their types."""
     put_first(folders)
     for folder in folders:
         types = Path(folder) / "lcmtypes"
@@ -48,7 +48,7 @@ def join(folders: Sequence[str], problems: Problems) -> None:
 
 
 def _tell(mistakes: str, problems: Problems) -> None:
-    """Takes the lines of a `TypeGenerationError`, which are `FILE:LINE: what is wrong`."""
+    """Reports the lines of a `TypeGenerationError`, each of the form `FILE:LINE: mistake`."""
     for mistake in mistakes.splitlines():
         place, _, reason = mistake.partition(": ")
         file, _, line = place.rpartition(":")
@@ -56,7 +56,7 @@ def _tell(mistakes: str, problems: Problems) -> None:
 
 
 def _check_package(source: Path, problems: Problems) -> None:
-    """A package of types lives in one folder; of two, Python would see only one and miss the types of the other."""
+    """Refuses a package of types in two folders, because Python would find only one of them."""
     text = source.read_text(encoding="utf-8", errors="replace")
     package = _PACKAGE.search(text)
     for entry in sys.path:

@@ -21,10 +21,10 @@ _MARK = {"type": "string", "pattern": r"\{[A-Za-z_]\w*\}"}  # `{team}` in a temp
 
 
 def schema_of_files(host_specific: bool = False) -> Schema:
-    """Of any launch file that uses components which are found from here.
+    """Returns the schema of launch files that use the components found from the working directory.
 
     Raises:
-        PlanError: types that lie here cannot be generated.
+        PlanError: message types found there cannot be generated.
     """
     problems = Problems()
     folders = folders_of([Path.cwd()])
@@ -34,7 +34,7 @@ def schema_of_files(host_specific: bool = False) -> Schema:
 
 
 def schema_of_file(file: str, host_specific: bool = False) -> Schema:
-    """Of one launch file, or of the host-specific file beside it: it knows the components' names, too.
+    """Returns the schema of one launch file, or of its host file, with the names of its components.
 
     Raises:
         PlanError: the file cannot be read.
@@ -53,10 +53,10 @@ def schema_of_file(file: str, host_specific: bool = False) -> Schema:
 
 
 def schema_of_component(use: str) -> Schema:
-    """Of the settings of one component's class.
+    """Returns the schema of the settings of a component's class.
 
     Raises:
-        PlanError: types that lie here cannot be generated.
+        PlanError: message types found there cannot be generated.
         UnusableError: there is no such class.
     """
     problems = Problems()
@@ -75,7 +75,7 @@ def _uses(files: Files) -> Iterable[str]:
 
 
 def _found(folders: Sequence[str]) -> dict[str, Declaration]:
-    """The components of the announced packages, as `use` names them."""
+    """Returns the components of the announced packages, as `use` names them."""
     found = {}
     roots = [root for package in component_packages() for root in imported(package, folders).__path__]
     for module in _modules(roots):
@@ -88,7 +88,7 @@ def _found(folders: Sequence[str]) -> dict[str, Declaration]:
 
 
 def _modules(roots: Iterable[str]) -> list[str]:
-    """Names of the modules below the folders of a package, tests apart; subfolders need no `__init__.py`."""
+    """Returns the names of the modules of a package except tests; subfolders need no `__init__.py`."""
     files = ((Path(root), file) for root in roots for file in sorted(Path(root).rglob("*.py")))
     return [
         ".".join((root.name, *file.relative_to(root).with_suffix("").parts))
@@ -125,14 +125,14 @@ class _Made:
             self._complete_robots()
 
     def _settings_of(self, use: str, found: Declaration) -> Schema:
-        """Puts the settings of a class among the definitions, and refers to them."""
+        """Adds the settings of a class to the definitions; returns a reference to them."""
         made = found.config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}")
         self._defs |= {f"{use}.{name}": _partial(below) for name, below in made.pop("$defs", {}).items()}
         self._defs[use] = _partial(made)
         return {"$ref": f"{_REF}{use}"}
 
     def _complete_entries(self, classes: Mapping[str, Declaration]) -> None:
-        """What may stand behind `config` and `channels` of a component depends on what it uses."""
+        """Makes the schema of `config` and `channels` depend on the class that a component uses."""
         entry = self._defs["ComponentEntry"]
         entry["properties"]["use"]["examples"] = sorted(classes)
         entry["allOf"] = [
@@ -152,7 +152,7 @@ class _Made:
             self._defs["RobotEntry"]["properties"]["config"] = {"type": "object", "properties": known}
 
     def _by_pattern(self) -> Schema:
-        """Settings by the name of a component, a namespace, or a pattern; a pattern's fit all components it means."""
+        """Returns the schema of settings by name, namespace or pattern; those of a pattern fit all its components."""
         meant: dict[str, list[str]] = {}
         for each in self._asked:
             namespace, _, short = each.name.rpartition("/")
@@ -187,7 +187,7 @@ def _ports(found: Declaration) -> Schema:
 
 
 def _partial(schema: Schema) -> Schema:
-    """Settings of one layer: none has to be there, and a template may say `{key}` instead of a value."""
+    """Returns the schema of one layer: no setting is required, and `{key}` may stand for a value."""
     made = {key: value for key, value in schema.items() if key != "required"}
     if "properties" in made:
         made["properties"] = {name: _or_mark(below) for name, below in made["properties"].items()}

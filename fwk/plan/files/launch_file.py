@@ -1,4 +1,4 @@
-"""Finds a launch file, what it includes and its host-specific file, and reads them into layers."""
+"""Finds a launch file, its includes and its host file, and reads them into layers."""
 
 import os
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from fwk.plan.files.validation import Path as NodePath
 from fwk.plan.files.validation import validated
 
 INSTALLED = Path(fwk.__file__).resolve().parent.parent
-"""Where `fwk`, `lcmtypes`, `launch` and packages of components lie side by side: site-packages, or a checkout."""
+"""Folder of `fwk`, `lcmtypes`, `launch` and packages of components: site-packages, or a checkout."""
 FOLDER = "launch"
 HOST_SUFFIX = ".host.yaml"
 
@@ -23,7 +23,7 @@ F = TypeVar("F", bound=HostFile)
 
 @dataclass(frozen=True)
 class Layer:
-    """One file: what it says, and where each word of it stands."""
+    """The content of one file, with the places of its values."""
 
     path: Path
     content: LaunchFile
@@ -32,33 +32,33 @@ class Layer:
 
 @dataclass
 class Files:
-    """All files of a launch, those that win last: included before including, the host-specific one at the end."""
+    """All files of a launch; later ones win: included before including files, the host file last."""
 
     path: Path
     layers: list[Layer] = field(default_factory=list)
     folders: list[Path] = field(default_factory=list)
-    """Where the launch files lie."""
+    """Folders of the launch files."""
     gaps: set[str] = field(default_factory=set)
-    """Namespaces in which components may be missing because of a mistake that is already told; `*`: in any."""
+    """Namespaces in which a reported mistake may hide components; `*`: all namespaces."""
 
     def may_hide(self, name: str) -> bool:
-        """Whether a component or channel is perhaps only missing because of another mistake."""
+        """Returns whether a component or channel may be missing only because of a reported mistake."""
         return "*" in self.gaps or name.rpartition("/")[0] in self.gaps
 
 
 def shown(path: Path) -> str:
-    """A path as people see it: relative to where they stand, if it is below."""
+    """Returns a path as it is shown: relative to the working directory if it is below."""
     absolute = path.absolute()
     return str(absolute.relative_to(Path.cwd())) if absolute.is_relative_to(Path.cwd()) else str(absolute)
 
 
 def host_file(launch_file: Path) -> Path:
-    """The host-specific file beside a launch file: `robot.host.yaml` beside `robot.yaml`."""
+    """Returns the path of the host file of a launch file: `robot.host.yaml` beside `robot.yaml`."""
     return launch_file.with_name(launch_file.stem + HOST_SUFFIX)
 
 
 def find_launch_file(file: str, problems: Problems) -> Path | None:
-    """Looks for a launch file as given, then in `launch/` here, then among those that come with fwk."""
+    """Finds a launch file: as given, then in `launch/`, then among those that come with fwk."""
     places = [Path(), Path(FOLDER), INSTALLED / FOLDER]
     for place in places:
         if os.path.isfile(place / file):  # False, too, for what can be no path or is forbidden
@@ -75,7 +75,7 @@ def _launch_files(folder: Path) -> list[str]:
 
 
 def read_files(path: Path, problems: Problems) -> Files:
-    """Reads a launch file with everything it includes, and the host-specific file beside it."""
+    """Reads a launch file with everything that it includes, and its host file."""
     files = Files(path)
     _Reader(files, problems).read(path, [])
     beside = host_file(path)
@@ -86,7 +86,7 @@ def read_files(path: Path, problems: Problems) -> Files:
 
 
 def lay_over(files: Files, path: Path, node: Node, problems: Problems) -> None:
-    """Adds a layer on top that may say what a host-specific file may say."""
+    """Adds a layer on top, with the keys of a host file."""
     checked = _checked(HostFile, node, files, problems)
     if checked:
         content, node = checked
@@ -101,7 +101,7 @@ class _Reader:
         self._read: set[Path] = set()
 
     def read(self, path: Path, above: list[Path]) -> None:
-        """Reads a file that the files `above` include, each the next."""
+        """Reads a file that the files `above` include, each including the next."""
         path = path.resolve()
         if path in self._read:
             return
@@ -135,7 +135,7 @@ class _Reader:
 
 
 def _checked(model: type[F], node: Node, files: Files, problems: Problems) -> tuple[F, Node] | None:
-    """The file's content; what does not fit is reported and left out, so that the rest can be checked too."""
+    """Returns the content of a file without values that do not fit, which are reported."""
 
     def report(path: NodePath, place: str, text: str) -> None:
         problems.add(place, "", text)
@@ -145,7 +145,7 @@ def _checked(model: type[F], node: Node, files: Files, problems: Problems) -> tu
 
 
 def _gap(path: NodePath) -> set[str]:
-    """Namespaces that lack a component when the value at a path is left out."""
+    """Returns the namespaces that lack a component if the value at a path is left out."""
     if not path:
         return {"*"}
     if path[-1] == "use":

@@ -11,7 +11,7 @@ RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s",
 
 
 def overrides(sets: Sequence[str], problems: Problems) -> Node:
-    """What the command line says, in the shape of a host-specific file; later ones win.
+    """Returns the layer of all `--set` options, in the shape of a host file; later options win.
 
     A path is `cyan1/omni_ball.gain`, `*/camera.noise_levels`, or one of the run's own keys, `period_s`.
     """

@@ -1,4 +1,4 @@
-"""Lays settings over each other and says of each effective value where it comes from."""
+"""Merges layers of settings and gives the origin of each effective value."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -13,10 +13,10 @@ DEFAULT = "default"
 def effective(
     config: type[Config], layers: Sequence[Node], place: str, report: Callable[[str, str], None]
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Every setting of a component with its value, and every setting's dotted name with its origin.
+    """Returns the settings of a component, and the origin of each setting by its dotted name.
 
-    `layers` win from left to right, key by key. Mistakes go to `report` as place and text; what is missing has no place
-    of its own and is told at the component's `place`.
+    Later `layers` win, key by key. Mistakes go to `report` as place and text; a missing setting is reported at the
+    component's `place`.
     """
     given = Node({}, place)
     for layer in layers:
@@ -35,7 +35,7 @@ def effective(
 
 
 def over(below: Node, above: Node) -> Node:
-    """`above` laid over `below`: mappings key by key, everything else whole."""
+    """Returns `above` laid over `below`: mappings key by key, any other value as a whole."""
     if not isinstance(below.value, dict) or not isinstance(above.value, dict):
         return above
     merged = dict(below.value)

@@ -1,4 +1,4 @@
-"""Reads YAML so that every value knows the file and line it stands in."""
+"""Reads YAML into nodes that know their file and line."""
 
 import errno
 import os
@@ -13,9 +13,9 @@ from fwk.model.errors import Problems
 
 _HALF = re.compile("[\ud800-\udfff]")
 VALUES_MAX = 100_000
-"""Of a file with its aliases written out; more is a mistake or meant to hurt."""
+"""Largest number of values of a file with its aliases expanded; more is a mistake or an attack."""
 BYTES_MAX = 1_000_000
-"""Of a file; reading so many takes some seconds."""
+"""Largest size of a file; reading it takes some seconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,13 @@ class Node:
     """`launch/robot.yaml:41`; of a mapping's value, the line of its key."""
 
     def plain(self) -> Any:
-        """The value as plain dicts, lists and scalars."""
+        """Returns the value as plain dicts, lists and scalars."""
         if isinstance(self.value, dict):
             return {key: node.plain() for key, node in self.value.items()}
         return [node.plain() for node in self.value] if isinstance(self.value, list) else self.value
 
     def child(self, key: str | int) -> "Node | None":
-        """The value below a key or list position, or None."""
+        """Returns the node below a key or list position; None if there is none."""
         if isinstance(self.value, dict):
             return self.value.get(str(key))
         if isinstance(self.value, list) and isinstance(key, int) and key < len(self.value):
@@ -42,7 +42,7 @@ class Node:
         return None
 
     def at(self, *path: str | int) -> "Node":
-        """The value at a path, or the last one on the way that is there."""
+        """Returns the node at a path, or the last node on the path that exists."""
         node = self
         for key in path:
             below = node.child(key)
@@ -69,7 +69,7 @@ for _kind, _pattern in {
 
 
 def read_yaml(path: Path, shown: str, problems: Problems) -> Node | None:
-    """Reads a file; `shown` is its name in places. None if it cannot be read, which is then among the problems."""
+    """Reads a file; `shown` is its name in places. Returns None after a mistake, which is added to `problems`."""
     data = b""
     try:
         data = _read(path)
@@ -98,7 +98,7 @@ def _read(path: Path) -> bytes:
 
 
 def read_value(text: str, place: str, problems: Problems) -> Node | None:
-    """Reads one value, as typed behind `--set PATH=`."""
+    """Reads the value of `--set PATH=VALUE`."""
     if not text.strip():
         return Node("", place)
     scratch = Problems()
@@ -155,7 +155,7 @@ class _Converter:
         self._values = 0
 
     def convert(self, node: yaml.Node, line: int) -> Node:
-        """Turns a YAML node whose key stands in `line` into ours."""
+        """Converts a YAML node whose key is in `line`."""
         place = f"{self._shown}:{line}"
         self._values += 1
         if self._values > VALUES_MAX:
@@ -182,7 +182,7 @@ class _Converter:
                 self._problems.add(f"{self._shown}:{line}", "", "a key is one word, not a list or a mapping")
             elif word in made:
                 first = made[word].place.rpartition(":")[2]
-                text = f"'{word}' stands here a second time, first in line {first}; keep one"
+                text = f"'{word}' occurs a second time, first in line {first}; keep one"
                 self._problems.add(f"{self._shown}:{line}", "", text)
             else:
                 made[word] = self.convert(value, line)
@@ -214,5 +214,5 @@ def _joined(text: str) -> str:
         return text
     try:
         return text.encode("utf-16-le", "surrogatepass").decode("utf-16-le")
-    except UnicodeDecodeError:  # a half alone is not a letter; whoever checks the value says so
+    except UnicodeDecodeError:  # a single surrogate; checks of the value report it
         return text

@@ -1,4 +1,4 @@
-"""Which modules belong to a plan's application, where their files lie, and which of them each component consists of."""
+"""Modules of a plan's application, their files, and the modules that each component consists of."""
 
 import ast
 import sys
@@ -10,18 +10,18 @@ from fwk.model.plan import ComponentPlan, Plan
 from fwk.plan.files.launch_file import shown
 
 _KEPT = ("fwk", "lcmtypes")
-"""What all processes have in common is nobody's own."""
+"""Packages that all components have in common."""
 
 
 class Application:
-    """The modules that lie beside the components, and all of their packages."""
+    """The modules beside the components and in their packages."""
 
     def __init__(self, plan: Plan) -> None:
         self._packages = {component.module.partition(".")[0] for component in plan.components} - {*_KEPT}
         self._folders = [Path(folder).resolve() for folder in plan.folders]
 
     def owns(self, module: str, file: str | None) -> bool:
-        """Whether a module is of the application and not of a library."""
+        """Returns whether a module belongs to the application, not to a library."""
         top = module.partition(".")[0]
         ours = file is not None and any(Path(file).resolve().is_relative_to(folder) for folder in self._folders)
         return top in self._packages or (ours and top not in _KEPT and "site-packages" not in str(file))
@@ -37,7 +37,7 @@ class Sources:
         self._imports: dict[Path, tuple[int, list[str]]] = {}  # with the time of the file's last change
 
     def files(self, component: ComponentPlan) -> set[Path]:
-        """The file of a component's module, and those of the application that it imports, directly or not."""
+        """Returns the files of a component's module and of the application's modules that it imports."""
         found: set[Path] = set()
         waiting, seen = [component.module], set[str]()
         while waiting:
@@ -87,7 +87,7 @@ class Sources:
 
 
 def _names(node: ast.AST, package: str) -> Iterable[str]:
-    """Modules that a statement imports, perhaps: `from a import b` means `a` and, if that is a module, `a.b`."""
+    """Returns the modules that a statement may import: `from a import b` means `a` and, if it is a module, `a.b`."""
     if isinstance(node, ast.Import):
         for alias in node.names:
             yield from _with_parents(alias.name)
@@ -106,7 +106,7 @@ def _with_parents(module: str) -> Iterable[str]:
 
 
 def mistakes(files: Iterable[Path]) -> list[str]:
-    """Files that are not valid Python, each with line and reason."""
+    """Returns the files that are not valid Python, each with line and reason."""
     found = []
     for file in sorted(files):
         try:

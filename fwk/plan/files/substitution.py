@@ -1,4 +1,4 @@
-"""Puts the values of a robot into the texts of its template: `{namespace}`, `{team}`."""
+"""Replaces `{namespace}`, `{team}` and other keys in the texts of templates."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -11,9 +11,9 @@ _MARK = re.compile(r"\{([A-Za-z_]\w*)\}")
 
 
 def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str], None]) -> Node | None:
-    """The same tree with every `{key}` in its texts replaced.
+    """Returns the tree with every `{key}` in its texts replaced.
 
-    A text with an unknown key goes to `report` as place and message, and is left out.
+    A text with an unknown key is reported as place and message, and left out.
     """
     if isinstance(node.value, dict):
         found = {key: substitute(below, values, report) for key, below in node.value.items()}

@@ -1,4 +1,4 @@
-"""Makes the list of components out of the files: single ones, and those that robots get from templates."""
+"""Lists the components of the files: single ones, and those that robots get from templates."""
 
 from dataclasses import dataclass, field
 from typing import Any
@@ -11,28 +11,28 @@ from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
 
 _FILLED = ("config", "channels", "providers", "needs", "offset")
-"""Keys of a component in whose texts braces stand for values."""
+"""Keys of a component in whose texts `{key}` is replaced."""
 
 
 @dataclass
 class Asked:
-    """A component as the files ask for it."""
+    """A component as the files specify it."""
 
     name: str
     entry: ComponentEntry
     node: Node
-    """The entry in its file, texts of the template filled in."""
+    """The entry in its file, with the texts of the template filled in."""
     values: dict[str, Any]
     config: list[tuple[int, Node]] = field(default_factory=list)
-    """Settings with the number of the layer they come from; later ones win."""
+    """Settings, each with the number of its layer; later layers win."""
 
     @property
     def namespace(self) -> str:
-        """Everything before the last slash of the name."""
+        """Part of the name before the last slash."""
         return self.name.rpartition("/")[0]
 
     def settings(self) -> list[Node]:
-        """Settings in the order of the layers, those that win last."""
+        """Returns the settings in the order of the layers, later ones win."""
         return [node for _, node in sorted(self.config, key=lambda pair: pair[0])]
 
 
@@ -44,7 +44,7 @@ class _Template:
 
 
 def expand(files: Files, problems: Problems) -> list[Asked]:
-    """All components, in the order of the files; in a file, single ones before robots."""
+    """Returns all components, in the order of the files; in a file, single ones before robots."""
     maker = _Maker(files, problems)
     for number, layer in enumerate(files.layers):
         maker.templates(number, layer)
@@ -63,7 +63,7 @@ class _Maker:
         self.made: dict[str, Asked] = {}
 
     def templates(self, number: int, layer: Layer) -> None:
-        """Takes the templates of a file."""
+        """Adds the templates of a file."""
         for name, entries in layer.content.templates.items():
             node = layer.node.at("templates", name)
             if name in self._templates:
@@ -73,12 +73,12 @@ class _Maker:
                 self._templates[name] = _Template(number, entries, node)
 
     def components(self, number: int, layer: Layer) -> None:
-        """Makes the single components of a file."""
+        """Adds the single components of a file."""
         for name, entry in layer.content.components.items():
             self._make(name, number, entry, layer.node.at("components", name), {})
 
     def robots(self, number: int, layer: Layer) -> None:
-        """Makes the components of the robots of a file."""
+        """Adds the components of the robots of a file."""
         for robot, entry in layer.content.robots.items():
             node = layer.node.at("robots", robot)
             if robot in self._robots:

@@ -1,4 +1,4 @@
-"""Checks values from a file against a pydantic model and words what does not fit, with the line it stands in."""
+"""Checks values of a file against a pydantic model and reports mistakes with their lines."""
 
 import dataclasses
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from fwk.plan.files.source import Node
 M = TypeVar("M", bound=BaseModel)
 Path = tuple[str | int, ...]
 Report = Callable[[Path, str, str], None]
-"""Takes a mistake: path of the value, its place, text."""
+"""Takes a mistake: path of the value, place, text."""
 
 _NO_MAPPING = ("dict_type", "model_type", "model_attributes_type", "dataclass_type")
 _UNKNOWN_KEY = ("extra_forbidden", "unexpected_keyword_argument")
@@ -30,10 +30,10 @@ class _Mistake:
 
 
 def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M, Node] | None:
-    """The values as an instance of the model; every mistake goes to `report`. `what` is the word for a key.
+    """Returns the values as an instance of the model, and their node; every mistake goes to `report`.
 
-    What does not fit is left out of the instance and of the node given back, so that the rest can be looked at too.
-    None if nothing is left.
+    `what` is the word for a key. Values that do not fit are left out of both, so that the rest can be checked. None if
+    nothing is left.
     """
     first = True
     while True:
@@ -78,7 +78,7 @@ def _without(node: Node, path: Path) -> Node:
 
 
 def _path(node: Node, location: Path) -> Path:
-    """The part of an error's location that is in the file; pydantic adds names of union members and the like."""
+    """Returns the part of an error's location that is in the file; pydantic adds names of union members."""
     path: Path = ()
     for key in location:
         if node.at(*path).child(key) is None:
@@ -109,7 +109,7 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
 
 
 def _mixed_up(made: Any, node: Node, path: Path) -> list[tuple[Path, str]]:
-    """Truth values that became numbers, and the other way round: pydantic lets them pass, people do not mean them."""
+    """Returns truth values that became numbers and vice versa, which pydantic accepts and authors do not mean."""
     if isinstance(node.value, dict) and isinstance(made, dict):
         pairs = [(key, made.get(key), below) for key, below in node.value.items()]
         return [found for key, value, below in pairs for found in _mixed_up(value, below, (*path, key))]
@@ -145,7 +145,7 @@ def _fields(kind: Any) -> dict[str, Any]:
 
 
 def _unwrapped(kind: Any) -> Any:
-    """Of an annotated or optional type the part that can hold fields."""
+    """Returns the part of an annotated or optional type that can have fields."""
     while get_origin(kind) in (Union, UnionType, Annotated):
         kind = next((each for each in get_args(kind) if each is not NoneType), None)
     return kind

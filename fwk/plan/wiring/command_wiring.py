@@ -1,4 +1,4 @@
-"""Finds who carries out whose commands, and the channels on which they and their answers travel."""
+"""Wires services: finds the owner of each, and the channels of its requests and answers."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,15 +10,15 @@ from fwk.lcm import messages
 from fwk.model.errors import hint
 from fwk.model.names import CHANNEL_BYTES
 from fwk.model.plan import NOBODY
-from fwk.plan.wiring.component_spec import Report, Wish
+from fwk.plan.wiring.component_spec import ComponentSpec, Report
 
 OUTSIDE = "outside"
-"""Tools, as if they were one sender; their commands come through the control socket."""
+"""Name of all tools together as one client; their requests come through the control socket."""
 
 
 @dataclass(frozen=True)
 class Line:
-    """A channel between those who send commands and the component that carries them out, their owner."""
+    """A channel between the clients of a service and the component that offers it, the owner."""
 
     name: str
     message_type: type[messages.Message]
@@ -28,15 +28,15 @@ class Line:
 
 @dataclass(frozen=True)
 class _End:
-    """A port for commands of a component."""
+    """A component's port to a service."""
 
     index: int
-    wish: Wish
+    spec: ComponentSpec
     port: Port
 
     @property
     def name(self) -> str:
-        return self.wish.name
+        return self.spec.name
 
     @property
     def types(self) -> tuple[type[messages.Message], type[messages.Message]]:
@@ -45,24 +45,24 @@ class _End:
 
 
 class CommandLines:
-    """All lines of a system. `ports` says for each component and port which channels it stands for.
+    """Channels of all services of a system; `ports` are the channels of each component's ports.
 
-    An owner's port stands for the answers' channel and those of its senders, one such row for each name that it owns;
-    a sender's for its own channel and that of the answers, one pair for each owner.
+    An owner's port has the channel of the answers and those of its clients, one such row for each name that it owns. A
+    client's port has its own channel and that of the answers, one pair for each owner.
     """
 
     def __init__(
-        self, asked: Sequence[tuple[int, Wish, Port]], report: Report, may_lack_owner: Callable[[str], bool]
+        self, asked: Sequence[tuple[int, ComponentSpec, Port]], report: Report, may_lack_owner: Callable[[str], bool]
     ) -> None:
         self.lines: dict[str, Line] = {}
         self.ports: dict[tuple[int, str], tuple[str, ...]] = {}
         self._report = report
         ends = [_End(*each) for each in asked if each[2].owns or each[2].sends]
         owners: dict[str, _End] = {}
-        asked_for = sorted({end.wish.pattern(end.port) for end in ends if end.port.sends and not end.port.each})
+        asked_for = sorted({end.spec.pattern(end.port) for end in ends if end.port.sends and not end.port.each})
         for end in ends:
             if end.port.owns:
-                pattern = end.wish.pattern(end.port)
+                pattern = end.spec.pattern(end.port)
                 self.ports[end.index, end.port.attribute] = ()
                 targets = [name for name in asked_for if fnmatchcase(name, pattern)] if end.port.each else [pattern]
                 for target in targets:
@@ -89,13 +89,13 @@ class CommandLines:
         senders: dict[str, list[_End]],
         may_lack_owner: Callable[[str], bool],
     ) -> None:
-        pattern, attribute = end.wish.pattern(end.port), end.port.attribute
+        pattern, attribute = end.spec.pattern(end.port), end.port.attribute
         targets = sorted(name for name in owners if fnmatchcase(name, pattern)) if end.port.each else [pattern]
         self.ports[end.index, attribute] = ()
         for target in targets:
             if target not in owners and not may_lack_owner(target):
                 right = hint(target, owners, "add a component that does, or name other commands")
-                text = f"nobody carries out '{target}', which {end.name} sends as '{attribute}'; {right}"
+                text = f"no component carries out '{target}', which {end.name} sends as '{attribute}'; {right}"
                 self._report(end.name, attribute, text)
             elif any(other.index == end.index for other in senders.setdefault(target, [])):
                 text = f"{end.name} sends '{target}' by two ports, one of them '{attribute}'; keep one"

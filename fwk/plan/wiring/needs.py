@@ -1,4 +1,4 @@
-"""Who needs whom: what the launch file says, who grants an aspect, and the ring that must not be in it."""
+"""Needs of components: those of the launch file and those of granted aspects, without a ring."""
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
@@ -9,28 +9,28 @@ from fwk.model.selection import matches, nearest
 from fwk.plan.files.launch_file import Files
 from fwk.plan.files.source import Node
 from fwk.plan.files.templates import Asked
-from fwk.plan.wiring.component_spec import Wish
+from fwk.plan.wiring.component_spec import ComponentSpec
 from fwk.plan.wiring.wiring import Wiring
 
 Needs = dict[str, list[str]]
 """Component to the components it needs."""
 
 
-def granted_by(wishes: Sequence[Wish], wiring: Wiring) -> Needs:
-    """From whom each component gets an aspect: its providers, and the vision masters of the images it looks at."""
+def granted_by(specs: Sequence[ComponentSpec], wiring: Wiring) -> Needs:
+    """Returns the components that grant each component an aspect: providers, and vision masters of its images."""
     found: Needs = {
-        wish.name: list(granted.values()) for wish, granted in zip(wishes, wiring.granted, strict=True) if granted
+        spec.name: list(granted.values()) for spec, granted in zip(specs, wiring.granted, strict=True) if granted
     }
-    for wish, ports in zip(wishes, wiring.ports, strict=True):
-        images = {name for port in wish.declaration.ports if port.kind == "image" for name in ports[port.attribute]}
+    for spec, ports in zip(specs, wiring.ports, strict=True):
+        images = {name for port in spec.declaration.ports if port.kind == "image" for name in ports[port.attribute]}
         for channel in wiring.channels:
             if channel.name in images and channel.writer != NOBODY:
-                found.setdefault(wish.name, []).append(wishes[channel.writer].name)
+                found.setdefault(spec.name, []).append(specs[channel.writer].name)
     return found
 
 
 def needs_of(asked: Sequence[Asked], granted: Needs, files: Files, problems: Problems) -> Needs:
-    """Who needs whom: as the files say, and whoever grants an aspect."""
+    """Returns the needs of each component: those of the files, and the components that grant it an aspect."""
     said = _said(asked, files, problems)
     needs = {name: [*said.get(name, ()), *granted.get(name, ())] for name in {**said, **granted}}
     if around := ring(needs):
@@ -44,7 +44,7 @@ def needs_of(asked: Sequence[Asked], granted: Needs, files: Files, problems: Pro
 def check_left_out(
     names: Sequence[str], kept: Collection[str], granted: Needs, without: Sequence[str], problems: Problems
 ) -> None:
-    """No component is run without those that grant it an aspect."""
+    """Refuses a selection that leaves out a component which grants an aspect to a selected one."""
     for name in names:
         for other in granted.get(name, ()):
             if name in kept and other not in kept:
@@ -68,7 +68,7 @@ def _said(asked: Sequence[Asked], files: Files, problems: Problems) -> Needs:
 
 
 def ring(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """A ring of those that wait for each other, first and last the same; empty if there is none."""
+    """Returns a ring of components that wait for each other, first and last the same; empty if there is none."""
     done: set[str] = set()
     for start in needs:
         found = _from(start, needs, done, [])

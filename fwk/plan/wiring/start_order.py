@@ -1,4 +1,4 @@
-"""Which components start with a run, in which order, and what of this cannot be."""
+"""Order in which the components of a run start, and checks that it exists."""
 
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
@@ -10,7 +10,7 @@ from fwk.plan.wiring.needs import Needs, ring
 
 
 def start_order(components: Sequence[ComponentPlan], chosen: Sequence[int]) -> list[int]:
-    """Some components, by index, with those that they need before them; otherwise as given."""
+    """Returns components, by index, each after those that it needs, otherwise in the given order."""
     order: dict[int, None] = {}
 
     def put(index: int) -> None:
@@ -26,7 +26,7 @@ def start_order(components: Sequence[ComponentPlan], chosen: Sequence[int]) -> l
 
 
 def check_starts(asked: Sequence[Asked], needs: Needs, problems: Problems) -> None:
-    """What starts with the run cannot need what does not."""
+    """Refuses a component that starts with the run and needs one that does not."""
     later = {each.name for each in asked if not each.entry.start}
     for each in asked:
         for name in needs.get(each.name, ()):
@@ -39,7 +39,7 @@ def check_starts(asked: Sequence[Asked], needs: Needs, problems: Problems) -> No
 def check_groups(
     asked: Sequence[Asked], groups: Mapping[str, str], places: Mapping[str, str], problems: Problems
 ) -> None:
-    """The components of a process start together."""
+    """Refuses processes of which only some components start with the run."""
     first: dict[str, Asked] = {}
     for each in asked:
         if each.name in groups:
@@ -53,7 +53,7 @@ def check_groups(
 def check_processes(
     hosts: Sequence[HostPlan], components: Sequence[ComponentPlan], asked: Sequence[Asked], problems: Problems
 ) -> None:
-    """Processes that wait for each other would never start."""
+    """Refuses processes that wait for each other, because they would never start."""
     between: Needs = {}
     because: dict[tuple[str, str], str] = {}
     for component in components:

@@ -1,4 +1,4 @@
-"""Wires components to channels: expands patterns, finds each channel's one writer, and says what does not fit."""
+"""Wires components to channels: expands patterns, finds the one writer of each channel, and reports mistakes."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,14 +10,14 @@ from fwk.model.errors import hint
 from fwk.model.names import LINES, mistake_in, mistake_in_pattern
 from fwk.model.plan import NOBODY, ChannelPlan
 from fwk.plan.wiring.command_wiring import CommandLines
-from fwk.plan.wiring.component_spec import Report, Wish
+from fwk.plan.wiring.component_spec import ComponentSpec, Report
 from fwk.plan.wiring.providers import Granted, with_providers
 from lcmtypes.core import log_t
 
 
 @dataclass(frozen=True)
 class Wiring:
-    """The channels, and for each component which channels each of its ports stands for."""
+    """The channels of a system, and the channels of each component's ports."""
 
     channels: tuple[ChannelPlan, ...]
     ports: tuple[dict[str, tuple[str, ...]], ...]
@@ -25,53 +25,53 @@ class Wiring:
 
 
 def wire(
-    wishes: Sequence[Wish],
+    specs: Sequence[ComponentSpec],
     report: Report,
     outside: Mapping[str, type[messages.Message]] | None = None,
     may_lack_writer: Callable[[str], bool] = lambda _: False,
 ) -> Wiring:
-    """Wires components; every mistake goes to `report`, and the wiring is then not to be used.
+    """Wires components. Every mistake goes to `report`; the wiring is then not to be used.
 
-    `outside` are channels that other programs write, with their types. `may_lack_writer` says for which channels it is
-    no mistake that nobody writes them; a reader of such a channel never sees a value.
+    `outside` are channels that programs outside write, with their types. `may_lack_writer` tells for which channels a
+    missing writer is not a mistake; readers of such a channel never see a value.
     """
-    wishes, granted = with_providers(wishes, report, may_lack_writer)
-    return _Wiring(wishes, granted, report, outside or {}, may_lack_writer).done()
+    specs, granted = with_providers(specs, report, may_lack_writer)
+    return _Wiring(specs, granted, report, outside or {}, may_lack_writer).done()
 
 
 class _Wiring:
     def __init__(
         self,
-        wishes: Sequence[Wish],
+        specs: Sequence[ComponentSpec],
         granted: Granted,
         report: Report,
         outside: Mapping[str, type[messages.Message]],
         may_lack_writer: Callable[[str], bool],
     ) -> None:
-        self._wishes = wishes
+        self._specs = specs
         self._granted = granted
         self._report = report
         self._may_lack_writer = may_lack_writer
         self._writers = {name: (NOBODY, Port(name, "writes", kind, name)) for name, kind in outside.items()}
-        if any(port.kind == "lines" for wish in wishes for port in wish.declaration.ports):
+        if any(port.kind == "lines" for spec in specs for port in spec.declaration.ports):
             self._writers[LINES] = (NOBODY, Port(LINES, "writes", log_t, LINES))
         self._readers: dict[str, list[int]] = {}
-        self._ports: list[dict[str, tuple[str, ...]]] = [{} for _ in wishes]
+        self._ports: list[dict[str, tuple[str, ...]]] = [{} for _ in specs]
 
     def done(self) -> Wiring:
         asked = [
-            (index, wish, port) for index, wish in enumerate(self._wishes) for port in wish.declaration.ports
-            if self._well_named(wish, port)
+            (index, spec, port) for index, spec in enumerate(self._specs) for port in spec.declaration.ports
+            if self._well_named(spec, port)
         ]  # fmt: skip
         plain = [each for each in asked if not each[2].owns and not each[2].sends]
-        read = {wish.pattern(port) for _, wish, port in plain if not port.writes and not port.each}
-        for index, wish, port in plain:
+        read = {spec.pattern(port) for _, spec, port in plain if not port.writes and not port.each}
+        for index, spec, port in plain:
             if port.writes:
-                self._write(index, wish, port, read)
+                self._write(index, spec, port, read)
         written = sorted(self._writers)
-        for index, wish, port in plain:
+        for index, spec, port in plain:
             if not port.writes:
-                self._read(index, wish, port, written)
+                self._read(index, spec, port, written)
         self._add_commands(CommandLines(asked, self._report, self._may_lack_writer))
         channels = tuple(
             ChannelPlan(
@@ -93,34 +93,34 @@ class _Wiring:
         for (index, attribute), names in commands.ports.items():
             self._ports[index][attribute] = names
 
-    def _well_named(self, wish: Wish, port: Port) -> bool:
+    def _well_named(self, spec: ComponentSpec, port: Port) -> bool:
         aspect, _, own = port.attribute.partition(".")
-        if own and aspect not in self._granted[self._wishes.index(wish)]:  # told already
-            self._ports[self._wishes.index(wish)][port.attribute] = ()
+        if own and aspect not in self._granted[self._specs.index(spec)]:  # already reported
+            self._ports[self._specs.index(spec)][port.attribute] = ()
             return False
-        pattern = wish.pattern(port)
+        pattern = spec.pattern(port)
         mistake = (mistake_in_pattern if port.each else mistake_in)(pattern)
         if port.kind == "lines":
             mistake = "" if pattern == LINES else f"it is a target of the log; take '{pattern}' out of its channels"
         if mistake:
-            self._report(wish.name, port.attribute, f"port '{port.attribute}': {mistake}")
-            self._ports[self._wishes.index(wish)][port.attribute] = ()
+            self._report(spec.name, port.attribute, f"port '{port.attribute}': {mistake}")
+            self._ports[self._specs.index(spec)][port.attribute] = ()
         return not mistake
 
-    def _write(self, index: int, wish: Wish, port: Port, read: set[str]) -> None:
-        pattern = wish.pattern(port)
+    def _write(self, index: int, spec: ComponentSpec, port: Port, read: set[str]) -> None:
+        pattern = spec.pattern(port)
         names = tuple(sorted(name for name in read if fnmatchcase(name, pattern))) if port.each else (pattern,)
         self._ports[index][port.attribute] = names
         for name in names:
             if name in self._writers:
                 first = self._writers[name][0]
-                other = "programs outside" if first == NOBODY else self._wishes[first].name
-                self._report(wish.name, port.attribute, f"two writers of '{name}': {other} and {wish.name}; keep one")
+                other = "programs outside" if first == NOBODY else self._specs[first].name
+                self._report(spec.name, port.attribute, f"two writers of '{name}': {other} and {spec.name}; keep one")
             else:
                 self._writers[name] = (index, port)
 
-    def _read(self, index: int, wish: Wish, port: Port, written: Sequence[str]) -> None:
-        pattern = wish.pattern(port)
+    def _read(self, index: int, spec: ComponentSpec, port: Port, written: Sequence[str]) -> None:
+        pattern = spec.pattern(port)
         if port.each:
             names = tuple(name for name in written if fnmatchcase(name, pattern))
         else:
@@ -128,17 +128,17 @@ class _Wiring:
             if pattern not in self._writers and self._may_lack_writer(pattern):
                 self._writers[pattern] = (NOBODY, port)
             elif pattern not in self._writers:
-                self._report(wish.name, port.attribute, self._missing(wish, port, pattern))
+                self._report(spec.name, port.attribute, self._missing(spec, port, pattern))
                 names = ()
         self._ports[index][port.attribute] = names
         for name in names:
-            self._fits(wish, port, name)
+            self._fits(spec, port, name)
             readers = self._readers.setdefault(name, [])
             if index not in readers:
                 readers.append(index)
 
-    def _missing(self, wish: Wish, port: Port, channel: str) -> str:
-        """That a channel has no writer, or an image no camera, and which other a port could read."""
+    def _missing(self, spec: ComponentSpec, port: Port, channel: str) -> str:
+        """Returns the message that a channel has no writer, or an image no camera, with another that would fit."""
         alike = [
             name
             for name, (_, each) in self._writers.items()
@@ -146,20 +146,20 @@ class _Wiring:
         ]
         if port.images:
             right = hint(channel, alike, "add a camera that writes it, or name another channel")
-            return f"'{channel}' has no vision master, and {wish.name} looks at it as '{port.attribute}'; {right}"
+            return f"'{channel}' has no vision master, and {spec.name} looks at it as '{port.attribute}'; {right}"
         right = hint(channel, alike, "add a component that writes it, or name another channel")
-        return f"nobody writes '{channel}', which {wish.name} reads as '{port.attribute}'; {right}"
+        return f"no component writes '{channel}', which {spec.name} reads as '{port.attribute}'; {right}"
 
-    def _fits(self, wish: Wish, port: Port, name: str) -> None:
+    def _fits(self, spec: ComponentSpec, port: Port, name: str) -> None:
         index, written = self._writers[name]
-        writer = "programs outside" if index == NOBODY else self._wishes[index].name
+        writer = "programs outside" if index == NOBODY else self._specs[index].name
         if not messages.is_same_type(written.message_type, port.message_type):
             self._report(
-                wish.name,
+                spec.name,
                 port.attribute,
                 f"'{name}' is written by {writer} as {messages.type_name(written.message_type)} "
-                f"and read by {wish.name} as {messages.type_name(port.message_type)}; use one type",
+                f"and read by {spec.name} as {messages.type_name(port.message_type)}; use one type",
             )
         elif port.images and not written.images:
             text = f"'{name}' is not a camera: {writer} is not its vision master; read a channel that is an Image"
-            self._report(wish.name, port.attribute, text)
+            self._report(spec.name, port.attribute, text)

@@ -75,7 +75,7 @@ def garden(broken: Broken) -> Broken:
 
 @rows(
     Broken(
-        "it.yaml:2: a/boss: nobody carries out 'a/dig', which a/boss sends as 'dig'; "
+        "it.yaml:2: a/boss: no component carries out 'a/dig', which a/boss sends as 'dig'; "
         "add a component that does, or name other commands",
         """
         components:
@@ -83,7 +83,7 @@ def garden(broken: Broken) -> Broken:
         """,
     ),
     Broken(
-        "it.yaml:3: a/boss: nobody carries out 'a/digg', which a/boss sends as 'dig'; did you mean 'a/dig'?",
+        "it.yaml:3: a/boss: no component carries out 'a/digg', which a/boss sends as 'dig'; did you mean 'a/dig'?",
         """
         components:
           a/digger: {use: garden_parts:Digger}

@@ -18,7 +18,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken("it.yaml:2: this is not valid YAML: character '\\x07' is not allowed", "name: x\n# \x07"),
     Broken(
-        "it.yaml:4: 'it/a' stands here a second time, first in line 2; keep one",
+        "it.yaml:4: 'it/a' occurs a second time, first in line 2; keep one",
         """
         components:
           it/a: {use: plan_parts:Odometer}
@@ -258,7 +258,7 @@ def test_several_files(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:3: stage 'sensor_acquire' stands here twice; keep one",
+        "it.yaml:3: stage 'sensor_acquire' occurs twice; keep one",
         """
         stages:
           - sensor_acquire

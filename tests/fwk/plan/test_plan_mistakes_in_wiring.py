@@ -39,7 +39,7 @@ LONG = "x" * 60
         """,
     ),
     Broken(
-        "it.yaml:3: a/reader: nobody writes 'a/odometri', which a/reader reads as 'odometry'; "
+        "it.yaml:3: a/reader: no component writes 'a/odometri', which a/reader reads as 'odometry'; "
         "did you mean 'a/odometry'?",
         """
         components:
@@ -48,7 +48,7 @@ LONG = "x" * 60
         """,
     ),
     Broken(
-        "it.yaml:4: a/reader (and 1 more): nobody writes 'a/odometry', which a/reader reads as 'odometry'; "
+        "it.yaml:4: a/reader (and 1 more): no component writes 'a/odometry', which a/reader reads as 'odometry'; "
         "add a component that writes it, or name another channel",
         """
         robots: {a: {use: bot}, b: {use: bot}}

@@ -31,7 +31,7 @@ ROWS = [
     ),
     (
         "e/reader: {use: plan_parts:Reader}",
-        "e/reader: nobody writes 'e/odometry', which e/reader reads as 'odometry'; did you mean 'h/odometry'?",
+        "e/reader: no component writes 'e/odometry', which e/reader reads as 'odometry'; did you mean 'h/odometry'?",
     ),
     (
         "f/guide: {use: plan_parts:Guide}",
@@ -42,8 +42,8 @@ ROWS = [
     ("h/farer: {use: plan_parts:Wayfarer}", ""),
     (
         "i/follower: {use: combined:Follower}",
-        "i/follower: nobody provides Alone, which i/follower asks for as 'alone'; add a component whose class says "
-        "'provides = Alone'",
+        "i/follower: no component provides Alone, which i/follower asks for as 'alone'; add a component whose class "
+        "says 'provides = Alone'",
     ),
     ("j/sun: {use: plan_parts:Sun}", ""),
     ("k/sun: {use: plan_parts:Sun}", "k/sun: two time sources: j/sun (it.yaml:{j/sun}) and k/sun; keep one"),

@@ -55,7 +55,7 @@ def test_fwk_call_prints_answers_and_sets_the_exit_code(launch: Launch, folder: 
     assert "\n  sum: 12\n" in run.fwk("call", "r/sum", "n=2", "numbers=[5, 7]")
     answer = run.json("call", "r/sum", "numbers=[1, 2, 3]")
     assert (answer["state"], answer["reply"], answer["sequence"]) == ("done", {"sum": 6}, 2)
-    assert "nobody carries out 'r/lfit'; did you mean 'r/lift'?" in run.fwk("call", "r/lfit", code=2)
+    assert "no component carries out 'r/lfit'; did you mean 'r/lift'?" in run.fwk("call", "r/lfit", code=2)
     assert "has no field 'height'; did you mean 'height_m'?" in run.fwk("call", "r/lift", "height=1", code=2)
     rows = {row["channel"]: row["writer"] for row in run.json("bb", "list")}
     assert rows["r/lift@outside"] == "fwk call"
