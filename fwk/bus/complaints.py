@@ -1,10 +1,10 @@
-"""Datagrams that a process refused: named once for each kind, counted always."""
+"""Counts the datagrams that a process refused, and names each kind once."""
 
 from fwk.component.log import Logger
 
 
 class Complaints:
-    """Datagrams refused: each kind is named once, all are counted."""
+    """Counter of refused datagrams that logs each kind."""
 
     def __init__(self, log: Logger) -> None:
         self.total = 0
@@ -12,7 +12,7 @@ class Complaints:
         self._counts: dict[tuple[str, str], int] = {}
 
     def __call__(self, channel: str, text: str) -> None:
-        """Takes one; logs the first and then every power of ten of the same kind."""
+        """Counts a refused datagram; logs the first of its kind, the tenth, the hundredth and so on."""
         self.total += 1
         key = (channel, text.partition(";")[0].partition(":")[0][:60])
         if key not in self._counts and len(self._counts) >= 100:

@@ -1,4 +1,4 @@
-"""The lock that keeps two runs on a machine off the same ports."""
+"""Lock that keeps two runs on a machine from using the same ports."""
 
 import json
 import os
@@ -10,12 +10,12 @@ from fwk.model.ports import Ports
 _BLOCK = 64
 
 
-class PortsInUse(Exception):  # noqa: N818 - it says what is
-    """Another run has some of the ports; says which run and how to get around."""
+class PortsInUseError(Exception):
+    """Another run uses some of the ports; names that run and the ports to use instead."""
 
 
 class PortLock:
-    """Holds the ports of a run as long as the process lives, and tells others who holds them."""
+    """Holds the ports of a run as long as the process lives; other processes can find out which process that is."""
 
     def __init__(self, ports: Ports, name: str, public_url: str = "") -> None:
         self._sockets: list[socket.socket] = []
@@ -37,11 +37,11 @@ class PortLock:
         except OSError as error:
             lock.close()
             self.release()
-            raise PortsInUse(f"{used} by another run{_holder(what)}; stop it, or {advice}") from error
+            raise PortsInUseError(f"{used} by another run{_holder(what)}; stop it, or {advice}") from error
         self._sockets.append(lock)
 
     def release(self) -> None:
-        """Gives the ports back."""
+        """Releases the ports."""
         for lock in self._sockets:
             lock.close()
         self._sockets = []
@@ -52,7 +52,7 @@ def _address(what: str) -> str:
 
 
 def _holder(what: str) -> str:
-    """Who holds a lock, as the kernel knows it; empty if it cannot be told."""
+    """Returns the process that holds a lock, as text; empty if it is unknown."""
     probe = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         probe.setblocking(False)

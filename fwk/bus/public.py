@@ -17,7 +17,7 @@ _DATAGRAMS_AT_ONCE = 5000  # more than the largest message has
 
 
 class PublicBus:
-    """Publishes on, and hears, one LCM bus; does not hear itself."""
+    """Publishes and receives on one LCM bus; does not receive its own messages."""
 
     def __init__(self, url: str) -> None:
         group, port, ttl = parse_url(url)
@@ -44,11 +44,11 @@ class PublicBus:
         self._listeners = Listeners(port, os.fstat(self._receiver.fileno()).st_ino)
 
     def fileno(self) -> int:
-        """For waiting until something arrives."""
+        """Returns the descriptor of the receiving socket."""
         return self._receiver.fileno()
 
     def close(self) -> None:
-        """Gives both sockets back."""
+        """Closes both sockets."""
         self._sender.close()
         self._receiver.close()
         self._listeners.close()
@@ -73,9 +73,9 @@ class PublicBus:
         return "" if busy is None and self._leaves_machine else busy
 
     def receive(self) -> tuple[str, bytes, int] | None:
-        """The next whole message of others as (channel, data, port it came from); None when nothing is waiting.
+        """Returns the next message of another program as (channel, data, port of its sender); None when none waits.
 
-        A crowd of fragments that complete no message gives None, too: who waits comes back.
+        After many fragments that complete no message the result is None too; the caller has to wait and come back.
 
         Raises:
             MessageError: a datagram that is not of LCM's format.
@@ -98,7 +98,7 @@ class PublicBus:
 
 
 def _ignore_source(receiver: socket.socket, port: int) -> None:
-    """Has the kernel drop datagrams from one source port: the gateway's own would cost it as much as everybody's."""
+    """Lets the kernel drop datagrams from one source port: those that the gateway itself sent."""
     program = struct.pack(
         "HBBI" * 4,
         *(0x28, 0, 0, 0),  # load half word 0 of the UDP header: the source port

@@ -81,8 +81,11 @@ class Sender:
         return message
 
     def _send(self, channel: bytes, data: bytes, address: Address) -> None:
-        for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
-            self._put(datagram, address)
+        try:
+            for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
+                self.socket.sendto(datagram, address)
+        except OSError:  # as in `_put`; readers fetch the whole message
+            self.refused += 1
 
     def _put(self, datagram: bytes, address: Address) -> None:
         try:

@@ -1,4 +1,4 @@
-"""Sockets of the inner buses: multicast on the loopback interface, never further."""
+"""Sockets of the inner buses: multicast on the loopback interface only."""
 
 import socket
 
@@ -12,17 +12,17 @@ Address = tuple[str, int]
 
 
 def port_of(address: Address) -> int:
-    """The port of a sender of this run; 0 for whoever sends from another address, where the run's ports are free."""
+    """Returns the port of a sender on this machine; 0 for senders elsewhere, whose ports mean nothing."""
     return address[1] if address[0] == LOOPBACK else 0
 
 
 def told(address: Address) -> str:
-    """Where a datagram came from, for people."""
+    """Returns the origin of a datagram as text for people."""
     return f"port {address[1]}" if address[0] == LOOPBACK else f"{address[0]}, port {address[1]}"
 
 
 def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.socket:
-    """A non-blocking socket that hears the group on `port`, as do any others on this machine."""
+    """Opens a non-blocking socket that hears the group on `port`, together with others on this machine."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)

@@ -1,4 +1,4 @@
-"""Waiting for sockets, to the microsecond where it matters."""
+"""Waits for sockets, with microseconds of resolution for short waits."""
 
 import select
 from typing import Protocol
@@ -9,7 +9,7 @@ _LONGEST_US = 3_600_000_000  # the system takes some weeks at most
 
 
 class HasDescriptor(Protocol):
-    """A socket, or what has one."""
+    """A socket, or an object with a descriptor."""
 
     def fileno(self) -> int: ...
 
@@ -18,22 +18,22 @@ Source = HasDescriptor | int
 
 
 class Waiting:
-    """Sources to wait for together."""
+    """Set of sources that are waited for together."""
 
     def __init__(self) -> None:
         self._ready = select.epoll()
         self._select_works = self._ready.fileno() < _SELECT_MAX
 
     def add(self, source: Source) -> None:
-        """From now on waits for this one, too."""
+        """Adds a source."""
         self._ready.register(source, select.EPOLLIN)
 
     def remove(self, source: Source) -> None:
-        """No longer."""
+        """Removes a source."""
         self._ready.unregister(source)
 
     def wait(self, timeout_us: int) -> list[int]:
-        """The descriptors that have something, as soon as one has, or none after that time, or an hour."""
+        """Returns the readable descriptors as soon as there are any; none after `timeout_us`, at most an hour."""
         if not 0 < timeout_us < _FINE_US or not self._select_works:
             return [descriptor for descriptor, _ in self._ready.poll(max(0, min(timeout_us, _LONGEST_US)) / 1e6)]
         # epoll counts in milliseconds and rounds up
@@ -42,5 +42,5 @@ class Waiting:
         return [descriptor for descriptor, _ in self._ready.poll(0)]
 
     def close(self) -> None:
-        """Gives its own descriptor back."""
+        """Closes its own descriptor."""
         self._ready.close()

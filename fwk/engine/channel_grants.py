@@ -12,7 +12,7 @@ from fwk.model.plan import NOBODY, Plan
 
 @dataclass(frozen=True)
 class _Wish:
-    """`what` is read, write, each or close; of a close only the handle counts."""
+    """Request of a component; `what` is read, write, each or close. A close has a handle only."""
 
     component: int
     what: str
@@ -23,7 +23,7 @@ class _Wish:
 
 
 class ChannelGrants:
-    """Decides; whoever applies the facts that `decide` gives has the same table as this one."""
+    """Decides requests for dynamic channels; all processes that apply its facts have the same channel table."""
 
     def __init__(self, plan: Plan) -> None:
         self.instances = ChannelTable(plan)
@@ -40,30 +40,30 @@ class ChannelGrants:
 
     @property
     def asked(self) -> bool:
-        """Whether there is something to decide."""
+        """Whether there are requests or changes of presence to decide."""
         return bool(self._wishes) or bool(self._going) or self._came != self._there
 
     def ask(self, tick: int, place: int, name: str, wishes: Sequence[Sequence[Any]]) -> None:
-        """A component asks, in its iteration at that place of that tick."""
+        """Takes the requests that a component made in its iteration at a step of a tick."""
         component = self._index[name]
         for order, wish in enumerate(wishes):
             self._wishes.append(((tick, place, component, order), _Wish(component, *wish)))
 
     def came(self, component: int, incarnation: int) -> None:
-        """A component takes part from now on."""
+        """Notes that a component takes part from now on."""
         self._came[component] = incarnation
 
     def left(self, component: int) -> None:
-        """A component takes part no more; what it asked before is void."""
+        """Notes that a component takes no part any more and drops its requests."""
         self._came.pop(component, None)
         self._going.add(component)
         self._wishes = [wish for wish in self._wishes if wish[1].component != component]
 
     def decide(self, busy: Callable[[int], bool] = lambda _: False) -> tuple[list[Fact], list[BlackboardEvent]]:
-        """Between two ticks: what was decided, and what happened by that.
+        """Decides at a boundary; returns the facts, and the blackboard events that follow from them.
 
-        Who is `busy` with an iteration of an earlier tick, or with finalizing, is served when that has ended: what it
-        writes meanwhile still counts.
+        A component that is `busy` with an iteration of an earlier tick, or with finalizing, is served afterwards: what
+        it writes meanwhile still counts.
         """
         self._facts: list[Fact] = []
         self._events: list[BlackboardEvent] = []
@@ -115,7 +115,7 @@ class ChannelGrants:
         return Opening(wish.component, wish.handle, number, wish.name, wish.type_name, wish.fingerprint)
 
     def _against(self, wish: _Wish) -> str:
-        """Why a wish is not granted; empty if it is."""
+        """Returns the reason why a request is refused; empty: it is granted."""
         instance = self.instances.find(wish.name)
         asking = self._plan.components[wish.component].name
         if instance is None:
@@ -147,7 +147,7 @@ class ChannelGrants:
         return instance.fingerprint or messages.fingerprint(messages.type_named(instance.type_name)).hex()
 
     def _whose(self, instance: Instance) -> str:
-        """Who has a channel open, for sentences."""
+        """Returns which component has a channel open, as part of a sentence."""
         names = self.instances.names
         if instance.declared:
             owner = instance.declared_writer if instance.declared_writer != NOBODY else None
@@ -156,7 +156,7 @@ class ChannelGrants:
         return f" to {names[owner]}" if owner is not None else ""
 
     def _follow_patterns(self) -> None:
-        """Opens for who wants many instances what fits, and closes what nobody else has open any more."""
+        """Opens channels that match the patterns of components, and closes those that only patterns keep open."""
         many = {(wish.component, wish.handle) for wish in self._patterns}
         for instance in self.instances.matching("*"):
             alone = not instance.declared and not instance.writer and not set(instance.readers) - many

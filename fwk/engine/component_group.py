@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from fwk.component.component import Component
 from fwk.component.declaration import declaration
@@ -26,8 +26,7 @@ Written = list[tuple[str, bytes]]
 """Messages in the order in which they were written, each with its channel."""
 
 
-@dataclass(frozen=True)
-class Ran:
+class Ran(NamedTuple):
     """What one step of a tick made of the group."""
 
     written: Written

@@ -1,4 +1,4 @@
-"""Holds a component's class against the plan that was made of an earlier state of its file."""
+"""Checks a component's class against the plan that was made from an earlier state of its file."""
 
 from collections.abc import Mapping
 from typing import Any

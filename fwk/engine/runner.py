@@ -1,4 +1,4 @@
-"""One component with its aspects, taken through its iterations: the same for host process, test bench and replay."""
+"""Runner of one component with its aspects: the same in a host process, on the test bench and in a replay."""
 
 import hashlib
 from collections.abc import Callable, Mapping, Sequence
@@ -35,7 +35,7 @@ NOTHING: list[bytes] = []
 
 @dataclass(frozen=True)
 class RunSection:
-    """What a component gets from the run it is part of."""
+    """Part of the plan and of the process that the aspects of a component need."""
 
     seed: int
     period_us: int
@@ -43,18 +43,24 @@ class RunSection:
     rings: Mapping[str, Ring]
     """Shared-memory rings by channel."""
     lines_per_s: int = 0
-    """That each component may log; 0: as many as it likes."""
+    """Most lines that each component may log in a second; 0: no limit."""
     stages: Sequence[str] = DEFAULT_STAGES
     components: Sequence[str] = ()
-    """Names of all components of the run; none: there are no others."""
+    """Names of all components of the run; empty: there are no others."""
     frames: Mapping[str, Frames] = field(default_factory=dict)
-    """In a replay: channels whose frames are looked at elsewhere than in their ring."""
+    """In a replay: sources of frames that replace the rings, by channel."""
 
 
 class Runner:
     """Builds a component and runs it, iteration by iteration.
 
-    `channels` says which channels each port stands for: attribute to channel names.
+    Args:
+        declaration: what the class declares.
+        name: full name of the component.
+        config: its settings; None: the defaults of its class.
+        channels: names of the channels of each port, by attribute.
+        section: what the aspects need of the run.
+        incarnation: number of the component's life, from 1.
     """
 
     def __init__(
@@ -110,7 +116,7 @@ class Runner:
             self._put(attribute, self._aspect(aspect, section.seed))
 
     def init(self) -> None:
-        """Prepares the component, and before it the aspects that other components provide it with."""
+        """Initialises the aspects that other components provide, then the component."""
         for aspect in self._provided:
             aspect.init()
         self.component.init()
@@ -127,7 +133,7 @@ class Runner:
             self._services.append(written)
 
     def configure(self, settings: Mapping[str, Any]) -> None:
-        """Between two iterations: gives the component new settings, all of them, and tells it what they changed."""
+        """Gives the component all its settings between two iterations and tells it which have changed."""
         changed = self._config._take_over(type(self._config).model_validate(settings))
         self.log.level = self._log_level
         if changed - {LOG_LEVEL}:
@@ -139,8 +145,15 @@ class Runner:
     ) -> list[tuple[str, bytes]]:
         """Runs one iteration with its inputs frozen; returns what it wrote as (channel, message), in a fixed order.
 
-        `fresh` holds for the channels of its readers what became visible since the last iteration. Whatever the
-        component raises comes out, and then nothing was written.
+        Args:
+            tick: the tick.
+            stage: step of the tick, as headers have it.
+            stage_name: name of the stage.
+            time_us: logical time.
+            fresh: messages that became visible since the last iteration, by channel, oldest first.
+
+        Raises:
+            Exception: whatever the component raises; nothing was written then.
         """
         clock, stamp = self.clock, self.stamp
         clock.tick = stamp.tick = tick
@@ -172,7 +185,7 @@ class Runner:
         clock.stage, stamp.stage = stage_name, stage
 
     def finalize(self, tick: int, time_us: int) -> list[tuple[str, bytes]]:
-        """After the last iteration: lets the component finalize; returns what it wrote, stamped with that tick."""
+        """Finalizes the component; returns what it wrote, stamped with the given tick."""
         self.clock.tick = self.stamp.tick = tick
         self.clock.now_us = self.stamp.time_us = time_us
         self.stamp.stage = header_t.FINAL
@@ -204,11 +217,11 @@ class Runner:
         return made if order is None else {**made, "main_loop": order}
 
     def missed_frames(self) -> dict[str, list[int]]:
-        """Frames that were overwritten before the component read them, by channel; mostly nothing."""
+        """Returns the frames that were overwritten before the component read them, by channel."""
         return {channel: numbers for channel, image in self.images.items() if (numbers := image._take_missed())}
 
     def _put(self, attribute: str, value: Any) -> None:
-        """Gives the component, or one of its aspects (`tf.tree`), what it wants."""
+        """Sets an attribute of the component, or of one of its aspects (`tf.tree`)."""
         outer, _, own = attribute.rpartition(".")
         setattr(getattr(self.component, outer) if outer else self.component, own, value)
 
@@ -247,13 +260,13 @@ class Runner:
         return _one_or_each(port, list(read.items()))
 
     def _image(self, channel: str, announcement: Reads[Any]) -> Image:
-        """The one view of a camera, whichever ports stand for it."""
+        """Returns the only view of a camera; several ports may share it."""
         if channel not in self.images:
             self.images[channel] = Image(announcement, self._frames.get(channel) or self._rings[channel], self.log)
         return self.images[channel]
 
     def _reader(self, channel: str, message_type: type[Message]) -> Reads[Any]:
-        """The one reader of a channel, whichever ports stand for it."""
+        """Returns the only reader of a channel; several ports may share it."""
         if channel not in self.readers:
             length = self._histories.get(channel, 0)
             made = ReadsHistory(channel, message_type, length) if length else Reads(channel, message_type)
@@ -283,13 +296,13 @@ class Runner:
 
 
 class _Early:
-    """What `init` wrote: it goes out with the first iteration, stamped as what that writes, and before it."""
+    """Messages written in `init`: sent before those of the first iteration, with the same stamp."""
 
     def __init__(self, written: Sequence[tuple[Writes[Any], Any]]) -> None:
         self._written = written
 
     def _begin(self) -> None:
-        """The first iteration begins; later ones have nothing more to do here."""
+        """Writes the messages of `init` when the first iteration begins."""
         for writer, value in self._written:
             own, writer.value = writer.value, value
             writer.write()
@@ -297,11 +310,11 @@ class _Early:
         self._written = ()
 
     def _end(self) -> None:
-        """The component was stopped; if there was no iteration, nobody has seen any of it."""
+        """Does nothing: without an iteration the messages of `init` are not sent."""
 
 
 def _rows(channels: Sequence[str]) -> list[Sequence[str]]:
-    """Channels of an owner, a row for each name: that of the answers, and those of its senders."""
+    """Returns the channels of a service, a row for each name: the channel of the replies, then those of the clients."""
     begins = [place for place, name in enumerate(channels) if name.endswith(f"@{ANSWERS}")]
     return [channels[begin:end] for begin, end in zip(begins, [*begins[1:], len(channels)], strict=True)]
 
@@ -312,5 +325,5 @@ def _one_or_each(port: Port, ports: Sequence[tuple[str, Any]]) -> Any:
 
 
 def seed_of(seed: int, name: str) -> int:
-    """The seed of a component's random numbers: the same wherever and beside whatever it runs."""
+    """Returns the seed of a component's random numbers, which does not depend on processes and other components."""
     return int.from_bytes(hashlib.sha256(f"{seed}/{name}".encode()).digest()[:8], "big")

@@ -1,4 +1,4 @@
-"""A host that somebody starts by hand for a run that goes on: what it needs of the run, and its life."""
+"""External process that takes the place of a host in a run: what it needs of the run, and its life."""
 
 import os
 import signal
@@ -26,27 +26,27 @@ FAILED = 1
 REFUSED = 2
 
 
-class NoPlace(Exception):  # noqa: N818 - what is
-    """The run does not give the place; says why."""
+class NoPlaceError(Exception):
+    """The run refuses an external process; gives the reason."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """A component's place in a run: `ask` waits until it is free and returns what the supervisor says then."""
+    """Place of a host in a run; `ask` waits until it is free and returns the supervisor's answer."""
 
     plan: Plan
     component: ComponentPlan
     folder: str
-    """The run's working directory."""
+    """Working directory of the run."""
     debug: DebugRequest | None
-    """Under which debugger; None: under none."""
+    """Debugger to run under; None: no debugger."""
     ask: Callable[[], Mapping[str, Any]]
-    """Raises `NoPlace`."""
+    """Asks the supervisor for the place; raises `NoPlaceError`."""
 
     def take(self, stop: StopSignal) -> int:
-        """Has the place until the run says stop or the debugger is left; returns an exit code.
+        """Runs the host until the run stops it or the user leaves the debugger; returns an exit code.
 
-        The modules are imported before the run is asked: what is wrong with them comes out while it goes on.
+        The modules are imported before the run is asked, so that errors in them do not disturb the run.
         """
         signal.signal(signal.SIGINT, signal.SIG_DFL)  # until it has the place
         sys.stdout.reconfigure(line_buffering=True)  # type: ignore[union-attr]
@@ -58,7 +58,7 @@ class Place:
             if limit:
                 limit_memory(limit)
             told = self.ask()
-        except (NoPlace, DeclarationError) as reason:
+        except (NoPlaceError, DeclarationError) as reason:
             print(f"error: {reason}", file=sys.stderr)
             return REFUSED
         stop.on_interrupt(ends=self.debug is None or self.debug.debugpy_port > 0)
@@ -83,7 +83,7 @@ class Place:
                 import_module(module)
             except Exception as error:
                 text = "".join(traceback.format_exception(error)).rstrip()
-                raise NoPlace(f"{module} cannot be imported; the run goes on with what it has\n{text}") from error
+                raise NoPlaceError(f"{module} cannot be imported; the run goes on with what it has\n{text}") from error
 
     def _assignment(self, told: Mapping[str, Any]) -> Assignment:
         return Assignment(

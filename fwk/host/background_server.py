@@ -53,5 +53,5 @@ class BackgroundServer:
 
 @contextmanager
 def no_background(_source: HasDescriptor, _handle: Handle) -> Iterator[None]:
-    """Serves nobody: iterations of a process with one thread take no wall time that others would notice."""
+    """Does nothing: in a process with one thread, no other process waits during an iteration."""
     yield

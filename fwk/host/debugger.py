@@ -21,29 +21,29 @@ LEFT = 75
 
 @dataclass(frozen=True)
 class DebugRequest:
-    """Which host is to be debugged, and how."""
+    """Host to be debugged, and how."""
 
     host: int
     component: ComponentPlan
     debugpy_port: int = 0
-    """Listen there instead of asking in the terminal; 0: pdb."""
+    """Port on which debugpy listens; 0: pdb in the terminal."""
 
 
-class DebuggerMissing(Exception):  # noqa: N818 - what is
+class DebuggerMissingError(Exception):
     """debugpy was asked for and is not installed."""
 
 
 def check(request: DebugRequest) -> None:
-    """Finds out before anything starts whether the debugger is there.
+    """Checks before anything starts that the debugger is installed.
 
     Raises:
-        DebuggerMissing: it is not; says what to type.
+        DebuggerMissingError: it is not; names the command that installs it.
     """
     if request.debugpy_port:
         try:
             import_module("debugpy")
         except ImportError as error:
-            raise DebuggerMissing("--debugpy: debugpy is not installed; type: pip install debugpy") from error
+            raise DebuggerMissingError("--debugpy: debugpy is not installed; type: pip install debugpy") from error
 
 
 def debug(
@@ -54,8 +54,8 @@ def debug(
 ) -> int:
     """Runs `serve` under the debugger, stopped where the component's first iteration begins; returns an exit code.
 
-    It is the first after `ready` has become true. What a component raises under pdb can be looked at before its
-    process ends.
+    Iterations before `ready` returns True do not count. An exception of a component under pdb can be examined before
+    the process ends.
     """
     if request.debugpy_port:
         return _debugpy(request, serve)
@@ -78,16 +78,16 @@ def debug(
 
 
 class _Pdb(pdb.Pdb):
-    """pdb that stops at breakpoints only, not in the framework's code before them."""
+    """pdb that stops at breakpoints only, never in the code of the framework before them."""
 
     def begin_at(self, file: str, line: int, wanted: Callable[[Any], bool]) -> None:
-        """Stops at this line once, when the object whose method it belongs to is wanted."""
+        """Stops once at this line, when `wanted` accepts the object whose method is running."""
         self._first = (self.canonic(file), line)
         self._wanted = wanted
         self.set_break(file, line, temporary=True)
 
     def break_here(self, frame: FrameType) -> bool:
-        """Whether to stop at this line; called where the file has breakpoints."""
+        """Returns whether to stop at this line; called in files with breakpoints."""
         if (self.canonic(frame.f_code.co_filename), frame.f_lineno) == self._first:
             if not self._wanted(frame.f_locals[frame.f_code.co_varnames[0]]):
                 return False
@@ -110,7 +110,7 @@ class _Pdb(pdb.Pdb):
         self.interaction(None, error.__traceback__)
 
     def set_continue(self) -> None:
-        """Goes on; keeps tracing, so that Ctrl-C can stop again."""
+        """Continues with tracing on, so that Ctrl-C can stop again."""
         self._set_stopinfo(self.botframe, None, -1)  # type: ignore[attr-defined]
 
 

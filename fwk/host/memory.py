@@ -1,4 +1,4 @@
-"""How much memory a process may take beyond what it began with; what goes beyond that fails where it is asked for."""
+"""Limits the memory that a process may allocate; an allocation beyond the limit raises MemoryError."""
 
 import re
 import resource
@@ -9,9 +9,9 @@ MIB = 1 << 20
 
 
 def limit_memory(mebibytes: float) -> None:
-    """Limits private memory to what the process has now and so much more.
+    """Limits private memory to what the process has now plus `mebibytes`.
 
-    What it shares with the process that it was forked from counts as had; shared memory does not count.
+    Memory shared with the parent process counts as present; shared memory segments do not count.
     """
     status = Path("/proc/self/status").read_text()
     found = re.search(r"^VmData:\s*(\d+) kB", status, re.M)
@@ -20,5 +20,5 @@ def limit_memory(mebibytes: float) -> None:
 
 
 def lift_limit() -> None:
-    """No limit any more: telling what happened takes memory, too."""
+    """Removes the limit, because reporting a failure needs memory too."""
     resource.setrlimit(resource.RLIMIT_DATA, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))

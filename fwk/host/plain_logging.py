@@ -1,4 +1,4 @@
-"""What plain modules and libraries say through Python's own `logging` is a line of the component that calls them."""
+"""Forwards lines of Python's `logging` to the log of the component that is being executed."""
 
 import logging
 from collections.abc import Callable
@@ -10,7 +10,7 @@ _LEVELS = ((logging.ERROR, log_t.ERROR), (logging.WARNING, log_t.WARNING), (logg
 
 
 def forward_logging(current_log: Callable[[], Logger]) -> None:
-    """From now on in this process: goes where the lines of the component go, if its `log_level` is such."""
+    """Forwards lines from now on, as far as the `log_level` of the component allows."""
     root = logging.getLogger()
     root.addHandler(_Forward(current_log))
     root.setLevel(logging.DEBUG)  # which of it is written is the component's setting
@@ -27,5 +27,5 @@ class _Forward(logging.Handler):
             level = next((ours for theirs, ours in _LEVELS if record.levelno >= theirs), log_t.DEBUG)
             if log.level <= level:
                 log.write(level, self.format(record), short_path(record.pathname), record.lineno)
-        except Exception:  # a text that cannot be made is no reason to end a component
+        except Exception:  # an invalid log call does not end a component
             self.handleError(record)

@@ -20,20 +20,21 @@ ENDED_WELL = "exit code 0"
 def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
     """Asks the kernel to send this process `death_signal` when `parent` ends, however that happens."""
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, death_signal)
-    if os.getppid() != parent:  # it ended before we could ask
+    if os.getppid() != parent:  # the parent has ended before this call
         os._exit(1)
 
 
 def wait_for_end(pid: int) -> str:
-    """Waits for a child that is ending; says how it ended."""
+    """Waits for a child that is ending; returns how it ended."""
     code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
     return f"killed by signal {-code}" if code < 0 else f"exit code {code}"
 
 
 def end_child(pid: int, patience_s: float) -> bool:
-    """Waits for a child that should end by itself, also if somebody has stopped it (SIGSTOP); kills it if it does not.
+    """Waits for a child that should end by itself, wakes it if it was stopped (SIGSTOP), kills it after `patience_s`.
 
-    Says whether it had to be killed.
+    Returns:
+        Whether it was killed.
     """
     os.kill(pid, signal.SIGCONT)
     descriptor = os.pidfd_open(pid)
@@ -48,7 +49,7 @@ def end_child(pid: int, patience_s: float) -> bool:
 
 
 def raise_file_limit() -> None:
-    """Allows as many open files as the system lets us: a socket a channel adds up."""
+    """Raises the limit of open files to the hard limit: a host needs a socket for each channel."""
     _, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (hard, hard))
 
@@ -60,14 +61,14 @@ def allow_core_dumps() -> None:
 
 
 def keep_memory() -> None:
-    """Tells the C library to keep freed memory: pictures come and go, and giving each back costs page faults."""
+    """Lets the C library keep freed memory, because returning the memory of each image costs page faults."""
     mallopt = ctypes.CDLL(None).mallopt
     mallopt(_M_MMAP_THRESHOLD, _KEPT_BYTES)
     mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
 
 
 def give_memory_back() -> None:
-    """Returns to the system what was freed so far: making tables in `init` leaves more than iterations ever need."""
+    """Returns freed memory to the system: `init` often frees more than iterations ever need."""
     ctypes.CDLL(None).malloc_trim(0)
 
 
@@ -90,7 +91,7 @@ class StopSignal:
         return self._set
 
     def on_interrupt(self, ends: bool) -> None:
-        """Whether Ctrl-C asks for the same, or for nothing."""
+        """Sets whether Ctrl-C asks the process to stop or is ignored."""
         signal.signal(signal.SIGINT, self._on_signal if ends else signal.SIG_IGN)
 
     def _on_signal(self, _number: int, _frame: object) -> None:

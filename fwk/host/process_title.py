@@ -1,4 +1,4 @@
-"""Names of processes, by which ps, top and debuggers tell them apart."""
+"""Titles by which ps, top and debuggers tell processes apart."""
 
 import os
 

@@ -1,4 +1,4 @@
-"""Profiles the iterations of one component: where their time goes, function by function, line by line."""
+"""Profiles the iterations of one component by function and line."""
 
 import json
 from collections.abc import Mapping
@@ -12,35 +12,37 @@ from fwk.engine.runner import Runner
 from fwk.model.plan import ComponentPlan
 
 INTERVAL_S = 0.0001  # iterations often take less than a millisecond
-KEEP_US = 5 * US_PER_S  # how often what was found is written down, for a component that is killed
+KEEP_US = 5 * US_PER_S  # interval of writing, so that samples survive a kill
 SUFFIX = ".pyisession"
 
 
-class ProfilerMissing(Exception):  # noqa: N818 - what is
+class ProfilerMissingError(Exception):
     """A profile was asked for and pyinstrument is not installed."""
 
 
 def check_profiler() -> None:
-    """Finds out before anything starts whether the profiler is there.
+    """Checks before anything starts that the profiler is installed.
 
     Raises:
-        ProfilerMissing: it is not; says what to type.
+        ProfilerMissingError: it is not; names the command that installs it.
     """
     try:
         import_module("pyinstrument")
     except ImportError as error:
-        raise ProfilerMissing("--profile: pyinstrument is not installed; type: pip install pyinstrument") from error
+        raise ProfilerMissingError(
+            "--profile: pyinstrument is not installed; type: pip install pyinstrument"
+        ) from error
 
 
 def profile_file(run_dir: Path, component: str, incarnation: int = 1) -> Path:
-    """Where the samples of one life of a component are kept."""
+    """Returns the file for the samples of one life of a component."""
     again = f"-{incarnation}" if incarnation > 1 else ""
     return run_dir / f"profile-{component.replace('/', '-')}{again}{SUFFIX}"
 
 
 @dataclass(frozen=True)
 class ProfileRequest:
-    """Which component is to be profiled, and where its samples go."""
+    """Component to be profiled, and the folder of its samples."""
 
     component: ComponentPlan
     run_dir: Path
@@ -58,11 +60,11 @@ class Profile:
         self._keep_us = 0
 
     def runner(self, *arguments: Any) -> Runner:
-        """Makes the runner of a component; the one that is profiled gets one that is sampled."""
+        """Builds the runner of a component: the profiled component gets a sampled runner."""
         return _SampledRunner(self, *arguments) if arguments[1] == self._component else Runner(*arguments)
 
     def sample(self) -> None:
-        """Begins, or writes down what there is if it is time to."""
+        """Starts the profiler, or writes the samples when it is time."""
         if not self._profiler.is_running:
             self._profiler.start()
             self._keep_us = monotonic_us() + KEEP_US
@@ -70,7 +72,7 @@ class Profile:
             self.keep()
 
     def keep(self) -> None:
-        """Writes down what was sampled so far, in the profiler's own format."""
+        """Writes all samples in the format of the profiler."""
         if not self._profiler.is_running:
             return
         session = self._profiler.stop()
@@ -95,7 +97,7 @@ class Profile:
 
 
 class _SampledRunner(Runner):
-    """Its iterations are found in the samples by the file that this class stands in."""
+    """Runner whose iterations are found in the samples by the file of this class."""
 
     def __init__(self, profile: Profile, *arguments: Any) -> None:
         super().__init__(*arguments)
@@ -112,7 +114,7 @@ _MARK = _SampledRunner.iterate.__code__.co_name + "\x00" + __file__
 
 
 def _from_iteration_on(stack: list[str]) -> tuple[str, ...]:
-    """What of a sampled stack belongs to an iteration; empty: it was taken between two."""
+    """Returns the frames of a sampled stack that belong to an iteration; empty: the sample lies between iterations."""
     for place, frame in enumerate(stack):
         if frame.startswith(_MARK):
             return tuple(stack[place:])

@@ -1,4 +1,4 @@
-"""Work in a child of a command: whatever ends it, the terminal is as it was before."""
+"""Runs work in a child of a command and restores the settings of the terminal, however the child ends."""
 
 import os
 import select

@@ -1,4 +1,4 @@
-"""What nobody catches goes into the log with its traceback and tick, wherever in the process it happened."""
+"""Logs uncaught exceptions of a process with traceback and tick."""
 
 import sys
 import threading
@@ -12,15 +12,15 @@ if TYPE_CHECKING:
 
 
 def log_uncaught(log: Logger) -> None:
-    """From now on in this process: exceptions at the end of threads and of the process, and in destructors."""
+    """Logs uncaught exceptions of threads, destructors and the process itself from now on."""
 
     def in_process(_kind: type[BaseException], error: BaseException, _trace: TracebackType | None) -> None:
-        log.exception("ends by an exception that nobody caught", error)
+        log.exception("ends with an uncaught exception", error)
 
     def in_thread(hooked: threading.ExceptHookArgs) -> None:
         if hooked.exc_value and not isinstance(hooked.exc_value, SystemExit):
             name = hooked.thread.name if hooked.thread else "?"
-            log.exception(f"thread {name} ends by an exception that nobody caught", hooked.exc_value)
+            log.exception(f"thread {name} ends with an uncaught exception", hooked.exc_value)
 
     def nowhere(hooked: "UnraisableHookArgs") -> None:
         if hooked.exc_value:

@@ -4,16 +4,16 @@ import secrets
 import socket
 
 from fwk.bus.network import UdpNetwork
-from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.bus.sockets import own_socket
 from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
 from fwk.control.address import supervisor_address
 from fwk.control.server import Answer, Server
-from fwk.host.debugger import DebuggerMissing, DebugRequest, check
+from fwk.host.debugger import DebuggerMissingError, DebugRequest, check
 from fwk.host.process import raise_file_limit
 from fwk.host.process_title import name_process
-from fwk.host.profile import ProfileRequest, ProfilerMissing, check_profiler
+from fwk.host.profile import ProfileRequest, ProfilerMissingError, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.launcher.signals import Signals
 from fwk.lcm import envelope, messages
@@ -25,16 +25,16 @@ from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.processes.zygote import Zygote
 from fwk.supervisor.supervisor import Machine, Supervisor
 
-__all__ = ["DebuggerMissing", "Outcome", "PortsInUse", "ProfilerMissing", "RunOptions", "run"]
+__all__ = ["DebuggerMissingError", "Outcome", "PortsInUseError", "ProfilerMissingError", "RunOptions", "run"]
 
 
 def run(plan: Plan, options: RunOptions) -> Outcome:
     """Runs a plan in the foreground until it is done, interrupted or broken.
 
     Raises:
-        PortsInUse: another run on this machine has the ports.
-        DebuggerMissing: debugpy is asked for and not installed.
-        ProfilerMissing: a profile is asked for and pyinstrument is not installed.
+        PortsInUseError: another run on this machine has the ports.
+        DebuggerMissingError: debugpy is asked for and not installed.
+        ProfilerMissingError: a profile is asked for and pyinstrument is not installed.
     """
     ports = Ports.of(plan)
     debug = _debug_request(plan, options)
@@ -78,7 +78,7 @@ def _host_sockets(plan: Plan, ports: Ports) -> dict[int, socket.socket]:
     """Opens the hosts' own sockets, so that no other process can take the port of a host that ended.
 
     Raises:
-        PortsInUse: another program has one of the ports.
+        PortsInUseError: another program has one of the ports.
     """
     opened: dict[int, socket.socket] = {}
     for host in plan.hosts:
@@ -88,7 +88,7 @@ def _host_sockets(plan: Plan, ports: Ports) -> dict[int, socket.socket]:
         except OSError as error:
             for each in opened.values():
                 each.close()
-            raise PortsInUse(
+            raise PortsInUseError(
                 f"{plan.file or plan.name}: port {port} of {host.name} cannot be opened: {error.strerror}; "
                 "start this run with another --bus-port"
             ) from error

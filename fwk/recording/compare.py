@@ -20,14 +20,18 @@ _RECENT = 1024  # messages of a channel among which one sent again is recognized
 
 
 def compare(a: Path, b: Path, common: bool = False) -> Difference | None:
-    """The first difference of two logs in the order of tick, stage, channel and sequence; None if they are equal.
+    """Returns the first difference of two logs in the order of tick, stage, channel and sequence; None: they are equal.
 
-    Equal means: the same bytes in the same order on each channel. A message that a logger heard twice, because it was
-    sent again to somebody who had lost it, counts once. With `common`, only sequence numbers that lie in both logs'
-    range on a channel are compared, for logs that began later or ended earlier.
+    Equal logs have the same bytes in the same order on each channel. A message that a logger heard twice, because it
+    was sent again to a reader, counts once.
+
+    Args:
+        a: one log.
+        b: the other log.
+        common: compares only sequence numbers within the ranges of both logs, for logs of different length.
 
     Raises:
-        LogError: a file cannot be read, is no log, or there is nothing to compare.
+        LogError: a file cannot be read, is not a log, or there is nothing to compare.
     """
     return Comparison(a, b, common).difference
 
@@ -48,7 +52,7 @@ def kernel_of(log: Path) -> str:
 
 
 class Comparison:
-    """Two logs compared, with the figures that belong to the answer."""
+    """Comparison of two logs with its figures."""
 
     def __init__(self, a: Path, b: Path, common: bool = False) -> None:
         self.messages = 0
@@ -68,7 +72,7 @@ class Comparison:
         """Damaged bytes in each log."""
         for reader in readers:
             if reader.skipped_bytes and reader.skipped_bytes == reader.path.stat().st_size:
-                raise LogError(f"{reader.path}: no LCM log: no event in {reader.skipped_bytes} bytes")
+                raise LogError(f"{reader.path}: not an LCM log: no event in {reader.skipped_bytes} bytes")
         found = [difference for name, channel in self._channels.items() if (difference := channel.end(name))]
         self.difference = min(found, key=lambda difference: difference.key) if found else None
         if self.difference:
@@ -100,7 +104,7 @@ class Comparison:
 
 
 class _Side:
-    """What one log holds of a channel and the other has not matched yet."""
+    """Messages of a channel in one log that the other log has not matched yet."""
 
     def __init__(self) -> None:
         self.waiting: deque[bytes] = deque()
@@ -143,7 +147,7 @@ class _Channel:
             self.difference, self.sought = self.difference.found_later(), None
 
     def end(self, name: str) -> Difference | None:
-        """The channel's first difference, when one log has ended: what waits for a match gets none any more."""
+        """Returns the first difference of the channel once a log has ended: waiting messages have no match."""
         for lacking, side in ((1, self.sides[0]), (0, self.sides[1])):
             if not self.difference and side.waiting:
                 reason = "missing" if self.place else "missing, as is the whole channel"
@@ -174,7 +178,7 @@ def _counts(channel: str) -> bool:
 
 
 def _common_ranges(readers: Iterable[StampedLog]) -> dict[str, tuple[int, int]]:
-    """For each channel of both logs the first and last sequence number that both ranges contain."""
+    """Returns the first and last sequence number that both logs contain, by channel."""
     ranges: list[dict[str, tuple[int, int]]] = []
     for reader in readers:
         found: dict[str, tuple[int, int]] = {}

@@ -1,4 +1,4 @@
-"""Says in what two recorded messages differ: type, field and both values, or the byte."""
+"""Describes how two recorded messages differ: type, field and both values, or the byte."""
 
 import struct
 from dataclasses import dataclass, replace
@@ -39,23 +39,23 @@ class Difference:
 
     @property
     def key(self) -> tuple[int, int, str, int]:
-        """Order of differences: tick, stage, channel, sequence."""
+        """Key that orders differences by tick, stage, channel and sequence number."""
         return _LAST if self.tick is None else self.tick, self.stage or 0, self.channel, self.sequence
 
     def found_later(self) -> "Difference":
-        """The same, when the missing message turned up further on."""
+        """Returns this difference for a missing message that was found later in the log."""
         values = tuple("later" if value == "missing" else "here" for value in self.values)
         return replace(self, kind="order", values=(values[0], values[1]))
 
 
 def missing(channel: str, data: bytes, place: int, lacking: int, reason: str = "missing") -> Difference:
-    """A message that the log of index `lacking` does not have."""
+    """Returns the difference that a message is missing in the log of index `lacking`."""
     values = ("there", reason) if lacking else (reason, "there")
     return _difference("missing", channel, data, place, "", values)
 
 
 def changed(channel: str, a: bytes, b: bytes, place: int) -> Difference:
-    """Two different messages in the same place."""
+    """Returns the difference of two messages in the same place."""
     kinds = [" or ".join(messages.type_name(kind) for kind in types_of(data)) for data in (a, b)]
     if a[:8] == marked(b[:8]):
         stamped_first = in_envelope(a)
@@ -96,7 +96,7 @@ def _field(a: bytes, b: bytes) -> tuple[str, str, str] | None:
 
 
 def _stamps(*stamps: Header) -> tuple[str, str, str] | None:
-    """In what the headers of two envelopes differ, as if they were the messages' own."""
+    """Returns how the headers of two envelopes differ, as if they belonged to the messages."""
     for name in ("tick", "sequence", "time_us", "stage", "writer") if stamps else ():
         values = [repr(getattr(stamp, name)) for stamp in stamps]
         if values[0] != values[1]:
@@ -117,7 +117,7 @@ def _first(a: Any, b: Any, path: str) -> tuple[str, str, str] | None:
 
 
 def _same(a: Any, b: Any) -> bool:
-    """Whether two values are the same bits: NaN is NaN, and -0.0 is not 0.0."""
+    """Returns whether two values have the same bits: NaN equals NaN, and -0.0 differs from 0.0."""
     if isinstance(a, float):
         return struct.pack(">d", a) == struct.pack(">d", b)
     return bool(a == b)

@@ -1,4 +1,4 @@
-"""Records camera frames, lossless, in the order of the log, while other threads compress them."""
+"""Records camera frames without loss in the order of the log, compressed by other threads."""
 
 from collections import deque
 from collections.abc import Callable, Mapping
@@ -18,10 +18,10 @@ _THREADS = 2
 
 
 class FrameRecorder(Recorder):
-    """A recorder that writes each frame of `rings` before its announcement.
+    """Recorder that writes each frame of `rings` before its announcement.
 
-    What comes after a frame waits until that is compressed, so the log's order does not depend on how long it takes. If
-    too much waits, the simulation waits too; in real time the frame is left out.
+    Messages after a frame wait until it is compressed, so the order of the log does not depend on the time that takes.
+    If too much waits, lockstep waits too; in real time the frame is left out.
     """
 
     def __init__(self, plan: Plan, path: Path, rings: Mapping[str, Ring], report: Callable[[str], None]) -> None:
@@ -34,7 +34,7 @@ class FrameRecorder(Recorder):
         self._left_out: dict[tuple[str, str], int] = {}
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
-        """Adds a message, before it the frame that it announces."""
+        """Adds a message, preceded by the frame that it announces."""
         if channel in self._rings:
             self._frame(channel, messages.decode(frame_t, data, channel), time_us)
         if self._waiting:
@@ -43,12 +43,12 @@ class FrameRecorder(Recorder):
             super().message(channel, data, time_us)
 
     def tick(self) -> None:
-        """Writes what is compressed."""
+        """Writes the frames that are compressed, and the messages after them."""
         self._write_ready()
         super().tick()
 
     def close(self) -> None:
-        """Compresses the rest and finishes the log."""
+        """Compresses the remaining frames and finishes the log."""
         while self._waiting:
             self._write_oldest()
         self._pool.shutdown()

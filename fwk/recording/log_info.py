@@ -1,4 +1,4 @@
-"""What is in a log: for each channel types, counts, rates, ticks, gaps and what cannot be decoded."""
+"""Contents of a log: types, counts, rates, ticks, gaps and undecodable messages of each channel."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -41,12 +41,12 @@ class ChannelInfo:
 
     @property
     def rate_hz(self) -> float:
-        """Messages per second of the log's time; 0 when there is no time between them."""
+        """Messages per second by the time stamps of the log; 0 if all have the same time."""
         span_us = self.last_us - self.first_us
         return (self.messages - 1) * US_PER_S / span_us if span_us > 0 else 0.0
 
     def add(self, event: Event) -> None:
-        """Takes one more message of the channel."""
+        """Counts a message of the channel."""
         self.first_us = event.time_us if not self.messages else min(self.first_us, event.time_us)
         self.last_us = event.time_us if not self.messages else max(self.last_us, event.time_us)
         self.messages += 1
@@ -97,7 +97,7 @@ class LogInfo:
 
     @property
     def duration_s(self) -> float:
-        """From the earliest event to the latest, by the log's time stamps."""
+        """Time from the earliest to the latest event in seconds, by the time stamps of the log."""
         return (self.last_us - self.first_us) / US_PER_S
 
     @property
@@ -112,7 +112,7 @@ def log_info(path: Path) -> LogInfo:
     """Reads a log from beginning to end and decodes every message.
 
     Raises:
-        LogError: the file cannot be read or is no log.
+        LogError: the file cannot be read or is not a log.
     """
     reader, info, channels = StampedLog(path), LogInfo(path), dict[str, ChannelInfo]()
     following = 0
@@ -125,6 +125,6 @@ def log_info(path: Path) -> LogInfo:
         channels.setdefault(event.channel, ChannelInfo()).add(event)
     info.size_bytes, info.damaged_bytes = path.stat().st_size, reader.skipped_bytes
     if info.damaged_bytes and not info.events:
-        raise LogError(f"{path}: no LCM log: no event in {info.damaged_bytes} bytes")
+        raise LogError(f"{path}: not an LCM log: no event in {info.damaged_bytes} bytes")
     info.channels = dict(sorted(channels.items()))
     return info

@@ -1,4 +1,4 @@
-"""Where the gateway's messages go: LCM log, public bus, display, and the newest of each for the summary."""
+"""Sinks of the gateway: LCM log, public bus, display, and the newest messages for the summary."""
 
 import json
 import socket
@@ -17,7 +17,7 @@ DISPLAY_PERIOD_US = US_PER_S // 4
 
 
 class Recorder:
-    """Writes the LCM log; its time stamps are logical time, so that equal runs give equal logs."""
+    """Writes the LCM log with logical time as time stamps, so that equal runs give equal logs."""
 
     def __init__(self, plan: Plan, path: Path, report: Callable[[str], None]) -> None:
         self._writer = LogWriter(path, report)
@@ -33,7 +33,7 @@ class Recorder:
         self._writer.append(channel, data, time_us)
 
     def tick(self) -> None:
-        """Once a second what was recorded so far reaches the file, so that a killed run leaves a log."""
+        """Flushes the file once a second, so that a killed run leaves a log."""
         if monotonic_us() >= self._due_us:
             self._due_us = monotonic_us() + US_PER_S
             self._writer.flush()
@@ -46,7 +46,7 @@ class Recorder:
 
 
 class Pace(Protocol):
-    """Sends datagrams, not all at once."""
+    """Sends datagrams with pauses between them."""
 
     def put(self, datagrams: Iterable[bytes]) -> None:
         """Adds the datagrams of a message."""
@@ -73,11 +73,11 @@ class Mirror:
         self._pace.tick()
 
     def close(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
 
 class Display:
-    """Feeds the display: lines and status at once, the newest of the shown channels four times a second."""
+    """Feeds the display: lines and status at once, newest messages four times a second."""
 
     def __init__(self, plan: Plan, connection: socket.socket) -> None:
         self._connection = connection
@@ -93,7 +93,7 @@ class Display:
             self._newest[channel] = data
 
     def tick(self) -> None:
-        """Sends what changed, if it is time."""
+        """Sends the changed messages when it is time."""
         if monotonic_us() >= self._due_us:
             self._due_us = monotonic_us() + DISPLAY_PERIOD_US
             for channel, data in self._newest.items():
@@ -101,7 +101,7 @@ class Display:
             self._newest = {}
 
     def close(self) -> None:
-        """Sends the rest; the display ends by itself."""
+        """Sends the remaining messages; the display ends by itself."""
         self._due_us = 0
         self.tick()
         self._connection.close()
@@ -118,7 +118,7 @@ LOST = "fwk/lost"
 
 
 class Newest:
-    """Keeps the newest message of each channel; hands them to the supervisor at the end, and how many were lost."""
+    """Keeps the newest message of each channel; hands them and the number of losses to the supervisor at the end."""
 
     def __init__(self, plan: Plan, connection: socket.socket, lost: Callable[[], int]) -> None:
         self._lost = lost
@@ -135,7 +135,7 @@ class Newest:
         """Nothing to do."""
 
     def close(self) -> None:
-        """Hands them over."""
+        """Hands the messages to the supervisor."""
         self._connection.setblocking(True)
         for channel, data in {**self._newest, LOST: str(self._lost()).encode()}.items():
             try:

@@ -1,4 +1,4 @@
-"""Reads plans and tick records of recordings, those of earlier protocol versions too."""
+"""Reads plans and tick records of recordings of this and earlier protocol versions."""
 
 import json
 import struct

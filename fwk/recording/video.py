@@ -35,7 +35,7 @@ def drawing(name: str) -> Draw:
     """Returns the drawing named `module:name`: a function, or the `draw` of a class.
 
     Raises:
-        VideoError: there is no such module or name.
+        VideoError: the module or the name in it does not exist.
     """
     module, _, word = name.partition(":")
     try:

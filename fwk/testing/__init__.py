@@ -1,4 +1,4 @@
-"""For tests and studies of components: a bench for one, a system in memory for many or for a launch file."""
+"""Tests of components: a bench for one component, a system in memory for many or for a launch file."""
 
 from fwk.testing.bench import Bench
 from fwk.testing.launched import launch_plan, settings_in, system_of

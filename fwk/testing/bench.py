@@ -1,4 +1,4 @@
-"""A test bench for one component: put messages in, iterate, look at what it sent. No process, no bus."""
+"""Test bench for one component: put messages in, iterate, check what it sent. No process, no bus."""
 
 from typing import Any
 
@@ -94,12 +94,12 @@ class Bench:
         return made
 
     def port(self, attribute: str, namespace: str = "") -> PortBench:
-        """The outside of a port; of one of several instances if a namespace is given."""
+        """Returns the other side of a port; with a namespace, that of one of its instances."""
         names = self._by_attribute[attribute]
         return self._by_name[next(name for name in names if not namespace or name.startswith(f"{namespace}/"))]
 
     def __getattr__(self, attribute: str) -> Any:
-        """The outside of the port with that name, or those of its instances by namespace."""
+        """Returns the other side of the port with that name, or of its instances by namespace."""
         names = self.__dict__.get("_by_attribute", {}).get(attribute)
         if names is None:
             known = ", ".join(self.__dict__.get("_by_attribute", {})) or "none"
@@ -110,7 +110,7 @@ class Bench:
         return self._by_name[names[0]]
 
     def owner_of(self, attribute: str, namespace: str = "") -> OtherOwner:
-        """The owner of the commands that the component sends by a port."""
+        """Returns the component that receives the requests of a port."""
         owner = self.port(attribute, namespace)
         assert isinstance(owner, OtherOwner), f"{attribute} sends no commands"
         return owner
@@ -128,7 +128,7 @@ class Bench:
         port.waiting += master._announcement._take()
 
     def iterate(self, times: int = 1, stage: str = "") -> None:
-        """Runs that many ticks, with an iteration in each that `every` selects; time advances by a period each."""
+        """Runs ticks, with an iteration in each that `every` selects; time advances by a period in each."""
         for _ in range(times):
             self.tick += 1
             self.time_us += self.runner.clock.period_us
@@ -150,7 +150,7 @@ class Bench:
                 self._opening.ask(self.tick, 0, self.runner)
 
     def opened(self, channel: str) -> PortBench:
-        """The outside of a channel that the component opened, or wants to open, at run time."""
+        """Returns the other side of a dynamic channel that the component has opened or asked for."""
         full = channel if "/" in channel else f"{self.runner.name.rpartition('/')[0]}/{channel}"
         return self._ports[full]
 
@@ -163,7 +163,7 @@ class Bench:
         return set(self._opening.types) - set(self.runner.readers)
 
     def finalize(self) -> None:
-        """Ends the component; what it writes is found as sent."""
+        """Finalizes the component; its messages are in `sent`."""
         for channel, data in self.runner.finalize(self.tick, self.time_us):
             port = self._ports[channel]
             port.sent.append(envelope.decode(port.message_type, data, channel))

@@ -53,7 +53,7 @@ class MemorySystem:
     ) -> None:
         for name, kind in components.items():
             if "plugins" in declaration(kind).aspects.values():
-                raise ValueError(f"{name} asks for PluginControl, and here are no processes; take Bench, or a run")
+                raise ValueError(f"{name} asks for PluginControl, which needs processes; use Bench, or a run")
         plan = plan_of(
             components,
             settings,

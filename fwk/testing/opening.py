@@ -1,4 +1,4 @@
-"""Channels opened at run time where there are no processes: wishes are granted between two ticks, as in a run."""
+"""Dynamic channels on the test bench: requests are decided between two ticks, as in a run."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -10,7 +10,7 @@ from fwk.model.plan import Plan
 
 
 class Opening:
-    """Grants what the components of a plan ask for; `sent` has every message so far, by channel."""
+    """Decides the requests of the components of a plan; `sent` has every message so far, by channel."""
 
     def __init__(self, plan: Plan, runners: Mapping[str, Runner], sent: dict[str, list[bytes]]) -> None:
         self._runners = {each.index: runners[each.name] for each in plan.components if each.opens}
@@ -18,20 +18,20 @@ class Opening:
         self._openings = ChannelGrants(plan)
         self._table = ChannelTable(plan)
         self.types: dict[str, type[messages.Message]] = {}
-        """Of the channels that were opened."""
+        """Types of the opened channels, by name."""
         for component in plan.components:
             self._openings.came(component.index, 1)
         for runner in self._runners.values():
             runner.blackboard._first(self._table)
 
     def ask(self, tick: int, place: int, runner: Runner) -> None:
-        """Takes what an iteration asked for."""
+        """Takes the requests of an iteration."""
         wishes = runner.blackboard._take()
         if wishes:
             self._openings.ask(tick, place, runner.name, wishes)
 
     def decide(self) -> Iterator[tuple[str, str, int]]:
-        """Between two ticks: which component reads a channel that it did not, from which message on; -1: no more."""
+        """Decides between two ticks; yields component, channel and index of its first message there; -1: it stops."""
         if not self._openings.asked:
             return
         facts, _ = self._openings.decide()
@@ -45,7 +45,7 @@ class Opening:
                     yield runner.name, fact.opening.name, [len(sent), *alike][-1] if done == "opened" else -1
 
     def of_their_types(self, runner: Runner, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
-        """Of a channel that was opened again with another type a reader sees its own type alone."""
+        """Drops messages of other types, which a channel has that was opened again with another type."""
         for channel in fresh.keys() & self.types.keys():
             begins = envelope.fingerprint(runner.readers[channel].message_type)
             fresh[channel] = [data for data in fresh[channel] if data.startswith(begins)]
@@ -61,5 +61,5 @@ class Opening:
 
 
 def _newest_of(begins: bytes, sent: Sequence[bytes]) -> int:
-    """Number of the newest message of that type."""
+    """Returns the sequence number of the newest message of a type."""
     return next((messages.sequence_of(data) for data in reversed(sent) if data.startswith(begins)), 0)

@@ -1,4 +1,4 @@
-"""The other side of a component's ports on the bench: what a test puts in, and finds sent."""
+"""The other side of a component's ports on the bench: input of a test, and messages that were sent."""
 
 from typing import Any, cast
 
@@ -8,7 +8,7 @@ from lcmtypes.core import answer_t, command_t, header_t
 
 
 class PortBench:
-    """The outside of one port: what the test puts in, or finds sent."""
+    """Other side of one port: `put` makes messages visible, `sent` has what the component sent."""
 
     def __init__(self, channel: str, message_type: type[messages.Message]) -> None:
         self.channel = channel
@@ -23,7 +23,7 @@ class PortBench:
 
         A nested struct may be given as a dict: `put(ball={"x_m": 1.0})`.
 
-        Its header, or the stamp of one whose type has none, is `header` or the message's own; all but the number.
+        The header, or the stamp of a type without one, is `header`, else that of the message; the number is set here.
         """
         made = cast(Any, message)
         if made is None:

@@ -1,4 +1,4 @@
-"""A component floods log, bus and commands at once: it is held back, and everybody else gets all that is theirs."""
+"""A component floods log, bus and commands at once: it is held back, and all other components get their messages."""
 
 import signal
 from pathlib import Path

@@ -15,7 +15,7 @@ from typing import Self
 
 import psutil
 
-from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.host.process import die_with_parent
 from fwk.model.ports import Ports
 
@@ -62,7 +62,7 @@ def _locked(base: int) -> socket.socket | None:
         lock.bind(f"\0fwk-system-test-{base}")
         overhead = Ports(base, 0, 0).end - base
         PortLock(Ports(base, 0, _BLOCK - overhead), "test").release()
-    except (OSError, PortsInUse):
+    except (OSError, PortsInUseError):
         lock.close()
         return None
     return lock

@@ -59,7 +59,7 @@ class PlayerConfig(Config):
 
 
 class Player(Component):
-    """Hears everybody and writes down what it heard."""
+    """Reads all other components and writes down what it read."""
 
     stage: ClassVar[str | tuple[str, ...]] = "think"
 

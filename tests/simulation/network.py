@@ -166,7 +166,7 @@ class Ether:
             del self._own[socket.port]
 
     def send(self, process: Process, source: Address, address: Address, data: bytes) -> None:
-        """Sends a datagram to everybody who hears the address, to each over a way of its own."""
+        """Sends a datagram to every socket that hears the address, to each with a delay of its own."""
         to, port = address
         world = self._world
         world.trace.add(process.local_us, process.name, f"-> {_place(address)}", data)

@@ -270,7 +270,7 @@ class _Queue:
 
 
 def holed_channels(log: Log) -> set[str]:
-    """Returns the channels of which the recording lacks messages: nobody can say when the others became visible."""
+    """Returns the channels of which the recording lacks messages: it is unknown when the others became visible."""
     channels = {each["index"]: each["name"] for each in log.plan["channels"]}
     marks = {
         channels[index]: mark for record in log.records for index, mark in record.marks.items() if index in channels

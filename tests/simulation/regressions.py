@@ -4,8 +4,8 @@ from tests.simulation.faults import Action, Weather
 from tests.simulation.scenario import Part, Scenario
 
 REGRESSIONS: dict[str, Scenario] = {
-    # A host died before the gateway had its last message, and nobody answered at its port until it was started again;
-    # but at the end of a run, and while the main loop waits for the gateway, nobody starts it again.
+    # A host died before the gateway had its last message, and no process answered at its port until the restart;
+    # but at the end of a run, and while the main loop waits for the gateway, no restart happens.
     "gateway asks a dead host while the loop waits for it": Scenario(
         seed=1,
         ticks=3,

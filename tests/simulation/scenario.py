@@ -51,7 +51,7 @@ class Scenario:
 
     @property
     def exact(self) -> bool:
-        """Whether the contract promises the same bytes as without faults: a run in lockstep that nobody disturbs."""
+        """Whether the contract promises the same bytes as without faults: an undisturbed run in lockstep."""
         continuous = any(not part.stages for part in self.parts)
         return not (self.wall or continuous or any(action.kind in OUTSIDE for action in self.actions))
 

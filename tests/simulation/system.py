@@ -110,7 +110,7 @@ class _Server(Signal):
             self._answer(json.dumps(request).encode(), _Connection(answered))  # type: ignore[arg-type]
 
     def close(self) -> None:
-        """Answers nobody any more."""
+        """Answers no tool any more."""
 
 
 class _Public(Signal):

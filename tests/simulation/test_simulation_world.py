@@ -44,7 +44,7 @@ class Pair:
         for number in range(self._count):
             yield self.sender.now_us() + 1000
             socket.sendto(bytes([number]), (GROUP, PORT))
-            socket.sendto(b"", (LOOPBACK, 77))  # nobody is there
+            socket.sendto(b"", (LOOPBACK, 77))  # no socket is there
 
     def _hear(self) -> Generator[int, list[int], None]:
         socket = self.hearer.group_socket(PORT)

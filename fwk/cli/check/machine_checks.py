@@ -11,7 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 
-from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.bus.sockets import BUFFER_BYTES, GROUP, LOOPBACK
 from fwk.lcm.typegen import lcm_gen
 from fwk.model.ports import Ports
@@ -73,7 +73,7 @@ def ports(wanted: Ports) -> Finding:
         return Finding(Level.BAD, subject, f"there are none above {_PORTS_END - 1}", advice)
     try:
         PortLock(wanted, "the next run").release()
-    except PortsInUse as error:
+    except PortsInUseError as error:
         return Finding(Level.WARNING, subject, str(error))
     taken = [port for port in range(wanted.base, wanted.end) if not _is_free(port)]
     if taken:

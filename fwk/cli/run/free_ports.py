@@ -3,7 +3,7 @@
 import re
 from dataclasses import replace
 
-from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.launcher.machine import MachineError, check_ports
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -18,7 +18,7 @@ def on_free_ports(plan: Plan) -> Plan:
     """Returns the plan on the first free ports from its own on; its public bus moves along.
 
     Raises:
-        PortsInUse: no ports are free.
+        PortsInUseError: no ports are free.
     """
     ports = Ports.of(plan)
     length = -(-(ports.end - ports.base) // _BLOCK) * _BLOCK
@@ -29,10 +29,12 @@ def on_free_ports(plan: Plan) -> Plan:
         try:
             PortLock(Ports.of(moved), plan.name, moved.public_url).release()
             check_ports(moved)
-        except (PortsInUse, MachineError):
+        except (PortsInUseError, MachineError):
             continue
         return moved
-    raise PortsInUse(f"{plan.name}: no {length} free ports from {plan.bus_port} on; end another run, or say --bus-port")
+    raise PortsInUseError(
+        f"{plan.name}: no {length} free ports from {plan.bus_port} on; end another run, or say --bus-port"
+    )
 
 
 def _moved(url: str, number: int) -> str:

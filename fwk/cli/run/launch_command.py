@@ -26,7 +26,7 @@ from fwk.control.server import ControlNameError
 from fwk.display.keys import restore, terminal_settings
 from fwk.display.summary import introduction, summary
 from fwk.launcher.machine import MachineError, advice, check_machine
-from fwk.launcher.run import DebuggerMissing, PortsInUse, ProfilerMissing, RunOptions, run
+from fwk.launcher.run import DebuggerMissingError, PortsInUseError, ProfilerMissingError, RunOptions, run
 from fwk.lcm.event_log import LogError
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
@@ -35,7 +35,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 RUN_BROKEN = 1
 RECORDING = "log.lcm"
-NOT_BEGUN = (ControlNameError, DebuggerMissing, MachineError, PortsInUse, ProfilerMissing)
+NOT_BEGUN = (ControlNameError, DebuggerMissingError, MachineError, PortsInUseError, ProfilerMissingError)
 _RUN_NAME = re.compile(r"[A-Za-z][\w.-]{0,63}", re.ASCII)
 
 app = typer.Typer(add_completion=False, pretty_exceptions_enable=False)

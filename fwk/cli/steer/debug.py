@@ -12,8 +12,8 @@ import typer
 from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, ask, asking
 from fwk.control import client
 from fwk.control.client import ControlError, RefusedError
-from fwk.host.attach import NoPlace, Place
-from fwk.host.debugger import LEFT, DebuggerMissing, DebugRequest, check
+from fwk.host.attach import NoPlaceError, Place
+from fwk.host.debugger import LEFT, DebuggerMissingError, DebugRequest, check
 from fwk.host.terminal_guard import run_guarded
 from fwk.model.errors import PlanError, Problems, hint
 from fwk.model.plan import ComponentPlan, Plan
@@ -61,7 +61,7 @@ def _place(run: Mapping[str, Any], port: int, name: str, no_debugger: bool, debu
         problems.stop_if_any()
         if request:
             check(request)
-    except (PlanError, DebuggerMissing) as error:
+    except (PlanError, DebuggerMissingError) as error:
         raise RefusedError(str(error)) from error
     return Place(plan, component, os.readlink(f"/proc/{run['pid']}/cwd"), request, lambda: _take(port, name, request))
 
@@ -84,7 +84,7 @@ def _take(port: int, name: str, request: DebugRequest | None) -> dict[str, Any]:
     try:
         return ask(port, "take_place", WAIT_S, name=name, held=request is not None)
     except ControlError as error:
-        raise NoPlace(str(error)) from error
+        raise NoPlaceError(str(error)) from error
 
 
 def _end(code: int) -> str:

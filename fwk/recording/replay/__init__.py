@@ -1,1 +1,1 @@
-"""Replay: recorded inputs to real components, at the iterations that had them."""
+"""Replay: runs real components again on their recorded inputs."""

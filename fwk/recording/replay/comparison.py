@@ -1,4 +1,4 @@
-"""What a replay compares: recorded messages with those that the replayed components write."""
+"""Compares recorded messages with those that the replayed components write."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,7 +8,7 @@ from fwk.recording.difference import Difference, changed, missing
 
 
 class Comparison:
-    """Compares messages byte for byte, and keeps account of messages that the recording lacks."""
+    """Compares messages byte for byte, and keeps track of messages that the recording lacks."""
 
     def __init__(self) -> None:
         self.compared = 0

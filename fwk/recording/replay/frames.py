@@ -1,4 +1,4 @@
-"""Where components of a replay find camera frames: each those that it got in the run, whenever it is run here."""
+"""Camera frames of a replay: each component gets those that it got in the run."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,31 +8,31 @@ from fwk.component.images import Frame, Ring
 from fwk.recording.pictures import RecordedPicture
 from fwk.recording.replay.recording import RecordingError
 
-_HELD = 2  # of the iteration that a component is late with, and of its end
-_KEPT = 32  # nobody looks at frames older than the newest that it was told of
+_HELD = 2  # one for a late iteration, one for `finalize`
+_KEPT = 32  # components do not read frames older than the newest announced ones
 
 
 class FrameSource(Protocol):
     """Frames of one camera."""
 
     def take(self, number: int, size: int) -> Callable[[], Frame | None]:
-        """Frame `number` as it can be had now, to be called at any time."""
+        """Returns a function that gives frame `number` of `size` bytes as it is now, whenever it is called."""
 
 
 class RingFrames:
-    """Those that a camera gives out again in the replay."""
+    """Frames of a camera that is replayed."""
 
     def __init__(self, ring: Ring) -> None:
         self._ring = ring
 
     def take(self, number: int, size: int) -> Callable[[], Frame | None]:
-        """As of any source."""
+        """Returns a function that gives the frame as it is in the ring now."""
         pixels = self._ring.get(number, size)
         return lambda: pixels
 
 
 class RecordedFrames:
-    """Those that were recorded, in place of the camera."""
+    """Recorded frames of a camera."""
 
     def __init__(self, log: Path, channel: str) -> None:
         self._log = log
@@ -41,13 +41,16 @@ class RecordedFrames:
         self._decoded: tuple[int, Frame] | None = None
 
     def add(self, picture: RecordedPicture) -> None:
-        """The next one."""
+        """Adds the next recorded frame."""
         self._pictures[picture.frame] = picture
         if len(self._pictures) > _KEPT:
             del self._pictures[min(self._pictures)]
 
     def take(self, number: int, size: int) -> Callable[[], Frame | None]:
-        """As of any source; what it returns raises RecordingError if the frame is not in the recording, or damaged."""
+        """Returns a function that gives the frame.
+
+        The function raises RecordingError if the frame is damaged or was not recorded.
+        """
         picture = self._pictures.get(number)
         return lambda: self._pixels(number, size, picture)
 
@@ -66,7 +69,7 @@ class RecordedFrames:
 
 
 class View:
-    """A camera as one start of a component sees it: without the frames that it missed in the run."""
+    """View of a camera for one life of a component, without the frames that it lost in the run."""
 
     def __init__(self, source: FrameSource) -> None:
         self._source = source
@@ -74,17 +77,17 @@ class View:
         self._held: dict[int, Callable[[], Frame | None]] = {}
 
     def miss(self, number: int) -> None:
-        """In the run this frame was overwritten before the component read it."""
+        """Keeps a frame from the component: in the run it was overwritten before the component read it."""
         self._missed.add(number)
 
     def hold(self, number: int, size: int) -> None:
-        """The component got this frame now, but is run later."""
+        """Keeps a frame for an iteration that runs later."""
         self._held[number] = self._source.take(number, size)
         while len(self._held) > _HELD:
             del self._held[min(self._held)]
 
     def get(self, number: int, size: int) -> Frame | None:
-        """As of a ring."""
+        """Returns the frame, as a ring does."""
         if number in self._missed:
             return None
         return (self._held.get(number) or self._source.take(number, size))()

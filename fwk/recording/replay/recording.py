@@ -38,19 +38,19 @@ _OF_A_HOST = (StageDone, IterationDone, FinalDone, HostStarted, HostLost, HostLa
 
 
 class RecordingError(Exception):
-    """A log that cannot be replayed; says which and why."""
+    """A log cannot be replayed; names the log and the reason."""
 
 
 @dataclass(frozen=True)
 class RecordedTick:
-    """One tick: what the main loop did, and the messages that became visible in it."""
+    """A tick: its events, and the messages that became visible in it."""
 
     record: tick_record_t
     events: list[TickEvent]
     messages: dict[tuple[str, int, int], list[bytes]]
     """By channel and the (tick, stage) in which they were written, oldest first."""
     frames: list[RecordedPicture]
-    """Of the cameras whose frames are recorded."""
+    """Frames of cameras whose frames are recorded."""
 
 
 class Recording:
@@ -65,11 +65,11 @@ class Recording:
 
     @property
     def skipped_bytes(self) -> int:
-        """How many bytes the newest reading passed over; only at the end of the log, where a run was cut off."""
+        """Number of bytes that the last reading skipped: at the end of a log whose run was cut off."""
         return self._reader.skipped_bytes
 
     def ticks(self, to_tick: int | None = None, types: Mapping[str, bytes] | None = None) -> Iterator[RecordedTick]:
-        """All ticks, in order, until `to_tick` if one is given.
+        """Yields all ticks in order, up to `to_tick` if given.
 
         Raises:
             RecordingError: the log is damaged before that, or lacks messages, or a message of a channel in `types`
@@ -101,7 +101,7 @@ class Recording:
 
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes
-        cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or somebody took them out"
+        cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or they were removed"
         before = f"; replay what is before it with --to-tick {tick}" if tick else ""
         return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
 
@@ -109,11 +109,11 @@ class Recording:
         if marked(event.data[:8]) == expected:
             return (
                 f"{self.path}: {event.channel} has a message without the stamp that says what readers saw of it when; "
-                "it was not in a run of ours, or somebody took the stamp out"
+                "fwk did not record it, or the stamp was removed"
             )
         return (
-            f"{self.path}: {event.channel} has a message that is no {self._type_of(event.channel)} as it is now; the "
-            ".lcm file was changed since (the run directory keeps the one of the run), or the log is damaged"
+            f"{self.path}: {event.channel} has a message that is not a {self._type_of(event.channel)} as it is now; "
+            "the .lcm file was changed since (the run directory keeps the one of the run), or the log is damaged"
         )
 
     def _type_of(self, name: str) -> str:

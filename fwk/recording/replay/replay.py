@@ -100,12 +100,12 @@ class Replay:
 
     @property
     def compared(self) -> int:
-        """How many messages were compared."""
+        """Number of messages that were compared."""
         return self._comparison.compared
 
     @property
     def differences(self) -> list[Difference]:
-        """Where the replay differs from the recording."""
+        """Differences between the replay and the recording."""
         return self._comparison.differences
 
     @property

@@ -1,4 +1,4 @@
-"""Which components a replay runs: those asked for, the cameras that they need, none that cannot be run again."""
+"""Selects the components of a replay: those asked for and their cameras, if they can be run again."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -15,18 +15,18 @@ from fwk.recording.replay.recording import Recording, RecordingError
 
 @dataclass
 class Choice:
-    """Components of a recording by index."""
+    """Selected components of a recording, by index."""
 
     components: set[int] = field(default_factory=set)
     left_out: dict[int, str] = field(default_factory=dict)
-    """Those asked for that cannot be run, each with the reason."""
+    """Components that were asked for and cannot be run, each with the reason."""
 
 
 def choose(recording: Recording, only: Sequence[str]) -> Choice:
-    """Those that `only` means, by name or pattern, or all; who looks at frames that are not recorded gets its camera.
+    """Selects components by name or pattern, or all, and the cameras of frames that are not recorded.
 
     Raises:
-        RecordingError: a pattern means nobody, or nobody who can be run again.
+        RecordingError: a pattern matches no component, or none that can be run again.
     """
     choosing = _Choosing(recording)
     asked = [choosing.meant(pattern) for pattern in only] or [{each.index for each in recording.plan.components}]
@@ -40,7 +40,7 @@ def choose(recording: Recording, only: Sequence[str]) -> Choice:
 
 
 def unrepeatable(component: ComponentPlan, settings: Any) -> str:
-    """Why a component cannot be run again with these settings; nothing: it can."""
+    """Returns why a component cannot be run again with these settings; empty: it can."""
     declared = _declaration(component)
     try:
         return declared.component.unrepeatable(declared.config.model_validate(settings))
@@ -84,7 +84,7 @@ class _Choosing:
         for channel, camera in cameras.items():
             if reason := self._reason(camera):
                 return (
-                    f"it looks at {channel}, whose frames are not recorded ('record: {{frames: {channel}}}' in the "
+                    f"it reads {channel}, whose frames are not recorded ('record: {{frames: {channel}}}' in the "
                     f"launch file does), and {self._components[camera].name} cannot be run again: {reason}"
                 )
         return ""
@@ -94,7 +94,7 @@ class _Choosing:
         return found
 
     def _cameras(self, index: int) -> dict[str, int]:
-        """Channels of frames that a component looks at and that are not recorded, with their cameras."""
+        """Returns the channels of unrecorded frames that a component reads, each with the index of its camera."""
         component = self._components[index]
         declared = self._with_place(index, _declaration)
         looks = [port.attribute for port in declared.ports if port.images and not port.writes]
@@ -108,8 +108,8 @@ class _Choosing:
             return find(component)
         except Exception as error:
             raise RecordingError(
-                f"{self._recording.path}: {component.name}: {component.module}:{component.class_name} cannot be had "
-                f"any more: {type(error).__name__}: {error}"
+                f"{self._recording.path}: {component.name}: {component.module}:{component.class_name} cannot be "
+                f"imported any more: {type(error).__name__}: {error}"
             ) from error
 
 

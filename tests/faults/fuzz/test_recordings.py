@@ -228,5 +228,5 @@ def test_a_record_of_another_version_is_named(log: Path) -> None:
 
 def test_a_component_that_no_longer_exists_is_named(log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(f"{__name__}.Thinker")
-    with pytest.raises(RecordingError, match=r"r/thinker: .*:Thinker cannot be had any more: AttributeError"):
+    with pytest.raises(RecordingError, match=r"r/thinker: .*:Thinker cannot be imported any more: AttributeError"):
         Replay(Recording(log), ["r/thinker"])

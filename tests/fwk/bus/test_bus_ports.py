@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from fwk.bus.port_lock import PortLock, PortsInUse
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.model.ports import Ports
 from tests.harness.runs import PortBlock
 
@@ -21,7 +21,7 @@ def test_no_port_has_two_uses() -> None:
 def test_second_run_on_the_same_ports_says_what_to_type(ports: PortBlock) -> None:
     lock, overlapping = PortLock(Ports(ports.bus, 5, 5), "soccer.yaml"), Ports(ports.bus + 10, 5, 5)
     told = rf"second.yaml: ports {overlapping.base} .*another run \(pid \d+: .*--bus-port \d+"
-    with pytest.raises(PortsInUse, match=told):
+    with pytest.raises(PortsInUseError, match=told):
         PortLock(overlapping, "second.yaml")
     lock.release()
     PortLock(overlapping, "second.yaml").release()
@@ -31,7 +31,7 @@ def test_two_runs_do_not_mirror_to_the_same_public_bus(ports: PortBlock) -> None
     bus, other = ports.public_url, PortBlock()
     lock = PortLock(Ports(ports.bus, 5, 5), "soccer.yaml", bus)
     told = f"second.yaml: the public bus {re.escape(bus.partition('?')[0])} .*another public_url"
-    with pytest.raises(PortsInUse, match=told):
+    with pytest.raises(PortsInUseError, match=told):
         PortLock(Ports(other.bus, 5, 5), "second.yaml", bus.replace("ttl=0", "ttl=1"))
     lock.release()
     other.release()

@@ -40,7 +40,7 @@ def plan(spare_channels: int = 8) -> Plan:
 
 
 def begun(spare_channels: int = 8) -> ChannelGrants:
-    """With everybody there."""
+    """Returns grants with all components present."""
     made = ChannelGrants(plan(spare_channels))
     for component in (A, B, READER):
         made.came(component, 1)

@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from fwk import Component, Writes
-from fwk.host.debugger import DebuggerMissing, DebugRequest, check
+from fwk.host.debugger import DebuggerMissingError, DebugRequest, check
 from fwk.testing.plans import plan_of
 from lcmtypes.robot import imu_t
 
@@ -18,5 +18,5 @@ class Senses(Component):
 def test_missing_debugger_is_named_with_what_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "debugpy", None)
     component = plan_of({"r/senses": Senses}).components[0]
-    with pytest.raises(DebuggerMissing, match="pip install debugpy"):
+    with pytest.raises(DebuggerMissingError, match="pip install debugpy"):
         check(DebugRequest(0, component, debugpy_port=5678))

@@ -88,7 +88,7 @@ def test_display_gets_all_lines_and_the_newest_state() -> None:
     theirs.close()
 
 
-def test_a_display_that_does_not_read_holds_up_nobody() -> None:
+def test_a_display_that_does_not_read_delays_no_process() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     display = Display(PLAN, ours)
     for _ in range(10_000):

@@ -39,7 +39,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 class Stranger:
-    """A socket that belongs to nobody in the run."""
+    """Opens a socket that belongs to no process of the run."""
 
     def __init__(self, address: str = LOOPBACK, port: int = 0) -> None:
         self._socket = socket.socket(AF_INET, socket.SOCK_DGRAM)
@@ -139,7 +139,7 @@ class Ears:
 
 
 def assert_unharmed(run: Launched, folder: Path, reference: Path) -> None:
-    """The run ends well, with the messages of one that nobody disturbed, and without a process that failed."""
+    """The run ends well, with the messages of an undisturbed run, and without a process that failed."""
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") == ""
     assert "Traceback" not in run.text

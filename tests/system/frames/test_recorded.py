@@ -53,7 +53,7 @@ def test_replay_without_frames_skips_device_and_its_readers(launch: Launch, eyes
     record(launch)
     said = replayed(eyes)
     assert "not replayed: r/camera: 'the eye' is a device" in said
-    assert "not replayed: a/watcher: it looks at r/image, whose frames are not recorded" in said
+    assert "not replayed: a/watcher: it reads r/image, whose frames are not recorded" in said
     assert "equal: 120 messages" in said  # of the grey camera, who looks at it, and the follower
     assert "cannot be replayed: a/watcher" in fwk(eyes, "replay", "log.lcm", "--only", "a/watcher", code=2)
     assert "is a device" in fwk(eyes, "replay", "log.lcm", "--only", "r/camera", code=2)

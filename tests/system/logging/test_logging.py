@@ -85,7 +85,7 @@ def test_exceptions_have_traceback_component_and_tick(talk: Callable[..., Launch
     assert run.wait() == 1, run.text
     thread, failure = [line for line in lines_of(run) if line["level"] == "error"]
     assert (thread["tick"], thread["file"]) == (3, "talker.py")
-    assert thread["text"].startswith("thread aside ends by an exception that nobody caught\nTraceback")
+    assert thread["text"].startswith("thread aside ends with an uncaught exception\nTraceback")
     assert thread["text"].endswith("ZeroDivisionError: division by zero")
     assert (failure["tick"], failure["file"]) == (7, "talker.py")
     assert re.match("failed in loop, tick 7\nTraceback (.|\n)*RuntimeError: not this tick$", failure["text"])
