@@ -151,4 +151,4 @@ def test_frames_lost_on_a_full_disk_are_reported(
 def test_recording_frames_of_an_unknown_camera_is_a_mistake(launch: Launch, eyes: Path) -> None:
     wants(eyes, "record: {frames: r/imgae}")
     said = fwk(eyes, "check", "eyes.yaml", code=2)
-    assert "record: no camera gives out 'r/imgae'; did you mean 'r/image'?" in said
+    assert "record: no camera publishes 'r/imgae'; did you mean 'r/image'?" in said
