@@ -18,7 +18,7 @@ def truth() -> ground_truth_t:
 
 
 @pytest.mark.parametrize(("columns", "rows"), [(35, 13), (53, 30), (88, 34), (40, 5)])
-def test_it_fits_and_shows_everything(columns: int, rows: int) -> None:
+def test_drawing_fits_and_shows_everything(columns: int, rows: int) -> None:
     lines = ["".join(text for text, _ in line) for line in field_drawing(truth(), columns, rows)]
     assert 0 < len(lines) <= rows
     assert {len(line) for line in lines} == {len(lines[0])}

@@ -7,28 +7,28 @@ from tests.procs.behaviour.behaviour_parts import FIELD, robot
 BALL = Point(6.0, 0.0)
 
 
-def test_an_empty_goal_is_aimed_at_in_its_middle() -> None:
+def test_empty_goal_is_aimed_at_in_its_middle() -> None:
     best = aim.best_shot(BALL, [], FIELD)
     assert abs(best.place.y_m) < 0.1
     assert best.free_rad > 0.15
 
 
-def test_the_corner_away_from_the_keeper_is_chosen() -> None:
+def test_corner_away_from_the_keeper_is_chosen() -> None:
     assert aim.best_shot(BALL, [robot("", 10.5, 0.4)], FIELD).place.y_m < -0.4
     assert aim.best_shot(BALL, [robot("", 10.5, -0.4)], FIELD).place.y_m > 0.4
 
 
-def test_a_robot_before_the_ball_leaves_no_room() -> None:
+def test_robot_before_the_ball_leaves_no_room() -> None:
     assert aim.best_shot(BALL, [robot("", 6.5, 0.0)], FIELD).free_rad < 0.0
 
 
-def test_robot_behind_ball_or_beyond_target_is_no_obstacle() -> None:
+def test_robot_behind_ball_or_beyond_target_does_not_count() -> None:
     free_rad = aim.lane_rad(BALL, Point(9.0, 0.0), [])
     assert aim.lane_rad(BALL, Point(9.0, 0.0), [robot("", 3.0, 0.0), robot("", 10.0, 0.0)]) > 1.0
     assert free_rad > 3.0
 
 
-def test_a_robot_far_down_the_way_counts_as_wider() -> None:
+def test_robot_far_down_the_way_counts_as_wider() -> None:
     slow = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=4.0)
     fast = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=12.0)
     assert slow < 0.0 < fast
@@ -48,13 +48,13 @@ def test_passes_go_forward_past_opponents() -> None:
     assert back.place == behind.place
 
 
-def test_a_pass_leads_a_running_mate() -> None:
+def test_pass_leads_a_running_mate() -> None:
     runner = robot("cyan3", 4.0, 0.0)._replace(velocity_m_s=Point(0.0, 2.0))
     best = aim.best_pass(robot("cyan2", 0.0, 0.0), [runner], [])
     assert best is not None
     assert best.place == (4.0, 1.0)
 
 
-def test_nobody_at_a_useful_distance_gets_no_pass() -> None:
+def test_no_robot_at_a_useful_distance_gets_no_pass() -> None:
     player = robot("cyan2", 0.0, 0.0)
     assert aim.best_pass(player, [robot("cyan3", 1.0, 0.0), robot("cyan4", 10.0, 0.0)], []) is None

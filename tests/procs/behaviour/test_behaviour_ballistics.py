@@ -12,7 +12,7 @@ from procs.simulation.physics.settings import BallSettings
 
 
 @pytest.mark.parametrize("distance_m", [3.0, 6.0, 9.0])
-def test_a_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
+def test_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
     friction, way_m, step_s = RollingFriction(BallSettings()), 0.0, 0.001
     speed_m_s = ballistics.kick_speed_m_s(distance_m, 2.0)
     while way_m < distance_m:
@@ -21,7 +21,7 @@ def test_a_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
     assert speed_m_s == pytest.approx(2.0, abs=0.05)
 
 
-def test_a_rolling_ball_is_foreseen() -> None:
+def test_rolling_ball_is_foreseen() -> None:
     friction, x_m, speed_m_s = RollingFriction(BallSettings()), 0.0, 2.0
     friction.roll(2.0, 0.0)
     for _ in range(2000):
@@ -37,20 +37,20 @@ def test_ways_and_times_fit() -> None:
         assert ballistics.way_m(ballistics.reach_s(distance_m)) == pytest.approx(distance_m)
 
 
-def test_a_resting_ball_is_met_where_it_lies() -> None:
+def test_meeting_with_a_resting_ball_is_at_the_ball() -> None:
     meeting = ballistics.meet(Ball(known=True, place=Point(3.0, 4.0)), Point(0.0, 0.0))
     assert meeting.place == (3.0, 4.0)
     assert meeting.time_s == pytest.approx(ballistics.reach_s(5.0 - 0.33))
 
 
-def test_a_passing_ball_is_met_ahead_of_it_in_time() -> None:
+def test_meeting_with_a_passing_ball_is_ahead_of_it() -> None:
     ball = Ball(known=True, place=Point(-4.0, 1.0), velocity_m_s=Point(2.5, 0.0))
     meeting = ballistics.meet(ball, Point(0.0, 0.0))
     assert -1.0 < meeting.place.x_m < 0.5
     assert ballistics.reach_s(math.dist(meeting.place, (0.0, 0.0)) - 0.33) <= meeting.time_s
 
 
-def test_a_ball_that_outruns_the_robot_is_met_at_the_end() -> None:
+def test_ball_that_outruns_the_robot_is_met_at_the_end() -> None:
     ball = Ball(known=True, place=Point(5.0, 0.0), velocity_m_s=Point(6.0, 0.0))
     meeting = ballistics.meet(ball, Point(0.0, 0.0))
     assert meeting.place == ballistics.ball_after(ball, 4.0)

@@ -65,28 +65,28 @@ def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
     assert state.distance_m == pytest.approx(5.0)
 
 
-def test_the_navigator_turns_the_short_way() -> None:
+def test_navigator_turns_the_short_way() -> None:
     assert newest(navigate(3, heading_rad=math.pi), "motor_command").omega_rad_s > 0
     assert newest(navigate(3, heading_rad=-math.pi * 0.4), "motor_command").omega_rad_s < 0
 
 
-def test_the_navigator_reports_its_arrival() -> None:
+def test_navigator_reports_its_arrival() -> None:
     assert newest(navigate(x_m=0.02, heading_rad=math.pi / 2), "navigator_state").arrived
 
 
-def test_the_navigator_keeps_the_speed_limit_of_the_target() -> None:
+def test_navigator_keeps_the_speed_limit_of_the_target() -> None:
     command = newest(navigate(60, x_m=8.0, heading_rad=math.pi / 2, speed_m_s=0.8), "motor_command")
     assert math.hypot(command.vx_m_s, command.vy_m_s) == pytest.approx(0.8)
 
 
-def test_a_robot_that_is_lost_stands_still_and_says_so() -> None:
+def test_robot_that_is_lost_stands_still_and_says_so() -> None:
     bench = navigate(5, localized=False, x_m=5.0)
     command = newest(bench, "motor_command")
     assert (command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (0.0, 0.0, 0.0)
     assert newest(bench, "navigator_state").error == navigator_state_t.LOST
 
 
-def test_an_old_target_is_braked_to_a_standstill() -> None:
+def test_old_target_is_braked_to_a_standstill() -> None:
     bench = navigate(10, x_m=5.0, heading_rad=math.pi / 2)
     fast = newest(bench, "motor_command").vy_m_s
     for _ in range(30):
@@ -96,7 +96,7 @@ def test_an_old_target_is_braked_to_a_standstill() -> None:
     assert newest(bench, "motor_command").vy_m_s == 0.0
 
 
-def test_an_opponent_in_the_way_is_driven_around() -> None:
+def test_opponent_in_the_way_is_driven_around() -> None:
     bench = Bench(Navigator, "cyan2/navigator")
     for avoid in (True, False):
         for _ in range(20):
@@ -124,7 +124,7 @@ def test_both_teams_decide_alike(robot: str, sign: float) -> None:
     assert newest(bench, "role").role == "attacker"
 
 
-def test_the_agent_numbers_commands_and_repeats_an_unchanged_one() -> None:
+def test_agent_numbers_commands_and_repeats_an_unchanged_one() -> None:
     bench = Bench(Agent, "cyan2/agent")
     for x_m in (3.0, 3.0, 3.5):
         put_situation(bench, ball=seen_ball(x_m, 0.0))
@@ -132,7 +132,7 @@ def test_the_agent_numbers_commands_and_repeats_an_unchanged_one() -> None:
     assert [command.command_id for command in bench.port("skill_command").sent] == [1, 1, 2]
 
 
-def test_the_agent_asks_again_when_a_skill_has_failed() -> None:
+def test_agent_asks_again_when_a_skill_has_failed() -> None:
     bench = Bench(Agent, "cyan2/agent")
     for status in (skill_status_t.RUNNING, skill_status_t.FAILED, skill_status_t.RUNNING):
         put_situation(bench, ball=seen_ball(3.0, 0.0))
@@ -142,7 +142,7 @@ def test_the_agent_asks_again_when_a_skill_has_failed() -> None:
 
 
 @pytest.mark.parametrize(("robot", "sign"), [("cyan2", 1.0), ("magenta2", -1.0)])
-def test_the_skiller_speaks_in_the_world_frame(robot: str, sign: float) -> None:
+def test_skiller_speaks_in_the_world_frame(robot: str, sign: float) -> None:
     bench = Bench(Skiller, f"{robot}/skiller")
     put_situation(bench)
     bench.port("skill_command").put(command_id=1, skill="mark", x_m=sign * -5.0)
@@ -212,7 +212,7 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
             assert abs(command.omega_rad_s) <= 5.1
 
 
-def test_a_stopped_navigator_leaves_the_motors_off() -> None:
+def test_stopped_navigator_leaves_the_motors_off() -> None:
     bench = navigate(5, x_m=5.0, heading_rad=math.pi / 2)
     bench.finalize()
     command = newest(bench, "motor_command")

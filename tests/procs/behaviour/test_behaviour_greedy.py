@@ -16,7 +16,7 @@ PLAY = Game(State.PLAY, stopped=False)
 OTHERS = (robot("cyan3", -4.0, 2.0),)
 
 
-def test_nearest_robot_chases_and_the_others_stay_behind_the_ball() -> None:
+def test_nearest_robot_chases_and_others_stay_behind_the_ball() -> None:
     near = view(robot("cyan2", 0.0, 0.0), ball(2.0, 0.0), OTHERS)
     role, order = decide(near, PLAY, False, FIELD)
     assert (role, order.skill, order.place) == ("attacker", "get_ball", (2.0, 0.0))

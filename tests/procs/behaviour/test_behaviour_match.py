@@ -76,7 +76,7 @@ def test_ten_robots_play_by_the_rules_and_score() -> None:
     assert len({event.robot for event in events if event.kind == match_event_t.KICK}) >= 3
 
 
-def test_the_keeper_saves_shots_that_it_can_reach() -> None:
+def test_keeper_saves_shots_that_it_can_reach() -> None:
     for y_m in (-0.8, 0.0, 0.8):
         system = match(["cyan1", "cyan2"], 1, {}, starts={"cyan2": (9.0, 6.0, 0.0)})
         system.tick(120)  # until the kick-off runs, so that goals count
@@ -87,7 +87,7 @@ def test_the_keeper_saves_shots_that_it_can_reach() -> None:
         assert states[-1].score_magenta == 0, f"shot at {y_m} m"
 
 
-def test_the_same_seed_gives_the_same_match_byte_by_byte() -> None:
+def test_same_seed_gives_the_same_match_byte_by_byte() -> None:
     robots = team("cyan", 2) + team("magenta", 2)
     first, second = (match(robots, 5, NOISE) for _ in range(2))
     for system in (first, second):

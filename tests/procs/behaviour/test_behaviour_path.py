@@ -10,19 +10,19 @@ from procs.model.field import Point
 START, TARGET = Point(0.0, 0.0), Point(4.0, 0.0)
 
 
-def test_a_free_way_is_straight() -> None:
+def test_free_way_is_straight() -> None:
     way = find_way(START, TARGET, [Disc(Point(2.0, 1.0), 0.6), Disc(Point(-1.0, 0.0), 0.6)])
     assert (way.direction_rad, way.length_m, way.blocked) == (0.0, 4.0, False)
 
 
 @pytest.mark.parametrize(("y_m", "side"), [(0.1, -1.0), (-0.1, 1.0)])
-def test_a_disc_is_passed_on_the_shorter_side(y_m: float, side: float) -> None:
+def test_disc_is_passed_on_the_shorter_side(y_m: float, side: float) -> None:
     way = find_way(START, TARGET, [Disc(Point(2.0, y_m), 0.6)])
     assert way.direction_rad * side > 0
     assert 4.0 < way.length_m < 4.4
 
 
-def test_a_robot_that_began_to_pass_on_one_side_stays_there() -> None:
+def test_robot_that_began_to_pass_on_one_side_stays_there() -> None:
     disc = Disc(Point(2.0, 0.02), 0.6)
     assert find_way(START, TARGET, [disc]).direction_rad < 0
     assert find_way(START, TARGET, [disc], before_rad=0.3).direction_rad > 0
@@ -33,14 +33,14 @@ def test_two_overlapping_discs_are_passed_as_one() -> None:
     assert way.direction_rad > 0
 
 
-def test_a_way_out_of_a_closed_ring_is_not_invented() -> None:
+def test_way_out_of_a_closed_ring_is_not_invented() -> None:
     ring = [Disc(Point(math.cos(turn), math.sin(turn)), 0.6) for turn in (index * math.pi / 4 for index in range(8))]
     way = find_way(START, TARGET, ring)
     assert way.blocked
     assert way.free_m < 0.5
 
 
-def test_a_target_in_a_disc_is_approached_from_outside() -> None:
+def test_target_in_a_disc_is_approached_from_outside() -> None:
     way = find_way(START, Point(1.7, 0.0), [Disc(Point(2.0, 0.0), 0.6)])
     assert not way.blocked
     assert way.direction_rad == 0.0

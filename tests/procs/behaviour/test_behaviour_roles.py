@@ -62,7 +62,7 @@ def test_attacker_keeps_its_role_against_a_barely_faster_mate() -> None:
     assert assign(view(new, ball(0.0, 0.0), (far, keeper)), FIELD)["cyan2"].role == ATTACKER
 
 
-def test_who_meets_a_rolling_ball_first_attacks() -> None:
+def test_first_robot_at_a_rolling_ball_attacks() -> None:
     behind, ahead = robot("cyan2", -1.0, 0.0), robot("cyan3", 4.0, 0.5)
     jobs = assign(view(behind, ball(0.0, 0.0, 3.0, 0.0), (ahead, TEAM[0])), FIELD)
     assert jobs["cyan3"].role == ATTACKER
@@ -81,7 +81,7 @@ def test_supporter_changes_its_flank_only_for_a_clear_ball() -> None:
         assert jobs["cyan5"].place.y_m * flank > 0
 
 
-def test_a_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
+def test_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
     lost = View(localized=False, own=TEAM[1], ball=ball(0.0, 0.0), mates=(TEAM[0], TEAM[2]))
     assert set(assign(lost, FIELD)) == {"cyan1", "cyan3"}
 
@@ -109,7 +109,7 @@ def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot
 
 
 @pytest.mark.parametrize("own", [Point(-2.0, 5.0), Point(-1.0, 1.0), Point(2.0, 0.0)])
-def test_the_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
+def test_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(0.0, 0.0))
     place = Point(-2.0, -5.0)
     distances_m = [math.dist(own, game.spot)]

@@ -64,7 +64,7 @@ def test_get_ball_fails_without_a_ball() -> None:
     assert "ball" in step.reason
 
 
-def test_a_set_pieces_ball_is_taken_from_behind() -> None:
+def test_set_pieces_ball_is_taken_from_behind() -> None:
     beside = view(robot("cyan2", 0.0, 1.0), ball(0.0, 0.0))
     staging = drive(GetBall().step(scene(beside, set_piece=True)))
     assert staging.place.x_m < -0.5
@@ -80,7 +80,7 @@ def test_ball_of_an_opponent_is_attacked_from_own_goal_side() -> None:
     assert tackle.heading_rad == pytest.approx(0.0, abs=0.01)
 
 
-def test_a_rolling_ball_is_faced_where_it_comes_from() -> None:
+def test_rolling_ball_is_faced_where_it_comes_from() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), ball(3.0, 1.0, 0.0, -2.0))
     assert drive(GetBall().step(scene(seen))).heading_rad == pytest.approx(math.atan2(1.0, 3.0))
 
@@ -120,7 +120,7 @@ def test_shoot_waits_for_the_charge() -> None:
     assert Shoot().step(held._replace(charged=False)).kick_m_s == 0.0
 
 
-def test_a_kick_allows_for_the_robots_own_motion() -> None:
+def test_kick_allows_for_the_robots_own_motion() -> None:
     moving = OWN._replace(velocity_m_s=Point(0.0, 1.0))
     turn = drive(Shoot().step(scene(view(moving, ball(0.33, 0.0)), holds_ball=True)))
     assert -0.2 < turn.heading_rad < -0.05
@@ -134,7 +134,7 @@ def test_kick_that_the_kicker_ignores_is_requested_again() -> None:
     assert max(later) > 0
 
 
-def test_a_pass_is_softer_the_nearer_the_mate_is() -> None:
+def test_pass_is_softer_the_nearer_the_mate_is() -> None:
     near, far = (Pass().step(scene(view(OWN, ball(0.33, 0.0)), x_m, holds_ball=True)).kick_m_s for x_m in (3.0, 8.0))
     assert 2.5 < near < far < 7.0
 
@@ -145,7 +145,7 @@ def test_aiming_without_end_fails() -> None:
 
 
 @pytest.mark.parametrize(("vy_m_s", "crossing_m"), [(0.0, 0.5), (-1.0, -1.05), (-4.0, None)])
-def test_the_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, crossing_m: float | None) -> None:
+def test_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, crossing_m: float | None) -> None:
     keeper = robot("cyan1", -10.5, 0.0)
     place = drive(KeepGoal().step(scene(view(keeper, ball(-5.0, 0.5, -3.0, vy_m_s))))).place
     assert -11.0 < place.x_m < -10.3
@@ -172,13 +172,13 @@ def test_machine_moves_a_running_skill_and_restarts_an_ended_one() -> None:
     assert drive(machine.step(4, "goto", scene(seen, 2.0))).place.x_m == 2.0
 
 
-def test_an_ended_skill_stops_the_robot_and_keeps_the_ball() -> None:
+def test_ended_skill_stops_the_robot_and_keeps_the_ball() -> None:
     machine, held = Machine(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
     steps = [machine.step(1, "get_ball", held) for _ in range(4)]
     assert [(step.status, step.drive, step.dribble) for step in steps[2:]] == [(Status.FINAL, None, True)] * 2
 
 
-def test_a_skill_that_does_not_exist_fails_and_says_which_do() -> None:
+def test_skill_that_does_not_exist_fails_and_says_which_do() -> None:
     step = Machine().step(1, "juggle", scene(view(OWN, FAR_BALL)))
     assert step.status is Status.FAILED
     assert "juggle" in step.reason

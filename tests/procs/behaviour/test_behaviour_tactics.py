@@ -29,22 +29,22 @@ def with_ball(x_m: float, y_m: float, *opponents: Robot, mates: tuple[Robot, ...
 
 @pytest.mark.parametrize("state", [State.FROZEN, State.HALF_TIME])
 @pytest.mark.parametrize("role", [GOALKEEPER, ATTACKER, DEFENDER])
-def test_in_a_pause_everybody_stands_still(state: State, role: str) -> None:
+def test_robots_stand_still_in_a_pause(state: State, role: str) -> None:
     seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))
     assert decide(seen, Game(state, stopped=True), role).skill == "stop"
 
 
-def test_a_robot_that_is_lost_stands_still() -> None:
+def test_robot_that_is_lost_stands_still() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))._replace(localized=False)
     assert decide(seen).skill == "stop"
 
 
-def test_the_attacker_gets_a_free_ball() -> None:
+def test_attacker_gets_a_free_ball() -> None:
     order = decide(view(robot("cyan2", -2.0, 0.0), ball(1.0, 0.0)))
     assert (order.skill, order.place) == ("get_ball", (1.0, 0.0))
 
 
-def test_the_attacker_intercepts_a_ball_that_comes_its_way() -> None:
+def test_attacker_intercepts_a_ball_that_comes_its_way() -> None:
     assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -3.0, 0.0))).skill == "intercept"
     assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, 3.0, 0.0))).skill == "get_ball"
 
@@ -56,29 +56,29 @@ def test_open_goal_is_shot_beside_the_keeper() -> None:
     assert abs(order.place.y_m) > 0.4
 
 
-def test_far_from_the_goal_it_dribbles_towards_it() -> None:
+def test_robot_far_from_the_goal_dribbles_towards_the_goal() -> None:
     order = decide(with_ball(-3.0, 4.0), holds_ball=True)
     assert order.skill == "dribble"
     assert order.place.x_m > -1.0
     assert abs(order.place.y_m) < 4.0
 
 
-def test_from_the_own_half_it_does_not_shoot() -> None:
+def test_robot_in_the_own_half_does_not_shoot() -> None:
     assert decide(with_ball(-0.5, 0.0), holds_ball=True).skill == "dribble"
 
 
-def test_under_pressure_it_passes_to_a_free_mate_ahead() -> None:
+def test_robot_under_pressure_passes_to_a_free_mate_ahead() -> None:
     mate = robot("cyan3", 3.0, 3.0, role=SUPPORTER)
     pressed = with_ball(-2.0, 0.0, robot("", -1.2, -0.2), mates=(mate,))
     assert decide(pressed, holds_ball=True).skill == "pass"
     assert decide(with_ball(-2.0, 0.0, mates=(mate,)), holds_ball=True).skill == "dribble"
 
 
-def test_who_keeps_the_ball_too_long_clears_it() -> None:
+def test_robot_that_keeps_the_ball_too_long_clears_the_ball() -> None:
     assert decide(with_ball(-2.0, 0.0), holds_ball=True, ticks=140)[:1] == ("shoot",)
 
 
-def test_a_shot_once_begun_keeps_its_target() -> None:
+def test_shot_once_begun_keeps_its_target() -> None:
     tactics, seen = Tactics(FIELD), with_ball(7.0, 0.0)
     first = tactics.decide(seen, PLAY, job(ATTACKER), True, 0.05)
     moved = seen._replace(opponents=(robot("", 10.5, 0.1 if first.place.y_m > 0 else -0.1),))
@@ -100,7 +100,7 @@ def test_kick_off_taker_stays_in_its_half_before_a_back_pass() -> None:
     assert order.place.x_m < -0.25
 
 
-def test_the_set_piece_is_played_to_a_mate() -> None:
+def test_set_piece_is_played_to_a_mate() -> None:
     game = Game(State.THROW_IN, stopped=False, whose=Whose.OURS, spot=Point(0.0, 6.9))
     mates = (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
     seen = view(robot("cyan2", 0.0, 6.9, -math.pi / 2), ball(0.0, 6.6), mates)
@@ -110,7 +110,7 @@ def test_the_set_piece_is_played_to_a_mate() -> None:
 
 
 @pytest.mark.parametrize("stopped", [True, False])
-def test_at_a_set_piece_of_the_others_everybody_keeps_away(stopped: bool) -> None:
+def test_robots_keep_away_at_the_other_teams_set_piece(stopped: bool) -> None:
     game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
     for role in (ATTACKER, SUPPORTER, DEFENDER):
         order = decide(view(robot("cyan2", -3.0, 0.0), ball(-3.0, 1.0)), game, role)
@@ -118,7 +118,7 @@ def test_at_a_set_piece_of_the_others_everybody_keeps_away(stopped: bool) -> Non
         assert math.dist(order.place, game.spot) >= 3.0
 
 
-def test_the_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
+def test_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
     keeper = robot("cyan1", -10.5, 0.0, role=GOALKEEPER)
     far = robot("", 0.0, 0.0)
     assert decide(view(keeper, ball(-5.0, 0.0), (), (far,)), role=GOALKEEPER).skill == "keep_goal"
@@ -129,18 +129,18 @@ def test_the_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
     assert decide(view(keeper, ball(-10.2, 0.0), (), (far,)), role=GOALKEEPER, holds_ball=True).skill == "shoot"
 
 
-def test_the_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
+def test_attacker_leaves_a_ball_that_the_keeper_takes() -> None:
     keeper = robot("cyan1", -10.0, 0.0, role=GOALKEEPER)
     assert decide(view(robot("cyan2", -6.0, 0.0), ball(-9.5, 0.0), (keeper,))).skill == "goto"
 
 
-def test_a_defender_marks_a_free_opponent_nearby() -> None:
+def test_defender_marks_a_free_opponent_nearby() -> None:
     opponents = (robot("", 2.0, 0.0), robot("", -4.0, 2.0))
     order = decide(view(robot("cyan3", -5.0, 2.0), ball(1.8, 0.0), (), opponents), role=DEFENDER)
     assert (order.skill, order.place) == ("mark", (-4.0, 2.0))
 
 
-def test_a_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
+def test_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
     opponents = (robot("", 2.0, 0.0), robot("", -4.0, 2.0))
     nearer = robot("cyan4", -4.8, 2.0, role=DEFENDER)
     order = decide(view(robot("cyan3", -5.0, 2.0), ball(1.8, 0.0), (nearer,), opponents), role=DEFENDER)
@@ -153,7 +153,7 @@ def test_before_the_own_goal_a_pressed_robot_clears_the_ball() -> None:
     assert decide(with_ball(-6.0, 0.0), holds_ball=True).skill == "dribble"
 
 
-def test_a_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
+def test_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
     seen = view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -2.0, 0.0), (), (robot("", 3.33, 0.0),))
     assert decide(seen).skill == "get_ball"
 

@@ -39,13 +39,13 @@ def drive(base: Bench, ticks: int, **command: Any) -> Velocity:
     return commanded(base)
 
 
-def test_it_speeds_up_within_its_limits() -> None:
+def test_base_accelerates_within_its_limits() -> None:
     base = bench(acceleration_m_s2=2.0)
     assert drive(base, 1, vx_m_s=1.0, enabled=True).vx_m_s == pytest.approx(0.1)
     assert drive(base, 20, vx_m_s=1.0, enabled=True) == pytest.approx((1.0, 0.0, 0.0))
 
 
-def test_no_wheel_is_told_to_turn_faster_than_it_can() -> None:
+def test_wheel_commands_stay_within_the_limit() -> None:
     base = bench(wheel_limit_m_s=2.0)
     drive(base, 60, vx_m_s=3.0, vy_m_s=1.0, omega_rad_s=4.0, enabled=True)
     assert max(map(abs, base.port("wheel_command").sent[-1].wheel_m_s)) == pytest.approx(2.0)
@@ -67,7 +67,7 @@ def test_silence_brakes_and_is_said_once() -> None:
     assert [line.text for line in base.logged] == ["no motor command for 0.25 s: braking"]
 
 
-def test_a_command_that_is_no_number_brakes() -> None:
+def test_command_that_is_not_a_number_brakes() -> None:
     base = bench()
     drive(base, 40, vx_m_s=1.0, enabled=True)
     assert drive(base, 10, vx_m_s=math.nan, enabled=True) == pytest.approx((0.0, 0.0, 0.0))
@@ -82,7 +82,7 @@ def test_odometry_drives_a_quarter_circle() -> None:
     assert (odometry.vx_m_s, odometry.omega_rad_s) == pytest.approx((1.0, math.pi / 2))
 
 
-def test_a_measurement_that_comes_late_counts_all_the_same() -> None:
+def test_measurement_that_comes_late_counts_all_the_same() -> None:
     base = bench()
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     state = wheel_state_t()
@@ -94,7 +94,7 @@ def test_a_measurement_that_comes_late_counts_all_the_same() -> None:
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
 
 
-def test_a_lost_measurement_is_bridged() -> None:
+def test_lost_measurement_is_bridged() -> None:
     base = bench()
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     base.iterate(2, stage="sensor_acquire")
@@ -119,7 +119,7 @@ def test_after_a_long_silence_only_the_last_period_counts() -> None:
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.1)
 
 
-def test_it_leaves_the_wheels_stopped() -> None:
+def test_base_leaves_the_wheels_stopped() -> None:
     base = bench()
     assert drive(base, 20, vx_m_s=1.0, enabled=True).vx_m_s == pytest.approx(1.0)
     base.finalize()

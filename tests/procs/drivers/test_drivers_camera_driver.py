@@ -52,17 +52,17 @@ def test_picture_k_comes_in_tick_k(film: Path) -> None:
     assert shades_of(bench(film), 12) == list(range(12))
 
 
-def test_it_ends_and_says_so_once(film: Path) -> None:
+def test_source_ends_with_one_log_line(film: Path) -> None:
     camera = bench(film)
     assert shades_of(camera, 15)[10:] == [10, 11, None, None, None]
     assert [line.text for line in camera.logged] == [f"{film} has ended after 12 pictures; no more frames"]
 
 
-def test_it_begins_again_if_asked_to(film: Path) -> None:
+def test_source_begins_again_on_request(film: Path) -> None:
     assert shades_of(bench(film, at_end="loop"), 27)[10:] == [10, 11, *range(12), 0, 1, 2]
 
 
-def test_it_fails_at_the_end_if_asked_to(film: Path) -> None:
+def test_source_fails_at_its_end_on_request(film: Path) -> None:
     camera = bench(film, at_end="fail")
     camera.iterate(12)
     with pytest.raises(SourceError, match="has ended after 12 pictures"):
@@ -70,7 +70,7 @@ def test_it_fails_at_the_end_if_asked_to(film: Path) -> None:
 
 
 @pytest.mark.parametrize(("at_end", "expected"), [("stop", 7), ("loop", 7)])
-def test_started_late_it_gives_the_picture_of_its_tick(film: Path, at_end: str, expected: int) -> None:
+def test_late_start_gives_the_picture_of_the_tick(film: Path, at_end: str, expected: int) -> None:
     camera = bench(film, at_end=at_end)
     camera.tick = 7
     assert shades_of(camera, 1) == [expected]
@@ -90,7 +90,7 @@ def test_size_and_channels_as_wanted(film: Path) -> None:
     assert (frame.width_px, frame.height_px, frame.channels, frame.encoding) == (32, 24, 1, "gray8")
 
 
-def test_another_source_while_it_runs_begins_where_the_tick_is(film: Path, tmp_path: Path) -> None:
+def test_new_source_during_a_run_begins_at_the_tick(film: Path, tmp_path: Path) -> None:
     camera = bench(film)
     assert shades_of(camera, 3) == [0, 1, 2]
     write_folder(tmp_path / "other", shades(20)[10:])
@@ -121,7 +121,7 @@ def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path, source
         bench(source.format(folder=tmp_path))
 
 
-def test_a_device_may_be_named_by_its_number() -> None:
+def test_device_may_be_named_by_its_number() -> None:
     with pytest.raises(SourceError, match="'/dev/video99'"):
         Bench(CameraDriver, name="cyan1/camera", source=99)
 
@@ -137,7 +137,7 @@ def test_half_a_size_is_refused(film: Path) -> None:
         bench(film, width_px=640)
 
 
-def test_a_damaged_picture_is_named(tmp_path: Path) -> None:
+def test_damaged_picture_is_named(tmp_path: Path) -> None:
     folder = write_folder(tmp_path / "film", shades(3))
     (folder / "frame1.png").write_text("nothing")
     camera = bench(folder)
@@ -169,7 +169,7 @@ def until(camera: Bench, happened: Callable[[], bool]) -> None:
         sleep_s(0.005)
 
 
-def test_a_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., Stream]) -> None:
+def test_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., Stream]) -> None:
     stream = streams(100)
     camera = bench(stream.url, retry_s=0.05, longest_retry_s=0.1)
     frames, logged = camera.port("image").sent, camera.logged
@@ -211,7 +211,7 @@ def test_detectors_see_the_same_in_saved_frames(tmp_path: Path) -> None:
         (__file__, ""),
     ],
 )
-def test_it_says_what_a_replay_cannot_read_again(source: str | int, reason: str) -> None:
+def test_live_source_warns_that_a_replay_cannot_read_it(source: str | int, reason: str) -> None:
     said = CameraDriver.unrepeatable(CameraDriverConfig.model_validate({"source": source}))
     assert reason in said
     assert bool(said) == bool(reason)

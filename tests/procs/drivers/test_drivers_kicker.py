@@ -28,18 +28,18 @@ def act(kicker: Bench, command: dict[str, Any] | None = None, sensor: dict[str, 
     return kicker.port("kicker_drive").sent[-1]
 
 
-def test_it_fires_when_ball_and_charge_are_there(kicker: Bench) -> None:
+def test_kicker_fires_with_ball_and_charge(kicker: Bench) -> None:
     drive = act(kicker, {"kick_id": 1, "speed_m_s": 8.0}, READY)
     assert (drive.kick_id, drive.kick_m_s) == (1, 8.0)
 
 
 @pytest.mark.parametrize("sensor", [{"ball_held": False, "charged": True}, {"ball_held": True, "charged": False}])
-def test_it_waits_for_ball_and_charge(kicker: Bench, sensor: dict[str, bool]) -> None:
+def test_kicker_waits_for_ball_and_charge(kicker: Bench, sensor: dict[str, bool]) -> None:
     assert act(kicker, {"kick_id": 1, "speed_m_s": 8.0}, sensor).kick_m_s == 0.0
     assert act(kicker, sensor=READY).kick_m_s == 8.0
 
 
-def test_a_kick_is_carried_out_once(kicker: Bench) -> None:
+def test_kick_is_carried_out_once(kicker: Bench) -> None:
     act(kicker, {"kick_id": 1, "speed_m_s": 8.0}, READY)
     drive = act(kicker, {"kick_id": 1, "speed_m_s": 8.0}, {**READY, "kick_id": 1})
     assert (drive.kick_id, drive.kick_m_s) == (1, 0.0)
@@ -53,12 +53,12 @@ def test_speed_zero_takes_a_waiting_kick_back(kicker: Bench) -> None:
 
 
 @pytest.mark.parametrize("speed_m_s", [0.0, -3.0, float("nan")])
-def test_what_is_no_speed_is_no_kick(kicker: Bench, speed_m_s: float) -> None:
+def test_implausible_speed_does_not_kick(kicker: Bench, speed_m_s: float) -> None:
     drive = act(kicker, {"kick_id": 1, "speed_m_s": speed_m_s}, READY)
     assert (drive.kick_id, drive.kick_m_s) == (0, 0.0)
 
 
-def test_an_old_command_is_forgotten(kicker: Bench) -> None:
+def test_old_command_is_forgotten(kicker: Bench) -> None:
     act(kicker, {"kick_id": 1, "speed_m_s": 8.0, "dribble": True}, {"charged": True})
     for _ in range(6):
         drive = act(kicker)
@@ -67,7 +67,7 @@ def test_an_old_command_is_forgotten(kicker: Bench) -> None:
     assert [line.text for line in kicker.logged] == ["no kick command for 0.30 s: ball handling stops"]
 
 
-def test_the_speed_is_limited(kicker: Bench) -> None:
+def test_speed_is_limited(kicker: Bench) -> None:
     assert act(kicker, {"kick_id": 1, "speed_m_s": 99.0}, READY).kick_m_s == 12.0
 
 
@@ -76,13 +76,13 @@ def test_ball_handling_follows_the_command(kicker: Bench) -> None:
     assert not act(kicker, {"dribble": False}).dribble
 
 
-def test_the_state_is_what_the_sensor_says(kicker: Bench) -> None:
+def test_state_is_what_the_sensor_says(kicker: Bench) -> None:
     act(kicker, sensor={"ball_held": True, "charged": False, "kick_id": 4})
     state = kicker.port("kicker_state").sent[-1]
     assert (state.ball_held, state.charged, state.kick_id) == (True, False, 4)
 
 
-def test_it_leaves_ball_handling_off_and_no_kick_waiting(kicker: Bench) -> None:
+def test_kicker_ends_with_handling_off_and_without_a_kick(kicker: Bench) -> None:
     act(kicker, {"kick_id": 1, "speed_m_s": 8.0, "dribble": True}, {"charged": True})
     kicker.finalize()
     drive = kicker.port("kicker_drive").sent[-1]

@@ -55,7 +55,7 @@ def test_odometry_in_one_step_equals_many() -> None:
     assert (one.x_m, one.y_m) == pytest.approx((many.x_m, many.y_m))
 
 
-def test_the_ramp_keeps_acceleration_and_braking_apart() -> None:
+def test_ramp_keeps_acceleration_and_braking_apart() -> None:
     limits = ramp()
     assert limits.advance(Velocity(3.0, 0.0, 0.0), 0.1).vx_m_s == pytest.approx(0.2)
     for _ in range(20):
@@ -65,7 +65,7 @@ def test_the_ramp_keeps_acceleration_and_braking_apart() -> None:
 
 
 @given(st.lists(VELOCITIES, min_size=1, max_size=20))
-def test_the_ramp_never_changes_faster_than_its_limits(wanted: list[Velocity]) -> None:
+def test_ramp_never_changes_faster_than_its_limits(wanted: list[Velocity]) -> None:
     limits = ramp()
     for wish in wanted:
         before = limits.velocity
@@ -76,13 +76,13 @@ def test_the_ramp_never_changes_faster_than_its_limits(wanted: list[Velocity]) -
         assert abs(after.omega_rad_s - before.omega_rad_s) <= 10.0 * 0.05 + 1e-9
 
 
-def test_a_broken_wish_brakes() -> None:
+def test_broken_wish_brakes() -> None:
     limits = ramp()
     limits.advance(Velocity(1.0, 0.0, 0.0), 1.0)
     assert limits.advance(Velocity(math.nan, 0.0, math.inf), 1.0) == STANDSTILL
 
 
-def test_too_fast_a_motion_is_slowed_as_a_whole() -> None:
+def test_motion_above_the_limit_is_slowed_as_a_whole() -> None:
     possible = within_wheel_limit(Velocity(3.0, 3.0, 6.0), 2.0, 0.2)
     assert max(map(abs, wheels_of(possible, 0.2))) == pytest.approx(2.0)
     assert possible.vx_m_s == pytest.approx(possible.vy_m_s)

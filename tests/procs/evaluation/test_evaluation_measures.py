@@ -72,7 +72,7 @@ def test_ball_errors_are_those_of_the_belief() -> None:
 
 
 @pytest.mark.parametrize(("toucher", "case"), [("cyan1", "held by itself"), ("magenta1", "held by another")])
-def test_claim_is_judged_by_who_has_the_ball(toucher: str, case: str) -> None:
+def test_claims_are_counted_by_the_holder_of_the_ball(toucher: str, case: str) -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
     made.events = {tick: [event(match_event_t.TOUCH, toucher)] for tick in made.truth}
     made.by_robot["world_model"] = {

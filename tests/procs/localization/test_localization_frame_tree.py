@@ -46,7 +46,7 @@ def test_tree_has_mounted_frames_and_the_pose_once_known() -> None:
     assert (base.fixed, base.x_m, base.y_m, base.qz) == (False, 1.0, 2.0, pytest.approx(math.sin(math.pi / 4)))
 
 
-def test_frames_that_do_not_fit_keep_it_from_starting() -> None:
+def test_frame_tree_with_wrong_frames_does_not_start() -> None:
     with pytest.raises(TransformError, match=r"in a ring: a in b in a"):
         Bench(FrameTree, mounted={"b": {"parent": "a"}, "a": {"parent": "b"}})
 

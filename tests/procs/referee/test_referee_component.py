@@ -28,7 +28,7 @@ def playing() -> Bench:
     return bench
 
 
-def test_the_first_tick_kicks_off_and_places_the_ball() -> None:
+def test_first_tick_kicks_off_and_places_the_ball() -> None:
     bench = Bench(Referee, "world/referee")
     bench.iterate()
     assert (state(bench).state, state(bench).stopped) == (game_state_t.KICK_OFF, True)

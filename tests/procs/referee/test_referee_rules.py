@@ -52,7 +52,7 @@ def test_set_piece_becomes_play_when_the_ball_has_moved() -> None:
     assert states == [(State.KICK_OFF, Team.CYAN), (State.PLAY, Team.NONE)]
 
 
-def test_a_set_piece_that_nobody_takes_is_play_after_its_time() -> None:
+def test_set_piece_that_no_robot_takes_is_play_after_its_time() -> None:
     referee = Referee(Rules(kick_off_stoppage_s=1.0, set_piece_s=3.0))
     states = []
     for duration_s in (3.9, 0.2):
@@ -120,7 +120,7 @@ def test_goals(
     assert (referee.state, referee.team) == (state, team)
 
 
-def test_a_goal_counts_once_and_not_while_the_game_is_stopped() -> None:
+def test_goal_counts_once_and_not_while_the_game_is_stopped() -> None:
     referee = in_play()
     report(referee, event(Kind.TOUCH, "cyan2", 6.0, 0.0), event(Kind.GOAL, "cyan2", 11.2, 0.0))
     report(referee, event(Kind.GOAL, "cyan2", 11.3, 0.0))

@@ -58,7 +58,7 @@ def test_kick_gives_the_ball_speed_and_the_robot_recoil() -> None:
     assert world.robots["cyan1"].velocity.vx_m_s < 0
 
 
-def test_a_kick_is_limited_and_needs_time_to_charge() -> None:
+def test_kick_is_limited_and_needs_time_to_charge() -> None:
     world = ball_in_mouth()
     kick(world, "cyan1", 99.0)
     assert run(world, 1)[-1].speed_m_s == pytest.approx(12.0)
@@ -74,7 +74,7 @@ def test_a_kick_is_limited_and_needs_time_to_charge() -> None:
     assert Kind.KICK in [event.kind for event in run(world, 1)]
 
 
-def test_the_same_number_kicks_once_and_speed_zero_never() -> None:
+def test_same_number_kicks_once_and_speed_zero_never() -> None:
     world = ball_in_mouth()
     kick(world, "cyan1", 0.0, kick_id=1)
     assert run(world, 1) == []
@@ -86,7 +86,7 @@ def test_the_same_number_kicks_once_and_speed_zero_never() -> None:
     assert Kind.KICK not in [event.kind for event in run(world, 2)]
 
 
-def test_a_kick_without_a_ball_is_spent_on_the_air() -> None:
+def test_kick_without_a_ball_is_spent_on_the_air() -> None:
     world = ball_in_mouth()
     world.ball.put(1.0, 0.0)
     kick(world, "cyan1", 8.0)
@@ -95,7 +95,7 @@ def test_a_kick_without_a_ball_is_spent_on_the_air() -> None:
     assert world.kickers["cyan1"].kick_id == 1
 
 
-def test_a_delayed_kick_happens_within_the_tick() -> None:
+def test_delayed_kick_happens_within_the_tick() -> None:
     world = ball_in_mouth(Noise(kick_delay_s=0.04))
     kick(world, "cyan1", 10.0)
     assert run(world, 1)[-1].kind == Kind.KICK
@@ -125,7 +125,7 @@ def test_ball_handling_keeps_the_ball(velocity: Velocity) -> None:
     assert world.last_touch == "cyan1"
 
 
-def test_a_fast_turn_loses_the_ball() -> None:
+def test_fast_turn_loses_the_ball() -> None:
     world = ball_in_mouth()
     dribble(world, Velocity(0.0, 0.0, 8.0))
     assert not world.kickers["cyan1"].mouth.holds_ball
@@ -150,7 +150,7 @@ def test_without_ball_handling_driving_backwards_leaves_the_ball() -> None:
     assert world.ball.body.position.x == pytest.approx(IN_MOUTH_M, abs=0.01)
 
 
-def test_the_mouth_swallows_more_of_a_shot_than_the_back() -> None:
+def test_mouth_swallows_more_of_a_shot_than_the_back() -> None:
     speeds = {}
     for heading_rad in (0.0, math.pi):
         world = world_with(cyan1=Pose(0.0, 0.0, heading_rad))
@@ -165,7 +165,7 @@ def test_the_mouth_swallows_more_of_a_shot_than_the_back() -> None:
     assert 0.2 < speeds[0.0] < 0.6 * speeds[math.pi]
 
 
-def test_a_goal_is_seen_once_and_by_whom() -> None:
+def test_goal_is_seen_once_and_by_whom() -> None:
     world = ball_in_mouth()
     world.robots["cyan1"].put(9.0, 0.3, 0.0)
     world.ball.put(9.0 + IN_MOUTH_M, 0.3)
@@ -187,7 +187,7 @@ def test_a_goal_is_seen_once_and_by_whom() -> None:
         ((-10.5, -1.0), (-2.0, 0.0), Kind.GOAL),
     ],
 )
-def test_the_ball_leaves_the_field(start: tuple[float, float], velocity: tuple[float, float], kind: Kind) -> None:
+def test_ball_leaves_the_field(start: tuple[float, float], velocity: tuple[float, float], kind: Kind) -> None:
     world = world_with()
     world.ball.put(*start)
     shoot(world, *velocity)
@@ -195,14 +195,14 @@ def test_the_ball_leaves_the_field(start: tuple[float, float], velocity: tuple[f
     assert [(event.kind, event.robot) for event in events] == [(kind, "")]
 
 
-def test_a_ball_on_the_line_is_not_out() -> None:
+def test_ball_on_the_line_is_not_out() -> None:
     world = world_with()
     world.ball.put(0.0, 7.1)
     assert run(world, 2) == []
     assert world.ball_in_field
 
 
-def test_a_post_sends_the_ball_back() -> None:
+def test_post_sends_the_ball_back() -> None:
     world = world_with()
     world.ball.put(10.0, 1.2625)
     shoot(world, 6.0)
@@ -210,7 +210,7 @@ def test_a_post_sends_the_ball_back() -> None:
     assert world.ball.body.velocity.x < -1.0
 
 
-def test_the_wall_keeps_the_hardest_shot_in() -> None:
+def test_wall_keeps_the_hardest_shot_in() -> None:
     world = world_with()
     world.ball.put(0.0, 0.0)
     for _ in range(50):
@@ -220,7 +220,7 @@ def test_the_wall_keeps_the_hardest_shot_in() -> None:
         assert abs(world.ball.body.position.y) < 8.0
 
 
-def test_a_collision_names_the_faster_robot_first() -> None:
+def test_collision_names_the_faster_robot_first() -> None:
     world = world_with(cyan1=Pose(0.0, 0.0, 0.0), magenta1=Pose(1.0, 0.0, math.pi))
     collisions = []
     for _ in range(30):
@@ -269,7 +269,7 @@ def test_left_alone_the_world_loses_energy_until_it_rests() -> None:
     assert energies[-1] < 1e-4
 
 
-def test_the_field_crew_puts_the_ball_down_at_rest() -> None:
+def test_field_crew_puts_the_ball_down_at_rest() -> None:
     world = ball_in_mouth()
     kick(world, "cyan1", 5.0)
     run(world, 5)
@@ -279,14 +279,14 @@ def test_the_field_crew_puts_the_ball_down_at_rest() -> None:
     assert world.last_touch == ""
 
 
-def test_the_field_crew_does_not_put_the_ball_under_a_robot() -> None:
+def test_field_crew_does_not_put_the_ball_under_a_robot() -> None:
     world = world_with(cyan1=Pose(0.1, 0.0, 0.0))
     world.place_ball(0.0, 0.0)
     assert world.ball.body.position == pytest.approx((0.1 - 0.38, 0.0))
     assert run(world, 5) == []
 
 
-def test_a_goal_can_follow_a_goal_after_the_ball_was_placed() -> None:
+def test_goal_can_follow_a_goal_after_the_ball_was_placed() -> None:
     world = world_with()
     for _ in range(2):
         world.place_ball(10.0, 0.0)

@@ -27,7 +27,7 @@ def drive(world: World, velocity: Velocity, ticks: int) -> Velocity:
 
 
 @pytest.mark.parametrize("wanted", [Velocity(2.0, 0.0, 0.0), Velocity(0.0, 1.5, 0.0), Velocity(1.0, -1.0, 0.0)])
-def test_a_robot_reaches_the_velocity_that_its_wheels_turn_for(wanted: Velocity) -> None:
+def test_robot_reaches_the_velocity_that_its_wheels_turn_for(wanted: Velocity) -> None:
     assert drive(one_robot(), wanted, 40) == pytest.approx(wanted, abs=0.01)
 
 
@@ -37,7 +37,7 @@ def test_it_turns_on_the_spot_as_fast_as_told() -> None:
     assert world.robots["cyan1"].body.position == pytest.approx((-8.0, 0.0), abs=0.01)
 
 
-def test_the_wheels_limit_the_top_speed() -> None:
+def test_wheels_limit_the_top_speed() -> None:
     assert drive(one_robot(), Velocity(9.0, 0.0, 0.0), 40).vx_m_s == pytest.approx(3.5 / (math.sqrt(3) / 2), abs=0.02)
 
 
@@ -61,7 +61,7 @@ def test_gentle_acceleration_hardly_slips() -> None:
         assert abs(slip_m_s) < 0.03
 
 
-def test_a_delayed_command_moves_nothing_before_its_time() -> None:
+def test_delayed_command_moves_nothing_before_its_time() -> None:
     world = one_robot(Noise(drive_delay_s=0.1))
     assert drive(world, Velocity(1.0, 0.0, 0.0), 2) == STANDSTILL
     assert drive(world, Velocity(1.0, 0.0, 0.0), 1).vx_m_s > 0.1
@@ -86,7 +86,7 @@ def test_what_is_no_number_stops_the_wheels() -> None:
     assert world.robots["cyan1"].velocity == pytest.approx(STANDSTILL, abs=1e-3)
 
 
-def test_a_robot_stays_inside_the_wall() -> None:
+def test_robot_stays_inside_the_wall() -> None:
     world = one_robot(pose=Pose(9.0, 5.0, 0.0))
     drive(world, Velocity(3.0, 0.0, 0.0), 60)
     assert world.robots["cyan1"].body.position.x == pytest.approx(12.0 - 0.25, abs=0.01)

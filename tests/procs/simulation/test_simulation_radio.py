@@ -48,7 +48,7 @@ def test_silence_writes_nothing() -> None:
     assert [len(bench.port("inboxes", robot).sent) for robot in TEAM] == [0, 1, 1, 1, 1]
 
 
-def test_a_message_arrives_as_it_was_sent() -> None:
+def test_message_arrives_as_it_was_sent() -> None:
     bench = radio(delay_s=0.1)
     bench.iterate(3)
     say(bench, "cyan1")

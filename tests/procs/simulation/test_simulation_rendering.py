@@ -70,7 +70,7 @@ def test_ball_and_robots_appear_where_they_are() -> None:
     assert colour_at(picture, 0.0, 1.70) == GREEN
 
 
-def test_the_nearer_hides_the_farther() -> None:
+def test_nearer_hides_the_farther() -> None:
     own = Pose(-3.0, 2.0, 0.0)
     hidden = renderer().render(Scene(own, [(-2.0, 2.0, CYAN)], (-1.3, 2.0, 0.11)))
     in_front = renderer().render(Scene(own, [(-1.0, 2.0, CYAN)], (-1.7, 2.0, 0.11)))
@@ -79,7 +79,7 @@ def test_the_nearer_hides_the_farther() -> None:
     assert (in_front == orange).all(axis=2).sum() > 100
 
 
-def test_a_tilted_mirror_sees_the_same_things_elsewhere() -> None:
+def test_tilted_mirror_sees_the_same_things_elsewhere() -> None:
     tilted = Mirror(pitch_rad=math.radians(3.0))
     scene = Scene(Pose(-3.0, 2.0, 0.0), [], (0.0, 2.0, 0.11))
     picture = Renderer(tilted, Field(), Bodies()).render(scene)

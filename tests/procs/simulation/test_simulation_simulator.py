@@ -64,7 +64,7 @@ def test_settings_move_a_robot() -> None:
     assert (truth.robots[1].x_m, truth.robots[1].y_m, truth.robots[1].heading_rad) == pytest.approx((-1.0, 2.0, 0.5))
 
 
-def test_a_start_for_a_robot_that_is_not_there_is_refused() -> None:
+def test_start_for_a_robot_that_is_not_there_is_refused() -> None:
     with pytest.raises(ValueError, match=r"world/simulator: starts: no robot 'cyan7'; there are: cyan1, cyan2, mag"):
         bench(starts={"cyan7": (0.0, 0.0, 0.0)})
 
@@ -87,14 +87,14 @@ def test_wheels_turn_and_are_measured() -> None:
     assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
 
 
-def test_a_robot_that_hears_nothing_more_stops() -> None:
+def test_robot_that_hears_nothing_more_stops() -> None:
     world = bench()
     tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
     assert tick(world, 4).robots[0].vx_m_s == pytest.approx(1.0, abs=0.01)
     assert tick(world, 20).robots[0].vx_m_s == pytest.approx(0.0, abs=1e-3)
 
 
-def test_a_robot_that_hears_nothing_more_stops_handling_the_ball() -> None:
+def test_robot_that_hears_nothing_more_stops_handling_the_ball() -> None:
     world = bench(starts={"cyan1": (-0.33, 0.0, 0.0)})
     drive = kicker_drive_t()
     drive.dribble = True
@@ -107,7 +107,7 @@ def test_a_robot_that_hears_nothing_more_stops_handling_the_ball() -> None:
     assert len(events(world)) == before
 
 
-def test_the_imu_tells_heading_and_yaw_rate() -> None:
+def test_imu_tells_heading_and_yaw_rate() -> None:
     world = bench()
     truth = tick(world, 40, cyan1=[0.4, 0.4, 0.4])
     imu = world.port("imu", "cyan1").sent[-1]
@@ -115,7 +115,7 @@ def test_the_imu_tells_heading_and_yaw_rate() -> None:
     assert imu.yaw_rate_rad_s == pytest.approx(2.0, abs=0.01)
 
 
-def test_a_kick_moves_the_ball_and_is_reported() -> None:
+def test_kick_moves_the_ball_and_is_reported() -> None:
     world = bench(starts={"magenta1": (0.33, 0.0, math.pi)})
     drive = kicker_drive_t()
     drive.kick_id, drive.kick_m_s = 1, 6.0
@@ -130,7 +130,7 @@ def test_a_kick_moves_the_ball_and_is_reported() -> None:
     assert [(kick.robot, kick.team) for kick in kicks] == [("magenta1", game_state_t.TEAM_MAGENTA)]
 
 
-def test_a_goal_counts_for_the_team_that_attacks_it() -> None:
+def test_goal_counts_for_the_team_that_attacks_it() -> None:
     world = bench(starts={"cyan1": (-0.33, 0.0, 0.0), "magenta1": (5.0, 5.0, 0.0)})
     drive = kicker_drive_t()
     drive.kick_id, drive.kick_m_s = 1, 10.0
@@ -153,7 +153,7 @@ def test_referee_placement_happens_once_for_each_number() -> None:
     assert tick(world).ball_x_m == pytest.approx(11.89)
 
 
-def test_a_placement_that_is_no_place_is_refused_aloud() -> None:
+def test_placement_that_is_no_place_is_refused_aloud() -> None:
     world = bench()
     world.port("ball_placement").put(placement_id=1, x_m=math.nan, y_m=0.0)
     assert tick(world).ball_x_m == 0.0

@@ -37,22 +37,22 @@ def test_number_one_keeps_the_goal() -> None:
     assert FIELD.in_goal_area(pose.x_m, pose.y_m, 1.0)
 
 
-def test_a_free_place_is_taken_as_it_is() -> None:
+def test_free_place_is_taken_as_it_is() -> None:
     assert free_place(Point(1.0, 2.0), [Point(1.0, 2.5)], 0.4) == (1.0, 2.0)
 
 
-def test_a_place_between_two_robots_moves_out_of_both() -> None:
+def test_place_between_two_robots_moves_out_of_both() -> None:
     robots = [Point(0.0, 0.0), Point(0.5, 0.0)]
     place = free_place(Point(0.2, 0.05), robots, 0.4)
     assert min(math.dist(place, robot) for robot in robots) >= 0.4 - 1e-9
     assert math.dist(place, (0.2, 0.05)) < 0.5
 
 
-def test_a_place_in_the_very_middle_of_a_robot_has_a_way_out() -> None:
+def test_place_in_the_very_middle_of_a_robot_has_a_way_out() -> None:
     assert free_place(Point(1.0, 1.0), [Point(1.0, 1.0)], 0.4) == pytest.approx((1.0, 1.4))
 
 
-def test_a_delay_line_keeps_order_and_time() -> None:
+def test_delay_line_keeps_order_and_time() -> None:
     line: DelayLine[str] = DelayLine(100)
     line.put("a", 0)
     line.put("b", 30)
@@ -83,7 +83,7 @@ def test_wheels_at_rest_are_measured_at_rest() -> None:
     assert Encoders(PRESETS["harsh"], np.random.default_rng(1)).read((0.0, 0.0, 0.0)) == [0.0, 0.0, 0.0]
 
 
-def test_the_compass_drifts_like_a_random_walk() -> None:
+def test_compass_drifts_like_a_random_walk() -> None:
     drifts = []
     for seed in range(100):
         imu = Imu(Noise(compass_drift_sd_rad=0.05), np.random.default_rng(seed))

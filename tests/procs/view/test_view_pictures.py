@@ -77,7 +77,7 @@ def test_large_pictures_are_scaled() -> None:
     assert (picture.height_px, picture.width_px) == (30, 40) == decoded(picture).shape[:2]
 
 
-def test_a_lost_frame_gives_no_picture() -> None:
+def test_lost_frame_gives_no_picture() -> None:
     pictures = bench()
     pictures.port("image", "cyan1").put(frame=7, width_px=80, height_px=60, channels=3)  # announced, not in the ring
     pictures.iterate()

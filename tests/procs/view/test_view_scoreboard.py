@@ -16,7 +16,7 @@ def state(**fields: Any) -> game_state_t:
     return made
 
 
-def test_the_headline_of_a_match() -> None:
+def test_headline_of_a_match() -> None:
     now = state(score_cyan=2, score_magenta=1, time_in_half_s=192.9)
     newest = {"world/game_state": now}.get
     assert headline(newest) == "CYAN 2 : 1 MAGENTA   half 1  03:12   play"
@@ -49,7 +49,7 @@ def test_without_a_referee_there_is_nothing_to_say() -> None:
 @pytest.mark.parametrize(
     ("cyan", "magenta", "words"), [(1, 0, "cyan leads"), (0, 3, "magenta leads"), (2, 2, "a draw")]
 )
-def test_the_summary_names_who_leads(cyan: int, magenta: int, words: str) -> None:
+def test_summary_names_who_leads(cyan: int, magenta: int, words: str) -> None:
     now = state(score_cyan=cyan, score_magenta=magenta, half=2, time_in_half_s=900.0)
     assert summary(lambda _: now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
 
@@ -63,7 +63,7 @@ def test_long_halves_keep_counting_minutes() -> None:
     assert play_time(6000.0) == "100:00"
 
 
-def test_the_summary_tells_the_goals_and_counts_the_whistles() -> None:
+def test_summary_tells_the_goals_and_counts_the_whistles() -> None:
     state = game_state_t()
     state.half, state.score_magenta = 1, 1
     for goal, kind, team, time_s in [

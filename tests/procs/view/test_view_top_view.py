@@ -29,7 +29,7 @@ def colour_at(drawn: Picture, x_m: float, y_m: float) -> tuple[int, ...]:
     return tuple(drawn[row, column].tolist())
 
 
-def test_the_size_follows_from_the_width_and_is_even() -> None:
+def test_size_follows_from_the_width_and_is_even() -> None:
     assert VIEW.draw(truth()).shape == (VIEW.height_px, 960, 3)
     for width_px in (333, 640, 1281):
         assert all(size % 2 == 0 for size in TopView(width_px).draw(truth()).shape[:2])
@@ -49,13 +49,13 @@ def test_robots_have_team_colours_and_the_ball_its_place() -> None:
     assert colour_at(drawn, 3.0, 2.0) == pytest.approx(BALL, abs=12)
 
 
-def test_the_heading_shows() -> None:
+def test_heading_shows() -> None:
     left, up = VIEW.draw(truth(("cyan1", 0.0, 0.0, 0.0))), VIEW.draw(truth(("cyan1", 0.0, 0.0, np.pi / 2)))
     assert sum(colour_at(left, 0.21, 0.0)) > sum(colour_at(up, 0.21, 0.0)) + 200
     assert sum(colour_at(up, 0.0, 0.21)) > sum(colour_at(left, 0.0, 0.21)) + 200
 
 
-def test_the_bar_shows_the_score() -> None:
+def test_bar_shows_the_score() -> None:
     def bar(**fields: int) -> Picture:
         state = game_state_t()
         for name, value in fields.items():
@@ -88,7 +88,7 @@ def test_extreme_values_are_drawn_or_left_out_but_never_fatal() -> None:
     assert VIEW.draw(wild, beliefs={"cyan1": belief}).shape == (VIEW.height_px, 960, 3)
 
 
-def test_a_picture_of_the_newest_messages() -> None:
+def test_picture_of_the_newest_messages() -> None:
     belief = world_model_t()
     belief.localized, belief.x_m, belief.y_m = True, 5.0, 5.0
     messages = {"world/ground_truth": truth(("cyan1", 0.0, 0.0, 0.0)), "cyan1/world_model": belief}

@@ -118,12 +118,12 @@ def test_nearly_every_ball_in_a_crowd_is_found() -> None:
     assert found / balls >= 0.9
 
 
-def test_a_ball_behind_a_robot_is_not_seen() -> None:
+def test_ball_behind_a_robot_is_not_seen() -> None:
     own = Pose(-3.0, 2.0, 0.0)
     assert FINDER.find(renderer().render(Scene(own, [(-2.0, 2.0, CYAN)], (-1.2, 2.0, 0.11)))) is None
 
 
-def test_a_half_hidden_ball_is_less_certain() -> None:
+def test_half_hidden_ball_is_less_certain() -> None:
     own, ball_m = Pose(-3.0, 2.0, 0.0), (0.0, 2.0, 0.11)
     whole = FINDER.find(renderer().render(Scene(own, [], ball_m)))
     half = FINDER.find(renderer().render(Scene(own, [(-1.5, 2.26, CYAN)], ball_m)))
@@ -133,7 +133,7 @@ def test_a_half_hidden_ball_is_less_certain() -> None:
     assert half.covariance_m2[0, 0] > 2 * whole.covariance_m2[0, 0]
 
 
-def test_a_ball_in_the_air_is_no_confident_ball_on_the_ground() -> None:
+def test_ball_in_the_air_is_no_confident_ball_on_the_ground() -> None:
     """It is larger than a ball lying that far away would be."""
     ball = FINDER.find(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.0, 0.45))))
     assert ball is None or ball.confidence < 0.6
@@ -149,7 +149,7 @@ def test_brightness_does_not_matter(brightness: float) -> None:
 
 
 @pytest.mark.parametrize("colour", [BLACK, WHITE, ORANGE, CYAN, MAGENTA])
-def test_a_picture_of_one_colour_shows_no_ball(colour: Bgr) -> None:
+def test_picture_of_one_colour_shows_no_ball(colour: Bgr) -> None:
     assert FINDER.find(np.full((400, 400, 3), colour, np.uint8)) is None
 
 
@@ -161,7 +161,7 @@ def test_pure_noise_shows_no_ball() -> None:
         assert FINDER.find(np.repeat(grey, 3, axis=2)) is None
 
 
-def test_a_stripe_with_a_balls_area_is_no_ball() -> None:
+def test_stripe_with_a_balls_area_is_no_ball() -> None:
     _, row, radius_px = MIRROR.sphere((2.0, 0.0, 0.11), 0.11)
     top, centre = round(row), round(MIRROR.centre_px)
     half_px = round(math.pi * radius_px**2 / 8)
@@ -174,7 +174,7 @@ def test_a_stripe_with_a_balls_area_is_no_ball() -> None:
     assert FINDER.find(frame) is not None  # so it was the shape
 
 
-def test_an_odd_picture_size_works_as_well() -> None:
+def test_odd_picture_size_works_as_well() -> None:
     mirror = Mirror(size_px=331)
     frame = Renderer(mirror, Field(), Bodies()).render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.5, 0.11)))
     ball = BallFinder(mirror, FINDER.colour).find(frame)

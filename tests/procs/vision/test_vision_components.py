@@ -45,7 +45,7 @@ def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
     assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
 
 
-def test_a_lost_frame_gives_empty_percepts() -> None:
+def test_lost_frame_gives_empty_percepts() -> None:
     ball, field = Bench(OmniBall), Bench(OmniField)
     for bench in (ball, field):
         bench.port("image").put(frame=7, width_px=400, height_px=400, channels=3)  # announced, not in the ring
@@ -113,7 +113,7 @@ def test_percepts_state_the_exposure() -> None:
         assert run.newest(f"cyan1/{channel}").capture_us == exposed_us
 
 
-def test_a_camera_without_its_robot_says_so_once_and_goes_on() -> None:
+def test_camera_without_its_robot_warns_once_and_continues() -> None:
     bench = Bench(Camera, name="cyan4/camera")
     truth = ground_truth_t()
     truth.robots = [robot("cyan1", 0.0, 0.0, 0.0)]

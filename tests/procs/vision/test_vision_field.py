@@ -124,7 +124,7 @@ def test_line_points_lie_on_lines_wherever_the_robot_stands() -> None:
         assert math.sqrt(np.mean(np.minimum(errors_m[band], 0.15) ** 2)) < most_m
 
 
-def test_a_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
+def test_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
     own = Pose(0.0, 4.5, 0.0)  # on the halfway line, which no ray crosses
     points = LINES.find(to_hsv(RINGS.look_up(renderer().render(Scene(own, [], None)))), RINGS)
     on_halfway_line = np.abs(points[:, 0]) < 0.06
@@ -206,13 +206,13 @@ def test_two_robots_side_by_side_are_two() -> None:
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
 
 
-def test_a_ball_before_a_robot_does_not_make_two_of_it() -> None:
+def test_ball_before_a_robot_does_not_make_two_of_it() -> None:
     scene = Scene(Pose(-3.0, 2.0, 0.0), [(-1.0, 2.0, CYAN)], (-1.37, 2.0, 0.11))
     (found,) = obstacles(renderer().render(scene))
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.06)
 
 
-def test_a_robot_straight_behind_is_one() -> None:
+def test_robot_straight_behind_is_one() -> None:
     """There the rays begin and end."""
     for lateral_m in (-0.1, 0.0, 0.1):
         for heading_rad in (0.0, math.pi):
@@ -221,13 +221,13 @@ def test_a_robot_straight_behind_is_one() -> None:
             assert len(found) == 1
 
 
-def test_a_touching_robot_is_seen() -> None:
+def test_touching_robot_is_seen() -> None:
     (found,) = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [(-2.5, 2.0, CYAN)], None)))
     assert (found.x_m, found.y_m) == pytest.approx((0.5, 0.0), abs=0.05)
 
 
 @pytest.mark.parametrize("colour", [BLACK, WHITE, GREEN])
-def test_a_picture_of_one_colour_shows_nothing(colour: Bgr) -> None:
+def test_picture_of_one_colour_shows_nothing(colour: Bgr) -> None:
     frame = np.full((400, 400, 3), colour, np.uint8)
     assert len(line_points(frame)) == 0
     assert obstacles(frame) == []

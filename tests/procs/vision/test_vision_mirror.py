@@ -42,14 +42,14 @@ def test_metres_per_pixel_is_the_slope_of_the_mapping() -> None:
         assert across == pytest.approx(distance / mirror.radius_px(distance))
 
 
-def test_a_ball_at_five_metres_is_several_pixels_wide() -> None:
+def test_ball_at_five_metres_is_several_pixels_wide() -> None:
     _, _, radius_px = Mirror().sphere((5.0, 0.0, 0.11), 0.11)
     assert 2 * radius_px > 6.0
 
 
 @pytest.mark.parametrize("mirror", [Mirror(), TILTED])
 @pytest.mark.parametrize("centre", [(0.36, 0.0, 0.11), (-2.0, 1.5, 0.11), (3.0, -3.0, 0.5)])
-def test_a_sphere_is_the_circle_of_its_tangent_rays(mirror: Mirror, centre: tuple[float, float, float]) -> None:
+def test_sphere_is_the_circle_of_its_tangent_rays(mirror: Mirror, centre: tuple[float, float, float]) -> None:
     """Points on the sphere never appear outside the circle, and those the rays touch appear on it."""
     radius_m = 0.11
     column, row, radius_px = mirror.sphere(centre, radius_m)

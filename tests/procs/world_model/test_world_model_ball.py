@@ -160,13 +160,13 @@ def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> flo
 
 
 @pytest.mark.parametrize("eyes_at", [[(-2.0, 0.0)], [(-2.0, 0.0), (3.0, 2.0), (0.0, -4.0)]])
-def test_the_covariance_is_honest(eyes_at: list[tuple[float, float]]) -> None:
+def test_covariance_is_honest(eyes_at: list[tuple[float, float]]) -> None:
     runs = 60
     deviation = math.sqrt(2 * 4 / runs)
     assert 4 - 3 * deviation < nees(eyes_at, runs) < 4 + 3 * deviation
 
 
-def test_a_phantom_seen_once_changes_nothing() -> None:
+def test_phantom_seen_once_changes_nothing() -> None:
     tracker = BallTracker()
     for frame in range(20):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
@@ -199,7 +199,7 @@ def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     assert tracker.track.state[:2] == pytest.approx(other, abs=0.1)
 
 
-def test_an_old_sighting_tells_where_the_ball_was() -> None:
+def test_old_sighting_tells_where_the_ball_was() -> None:
     history = list(rolling((-4.0, 0.0), (3.0, 0.0), 60))
     errors = []
     for seed in range(10):
@@ -214,7 +214,7 @@ def test_an_old_sighting_tells_where_the_ball_was() -> None:
     assert abs(np.mean(errors)) < 0.05, "0.4 m behind without the age"
 
 
-def test_the_ball_is_forgotten_after_the_timeout() -> None:
+def test_ball_is_forgotten_after_the_timeout() -> None:
     tracker = BallTracker()
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
     tracker.see(Sighting("a", True, np.zeros(2), np.eye(2) * 0.01))
@@ -228,7 +228,7 @@ def test_the_ball_is_forgotten_after_the_timeout() -> None:
     assert not tracker.known
 
 
-def test_a_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
+def test_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
     tracker = BallTracker()
     for frame in range(5):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)

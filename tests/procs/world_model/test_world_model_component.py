@@ -121,7 +121,7 @@ def test_ball_and_opponent_are_placed_from_camera_and_pose() -> None:
     assert (world.opponents[0].x_m, world.opponents[0].y_m) == pytest.approx((0.0, 1.0), abs=0.08)
 
 
-def test_a_robot_tells_its_own_sight_only_ten_times_a_second() -> None:
+def test_robot_sends_its_own_sight_ten_times_a_second() -> None:
     pair = team()
     told: list[team_message_t] = []
     for _ in range(20):
@@ -162,7 +162,7 @@ def test_opponents_contain_neither_mates_nor_oneself() -> None:
             assert np.hypot(*(places - opponent).T).min() < 0.25
 
 
-def test_an_opponent_that_only_a_mate_sees_is_known() -> None:
+def test_opponent_that_only_a_mate_sees_is_known() -> None:
     pair = team()
     hidden = np.array((6.0, -3.0))
     for _ in range(20):
@@ -185,7 +185,7 @@ def test_unlocalized_robot_listens_but_shares_no_sighting() -> None:
     assert other.ball.observers == 3
 
 
-def test_a_held_ball_is_in_the_mouth_and_told() -> None:
+def test_held_ball_is_in_the_mouth_and_in_the_message() -> None:
     robot = Robot("cyan1", (1.0, -1.0, -math.pi / 2), seed=1)
     for _ in range(4):
         robot.sense(None, [], held=True)
@@ -194,7 +194,7 @@ def test_a_held_ball_is_in_the_mouth_and_told() -> None:
     assert robot.bench.port("team_message").sent[-1].ball_held
 
 
-def test_silence_is_survived_and_everything_is_forgotten_in_time() -> None:
+def test_silence_makes_the_robot_forget_everything_in_time() -> None:
     four = team()
     for _ in range(20):
         four.tick(np.array((1.0, 1.0)), others_m=(np.array((0.0, -3.0)),))
@@ -264,7 +264,7 @@ def ball_nees(robots: int, runs: int = 20) -> float:
 
 @pytest.mark.parametrize("robots", [1, 4])
 @pytest.mark.slow
-def test_the_balls_covariance_covers_the_error_of_the_own_pose(robots: int) -> None:
+def test_balls_covariance_covers_the_error_of_the_own_pose(robots: int) -> None:
     assert 0.5 < ball_nees(robots) < 3.5
 
 
@@ -279,7 +279,7 @@ def test_same_messages_give_the_same_world() -> None:
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1e300])
-def test_values_that_cannot_be_are_survived(value: float) -> None:
+def test_impossible_values_are_ignored(value: float) -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(10):
         robot.sense(np.array((2.0, 0.0)), [np.array((0.0, 2.0))])
@@ -308,7 +308,7 @@ def test_values_that_cannot_be_are_survived(value: float) -> None:
     assert [mate.name for mate in robot.world.mates] == ["cyan3"]
 
 
-def test_a_sighting_without_any_error_is_no_end_of_the_filter() -> None:
+def test_sighting_without_any_error_does_not_break_the_filter() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(10):
         robot.bench.port("pose").put(localized=True)
@@ -326,7 +326,7 @@ def test_sightings_with_impossible_covariances_are_left_out() -> None:
 
 
 @pytest.mark.parametrize("parity", [0, 1])
-def test_frames_of_every_second_tick_are_told(parity: int) -> None:
+def test_frames_of_every_second_tick_reach_the_message(parity: int) -> None:
     """Cameras give frames in even or in odd ticks, and messages are sent in every second tick."""
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for tick in range(20):
@@ -360,7 +360,7 @@ def test_mates_sight_counts_from_its_exposure() -> None:
     assert robot.world.ball.x_m == pytest.approx(true_x_m, abs=0.15)
 
 
-def test_mate_counts_as_precisely_as_it_says() -> None:
+def test_mates_covariance_is_the_one_that_it_states() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     deviations_m = []
     for claimed_m in (0.01, 0.5):
@@ -376,7 +376,7 @@ def test_mate_counts_as_precisely_as_it_says() -> None:
     assert deviations_m[1] > 0.4
 
 
-def test_kick_is_told_at_once_and_only_once() -> None:
+def test_kick_is_sent_at_once_and_only_once() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(5):
         robot.sense(np.array((0.33, 0.0)), [], held=True)

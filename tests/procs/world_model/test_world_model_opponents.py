@@ -37,7 +37,7 @@ def test_crossing_robots_keep_their_tracks_and_noise_is_halved() -> None:
     assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.75 * np.sqrt(np.mean(np.square(raw)))
 
 
-def test_a_ghost_seen_once_is_never_told() -> None:
+def test_ghost_seen_once_is_never_reported() -> None:
     tracks = RobotTracks()
     tracks.predict(PERIOD_S, 1.0)
     tracks.see(np.array([[1.0, 1.0]]), spreads(1, 0.1))
@@ -47,7 +47,7 @@ def test_a_ghost_seen_once_is_never_told() -> None:
     assert len(tracks.states) == 0
 
 
-def test_a_robot_that_is_gone_is_forgotten_after_the_timeout() -> None:
+def test_robot_that_is_gone_is_forgotten_after_the_timeout() -> None:
     tracks = RobotTracks()
     for _ in range(5):
         tracks.predict(PERIOD_S, 1.0)
@@ -60,7 +60,7 @@ def test_a_robot_that_is_gone_is_forgotten_after_the_timeout() -> None:
     assert len(tracks.sure) == 0
 
 
-def test_two_robots_that_see_one_opponent_see_one() -> None:
+def test_sightings_of_one_opponent_by_two_robots_give_one_track() -> None:
     tracks = RobotTracks()
     for _ in range(10):
         tracks.predict(PERIOD_S, 1.0)
@@ -96,7 +96,7 @@ def test_mate_explains_one_obstacle_and_the_opponent_stays() -> None:
     assert without_known(np.zeros((0, 2)), sharp[:0], seen, sharp, 0.5).tolist() == []
 
 
-def test_a_poorly_seen_mate_is_that_mate_from_further_away() -> None:
+def test_poorly_seen_mate_is_that_mate_from_further_away() -> None:
     seen, mate = np.array([[2.0, 0.0]]), np.array([[1.0, 0.0]])
     assert without_known(seen, spreads(1, 0.05), mate, spreads(1, 0.05), 0.5).all()
     assert not without_known(seen, spreads(1, 0.4), mate, spreads(1, 0.05), 0.5).any()
