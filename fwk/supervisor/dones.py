@@ -5,14 +5,13 @@ from collections.abc import Callable
 from fwk.bus import sync
 from fwk.engine.boundary import BoundaryRequests
 from fwk.lcm.messages import MessageError
-from fwk.model.tick_events import FinalDone, IterationDone, OutsideTaken, StageDone
+from fwk.model.tick_events import FinalDone, FrameLost, IterationDone, MessageLost, OutsideTaken, StageDone
 from fwk.supervisor.barrier import Barrier
 from fwk.supervisor.continuous import ContinuousHosts
 from fwk.supervisor.core import Core
+from fwk.supervisor.done_check import DoneCheck
 from fwk.supervisor.host_process import HostProcess, HostState
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.loss_report import record_losses
-from fwk.supervisor.requests import DoneCheck
 from fwk.supervisor.tick_log import TickLog
 from lcmtypes.core import done_t, recorded_t, taken_t
 
@@ -109,9 +108,16 @@ class Dones:
             self._tick_log.mark(channel, sequence)
         if done.next_time_us >= 0:
             self._core.clock.source(done.next_time_us)
-        record_losses(done, self._tick_log)
+        self._record_losses(done)
         self._collect(done)
         self._tick_log.event(_event_of(done))
+
+    def _record_losses(self, done: done_t) -> None:
+        """Records what the host lost before the done itself: a replay withholds the same from the same components."""
+        for message in done.lost:
+            self._tick_log.event(MessageLost(done.host, message.channel, message.sequence))
+        for frame in done.lost_frames:
+            self._tick_log.event(FrameLost(frame.component, frame.channel, frame.frame))
 
     def _collect(self, done: done_t) -> None:
         """Collects the boundary requests of a done."""

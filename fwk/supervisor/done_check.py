@@ -1,4 +1,4 @@
-"""Checks what a done says before anything of it counts."""
+"""Checks the content of a done before it counts."""
 
 from fwk.lcm.messages import MessageError
 from fwk.model.requests import mistake_in
