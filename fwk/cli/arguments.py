@@ -1,4 +1,4 @@
-"""Reads values of the command line that are more than a number or a name."""
+"""Reads and checks values of the command line: paces, durations, files, folders, lists of names."""
 
 import os
 from enum import StrEnum
@@ -30,7 +30,7 @@ class SeveralNames(TyperCommand):
 
 
 def spread(arguments: list[str]) -> list[str]:
-    """Repeats `--only` and `--without` before each of their names; names are what is no option and no launch file."""
+    """Repeats `--only` and `--without` before each of their names, which end at an option or a launch file."""
     made: list[str] = []
     option = ""
     for number, argument in enumerate(arguments):
@@ -44,60 +44,60 @@ def spread(arguments: list[str]) -> list[str]:
 
 
 def speed(text: str) -> float:
-    """A factor, or `max`, which is 0 in plans.
+    """Returns a factor; 0 for `max`.
 
     Raises:
-        BadParameter: neither.
+        BadParameter: the text is neither.
     """
     meaning = f"a pace; say a number from {SPEED_MIN:g} to {SPEED_MAX:g}, such as 0.5 or 2, or 'max'"
     return 0.0 if text == "max" else _number(text, SPEED_MIN, SPEED_MAX, meaning)
 
 
 def seconds(text: str) -> float:
-    """A duration.
+    """Returns a duration in seconds.
 
     Raises:
-        BadParameter: it is none.
+        BadParameter: the text is not a duration.
     """
     meaning = f"a duration; say seconds from 0.001 to {SECONDS_MAX:g}, such as 60 or 0.5"
     return _number(text, 0.001, SECONDS_MAX, meaning)
 
 
 def new_file(text: str) -> Path:
-    """The absolute path of a file that can be written, in a folder that is there or can be made.
+    """Returns the absolute path of a file that can be written, in a folder that exists or can be created.
 
     Raises:
-        BadParameter: it names a folder, or lies where nothing may be written.
+        BadParameter: the text names a folder, or a place without write permission.
     """
     path = Path(text).absolute()
     if os.path.isdir(path):
         raise typer.BadParameter(f"'{text}' is a folder; name a file in it")
     nearest = next(folder for folder in path.parents if os.path.exists(folder))
     if not os.path.isdir(nearest) or not os.access(path if os.path.exists(path) else nearest, os.W_OK):
-        raise typer.BadParameter(f"'{text}' cannot be written: {nearest} is no folder that you may write to")
+        raise typer.BadParameter(f"'{text}' cannot be written: {nearest} is not a folder that you may write to")
     return path
 
 
 def video_file(text: str) -> Path:
-    """A new file that ends in .mp4.
+    """Returns the absolute path of a new .mp4 file.
 
     Raises:
-        BadParameter: it ends otherwise, or cannot be written.
+        BadParameter: another suffix, or the file cannot be written.
     """
     if Path(text).suffix != ".mp4":
         right = Path(text).with_suffix(".mp4") if Path(text).name else "match.mp4"
-        raise typer.BadParameter(f"'{text}' is no .mp4, the only kind that is written; say {right}")
+        raise typer.BadParameter(f"'{text}' is not an .mp4 file, the only format; say {right}")
     return new_file(text)
 
 
 def folder(text: str) -> Path:
-    """A folder that is there.
+    """Returns the path of an existing folder.
 
     Raises:
-        BadParameter: it is none.
+        BadParameter: no such folder.
     """
-    if not os.path.isdir(text or "."):  # False, too, for what can be no path or is forbidden
-        raise typer.BadParameter(f"there is no folder '{text}'")
+    if not os.path.isdir(text or "."):  # also False for text that cannot be a path, and without permission
+        raise typer.BadParameter(f"no folder '{text}'")
     return Path(text)
 
 

@@ -12,23 +12,23 @@ from fwk.clock import US_PER_S, wall_us
 
 
 def ticks(text: str) -> tuple[int, int]:
-    """First and last of `120`, `100..200`, `100-200`, `100..`, `..200`.
+    """Returns first and last tick of `120`, `100..200`, `100-200`, `100..`, `..200`.
 
     Raises:
-        BadParameter: it is none of these.
+        BadParameter: the text is none of these.
     """
     found = re.fullmatch(r"(\d{0,18})(\.\.|-)?(\d{0,18})", text, re.ASCII)
     if not found or not (found[1] or found[3]):
-        raise typer.BadParameter(f"--tick: '{text}' is no tick; say 120, or 100..200")
+        raise typer.BadParameter(f"--tick: '{text}' is not a tick; say 120, or 100..200")
     first = int(found[1] or 0)
     return _ordered(first, int(found[3] or sys.maxsize) if found[2] else first, f"--tick: '{text}'")
 
 
 def times_us(text: str) -> tuple[int, int]:
-    """First and last logical time of `1.5..2`, `1.5..`, `..2`, which are seconds.
+    """Returns first and last logical time, in microseconds, of `1.5..2`, `1.5..`, `..2`, which are seconds.
 
     Raises:
-        BadParameter: it is none of these.
+        BadParameter: the text is none of these.
     """
     first, dots, last = text.partition("..")
     try:
@@ -37,20 +37,20 @@ def times_us(text: str) -> tuple[int, int]:
             return _ordered(first_us, last_us if last else sys.maxsize, f"--time: '{text}'")
     except (ValueError, OverflowError):
         pass
-    raise typer.BadParameter(f"--time: '{text}' is no range of seconds; say 1.5..2, or 1.5..")
+    raise typer.BadParameter(f"--time: '{text}' is not a range of seconds; say 1.5..2, or 1.5..")
 
 
 def _ordered(first: int, last: int, said: str) -> tuple[int, int]:
     if first > last:
-        raise typer.BadParameter(f"{said} begins behind its end; say the smaller one first")
+        raise typer.BadParameter(f"{said} begins after its end; say the smaller number first")
     return first, last
 
 
 def moment_us(text: str, option: str) -> int:
-    """Wall time of `90`, seconds ago, or of `14:05`, `14:05:30`: when it was that time last.
+    """Returns the wall time of `90`, seconds ago, or of `14:05` or `14:05:30`, the last such moment, in microseconds.
 
     Raises:
-        BadParameter: it is none of these.
+        BadParameter: the text is none of these.
     """
     now_us = wall_us()
     if re.fullmatch(r"\d\d?:\d\d(:\d\d)?", text, re.ASCII):
@@ -66,20 +66,22 @@ def moment_us(text: str, option: str) -> int:
                 return now_us - round(seconds * US_PER_S)
         except ValueError:
             pass
-    raise typer.BadParameter(f"{option}: '{text}' is no time; say how many seconds ago, or a time of day such as 14:05")
+    raise typer.BadParameter(
+        f"{option}: '{text}' is not a time; say how many seconds ago, or a time of day such as 14:05"
+    )
 
 
 def pattern(text: str, option: str) -> re.Pattern[str]:
-    """A regular expression that minds no capitals.
+    """Compiles a regular expression that ignores case.
 
     Raises:
-        BadParameter: it is none.
+        BadParameter: the text is not a regular expression.
     """
     try:
-        with warnings.catch_warnings(action="ignore", category=FutureWarning):  # what may mean something else one day
+        with warnings.catch_warnings(action="ignore", category=FutureWarning):  # of syntax that may change its meaning
             return re.compile(text, re.IGNORECASE)
     except (re.error, OverflowError, RecursionError) as error:
         right = re.escape(text)
         raise typer.BadParameter(
-            f"{option}: '{text}' is no regular expression: {error}; as plain text: {right}"
+            f"{option}: '{text}' is not a regular expression: {error}; as plain text: {right}"
         ) from error

@@ -6,7 +6,7 @@ from fwk.cli.output import imported, run_program, say
 
 
 def main() -> None:
-    """Runs the command line; Ctrl-C before the start is no failure."""
+    """Runs the command line; Ctrl-C before the start ends it with exit code 0."""
     run_program(_run, interrupted=0)
 
 

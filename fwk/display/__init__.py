@@ -1,1 +1,1 @@
-"""What a run shows in a terminal: live screen, plain lines, summary."""
+"""Terminal output of a run: live display, plain lines, summary."""

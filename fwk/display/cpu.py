@@ -1,4 +1,4 @@
-"""CPU time of the processes of a run, as /proc tells it."""
+"""CPU time of the processes of a run, from /proc."""
 
 import os
 from collections.abc import Iterable

@@ -37,9 +37,9 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
     this process has the lowest priority, so that nothing here slows the run.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the run; the display shows how
-    signal.signal(signal.SIGTERM, _leave)  # leaves by an exception, so that the terminal gets its cursor back
+    signal.signal(signal.SIGTERM, _leave)  # ends by an exception, so that the cursor of the terminal is restored
     os.nice(10)
-    with contextlib.suppress(OSError):  # the reader of our output has gone; the run goes on without
+    with contextlib.suppress(OSError):  # the reader of the output has gone; the run goes on without it
         if plain or not sys.stdout.isatty():
             show_lines(View(plan), connection, sys.stdout, Steering(plan.bus_port))
         else:
@@ -107,7 +107,7 @@ def show_live(view: View, connection: socket.socket, console: Console, keyboard:
 
 
 def press(key: str, view: View, steering: Steering) -> None:
-    """Does what a key means."""
+    """Carries out the action of a key."""
     view.message = ""
     if key in ("space", "p"):
         steering.toggle_pause(bool(view.status and view.status.paused))

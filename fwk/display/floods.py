@@ -1,4 +1,4 @@
-"""Groups log lines that say the same, so that a flood of them does not hide all others."""
+"""Groups equivalent log lines, so that a flood of them does not hide all others."""
 
 import re
 from collections import deque
@@ -9,21 +9,21 @@ from fwk.clock import US_PER_S
 from lcmtypes.core import log_t
 
 WINDOW_US = 2 * US_PER_S
-"""Wall time in which lines that say the same are one group."""
+"""Wall time in which equivalent lines are one group."""
 _WARNING_WINDOW_US = 60 * US_PER_S
 """The same for warnings on the live display: one that returns every few seconds does not push out all other lines."""
 PRINTED_MAX = 4
-"""So many lines of a group are printed; the others are counted."""
+"""Number of lines of a group that are printed; the others are counted."""
 _VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")
 
 
 def meaning(line: log_t) -> tuple[int, str]:
-    """Returns what a line says apart from names of components and numbers."""
+    """Returns level and text of a line without names of components and numbers."""
     return line.level, _VARYING.sub("*", line.text)
 
 
 class LineGroup:
-    """A log line and how many lines that say the same came with it."""
+    """A log line and the number of lines that are equivalent to it."""
 
     def __init__(self, line: log_t) -> None:
         self.line = line
@@ -65,7 +65,7 @@ class LineGroups:
 
 
 class FloodGate:
-    """Lets the first lines of each meaning pass, counts the others, and tells their number later."""
+    """Lets the first of equivalent lines pass, counts the others, and reports their number later."""
 
     def __init__(self) -> None:
         self._groups: dict[tuple[int, str], LineGroup] = {}

@@ -12,7 +12,7 @@ _NAMES = {b" ": "space", b"\t": "tab", b"\r": "enter", b"\n": "enter"}
 
 
 class Keyboard:
-    """The terminal's keys, one by one and without echo; Ctrl-C still interrupts the run.
+    """Reads single keys from the terminal without echo; Ctrl-C still interrupts the run.
 
     Without a terminal, or in the background, there are no keys.
     """
@@ -37,7 +37,7 @@ class Keyboard:
 
     @property
     def descriptors(self) -> list[int]:
-        """Returns what to wait for; empty without a terminal."""
+        """Returns the descriptors to wait for; empty without a terminal."""
         return [] if self._descriptor is None else [self._descriptor]
 
     def read(self) -> list[str]:

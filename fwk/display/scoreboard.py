@@ -1,4 +1,4 @@
-"""The application's own words and drawing in display and summary, made of the newest messages."""
+"""Headline, drawing and summary of the application, made of the newest messages."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -16,7 +16,7 @@ class Scoreboard:
 
     The module names the channels that it needs in `CHANNELS`, as patterns.
 
-    A scoreboard that fails says so in the headline; it is decoration and stops nothing.
+    A scoreboard that fails is reported in the headline; the run goes on.
     """
 
     def __init__(self, name: str) -> None:

@@ -1,4 +1,4 @@
-"""What the display asks of its run: whom the main loop waits for, and what the keys do."""
+"""Requests of the display to its run: components that the main loop waits for, and the effects of the keys."""
 
 import os
 import signal
@@ -11,7 +11,7 @@ _TIMEOUT_S = 0.3
 
 
 class Steering:
-    """Asks the run that is shown; never waits for long. `said` is the newest answer, for people."""
+    """Sends requests to the run that is shown; never waits for long. `said` is the newest answer as text."""
 
     def __init__(self, bus_port: int) -> None:
         self._address = supervisor_address(bus_port)

@@ -1,4 +1,4 @@
-"""What the display knows of the run and what its user has chosen: messages, rates, log lines, selection, filters."""
+"""State of the display: newest messages, rates and log lines of the run; selection and filters of the user."""
 
 from collections import deque
 from typing import Any
@@ -87,7 +87,7 @@ class View:
 
     @property
     def waiting(self) -> str:
-        """Returns whom the main loop waits for, and for how long; empty while it advances."""
+        """Returns the components that the main loop waits for, and for how long; empty while the tick advances."""
         if not self.standing_s:
             return ""
         names = ", ".join(self.waits_for[:3]) + (f" and {len(self.waits_for) - 3} more" if self.waits_for[3:] else "")
@@ -122,12 +122,12 @@ class View:
         return envelope.decode(messages.type_named(self._types[channel]), data, channel)
 
     def shown_lines(self) -> list[LineGroup]:
-        """Returns the groups of log lines that selection and level leave."""
+        """Returns the groups of log lines that match selection and level."""
         least = LEVELS[self.level]
         return [group for group in self.lines if group.line.level >= least and self._is_selected(group.line.component)]
 
     def select(self, step: int) -> None:
-        """Chooses the next or previous namespace or component; behind the last, all."""
+        """Selects the next or previous namespace or component; after the last one, all."""
         names = [""]
         for host in self.status.hosts if self.status else ():
             for component in host.components:

@@ -81,7 +81,7 @@ def _channel_table(plan: Plan) -> Table:
 
 def _writer(plan: Plan, channel: ChannelPlan) -> tuple[str, str]:
     if channel.writer == NOBODY:
-        return plan.writer_of(channel) or "nobody", ""
+        return plan.writer_of(channel) or "none", ""
     writer = plan.components[channel.writer]
     if writer.rate_hz is not None:
         return writer.name, rate_word(writer.rate_hz)

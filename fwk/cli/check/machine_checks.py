@@ -1,4 +1,4 @@
-"""What a machine needs for runs: each check tries it, and says what to type where it fails."""
+"""Checks of the machine: each tries one thing that runs need, and names a command that helps."""
 
 import mmap
 import os
@@ -22,11 +22,11 @@ _FILES = 1024  # a supervisor of a hundred processes, or a gateway to a few hund
 
 
 class Level(StrEnum):
-    """How bad it is."""
+    """Severity of a finding."""
 
     OK = "ok"
     WARNING = "warning"
-    """Runs work, something beside them does not."""
+    """Runs work, but something beside them does not."""
     BAD = "bad"
     """Runs do not work."""
 
@@ -39,26 +39,26 @@ class Finding:
     subject: str
     text: str
     advice: str = ""
-    """What to type."""
+    """Command that helps."""
 
 
 def multicast_route() -> Finding:
-    """The public bus: LCM leaves the choice of the interface to the routing table."""
+    """Checks the public bus, for which LCM leaves the choice of the interface to the routing table."""
     advice = "sudo ip link set lo up multicast on; sudo ip route add 224.0.0.0/4 dev lo"
     return _multicast("multicast by route (public bus)", None, advice)
 
 
 def multicast_loopback() -> Finding:
-    """The inner buses."""
+    """Checks the inner buses."""
     return _multicast("multicast on lo (inner buses)", LOOPBACK, "sudo ip link set lo up multicast on")
 
 
 def receive_buffers() -> Finding:
-    """Whether sockets get the buffer that keeps bursts of messages."""
+    """Checks that sockets get buffers large enough for bursts of messages."""
     subject = "receive buffers"
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
-        size = probe.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) // 2  # the kernel doubles what it was asked for
+        size = probe.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) // 2  # the kernel reports twice the size
     if size >= BUFFER_BYTES:
         return Finding(Level.OK, subject, f"{size} bytes")
     advice = f"sudo sysctl -w net.core.rmem_max={BUFFER_BYTES}; for good: the same line in /etc/sysctl.d/60-lcm.conf"
@@ -66,11 +66,11 @@ def receive_buffers() -> Finding:
 
 
 def ports(wanted: Ports) -> Finding:
-    """Whether a run can have the ports that it takes by default."""
+    """Checks that the ports of a run are free."""
     subject = f"ports {wanted.base} to {wanted.end - 1}"
     if wanted.end > _PORTS_END:
         advice = f"fwk-launch FILE --bus-port {_PORTS_END - wanted.end + wanted.base}"
-        return Finding(Level.BAD, subject, f"there are none above {_PORTS_END - 1}", advice)
+        return Finding(Level.BAD, subject, f"the highest port is {_PORTS_END - 1}", advice)
     try:
         PortLock(wanted, "the next run").release()
     except PortsInUseError as error:
@@ -78,21 +78,21 @@ def ports(wanted: Ports) -> Finding:
     taken = [port for port in range(wanted.base, wanted.end) if not _is_free(port)]
     if taken:
         advice = f"fwk-launch FILE --bus-port {wanted.end + 1000}"
-        return Finding(Level.WARNING, subject, f"other programs have {', '.join(map(str, taken[:5]))}", advice)
+        return Finding(Level.WARNING, subject, f"other programs use {', '.join(map(str, taken[:5]))}", advice)
     return Finding(Level.OK, subject, "free")
 
 
 def java() -> Finding:
-    """What `fwk spy` needs."""
+    """Checks the programs that `fwk spy` needs."""
     missing = [program for program in ("java", "javac", "jar") if not shutil.which(program)]
     if missing:
         text = f"no {', '.join(missing)}: 'fwk spy' does not work"
         return Finding(Level.WARNING, "Java", text, "sudo apt install default-jdk")
-    return Finding(Level.OK, "Java", "there, for 'fwk spy'")
+    return Finding(Level.OK, "Java", "installed, for 'fwk spy'")
 
 
 def shared_memory() -> Finding:
-    """Whether camera frames can go from process to process."""
+    """Checks that processes can share camera frames."""
     subject = "shared memory (memfd)"
     try:
         descriptor = os.memfd_create("fwk-doctor")
@@ -105,11 +105,13 @@ def shared_memory() -> Finding:
             os.close(descriptor)
     except OSError as error:
         return Finding(Level.BAD, subject, f"{error.strerror}: cameras do not work")
-    return Finding(Level.OK if works else Level.BAD, subject, "works" if works else "one writes, the other reads else")
+    return Finding(
+        Level.OK if works else Level.BAD, subject, "works" if works else "a second mapping reads other bytes"
+    )
 
 
 def generator() -> Finding:
-    """Whether message types can be generated."""
+    """Checks that message types can be generated."""
     subject, advice = "lcm-gen", "pip install --force-reinstall lcm; sudo apt install libglib2.0-0"
     try:
         result = subprocess.run([lcm_gen(), "--version"], capture_output=True, text=True, check=False)
@@ -121,7 +123,7 @@ def generator() -> Finding:
 
 
 def open_files() -> Finding:
-    """How many files and sockets a process may have."""
+    """Checks the number of files and sockets that a process may open."""
     limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if limit == resource.RLIM_INFINITY or limit >= _FILES:
         return Finding(Level.OK, "open files", f"{limit} a process")
@@ -130,7 +132,7 @@ def open_files() -> Finding:
 
 
 def all_checks(wanted: Ports) -> list[Callable[[], Finding]]:
-    """Every check, most important first; `wanted` are the ports of a run."""
+    """Returns all checks, the most important first; `wanted` are the ports of a run."""
     return [
         multicast_loopback,
         multicast_route,
@@ -144,7 +146,7 @@ def all_checks(wanted: Ports) -> list[Callable[[], Finding]]:
 
 
 def _multicast(subject: str, interface: str | None, advice: str) -> Finding:
-    """Sends a datagram to LCM's group, never further than this machine, and waits for it."""
+    """Sends a datagram to LCM's group within this machine, and waits for it."""
     address = socket.inet_aton(interface or "0.0.0.0")
     with (
         socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as hears,
@@ -159,8 +161,13 @@ def _multicast(subject: str, interface: str | None, advice: str) -> Finding:
         except OSError as error:
             return Finding(Level.BAD, subject, str(error.strerror), advice)
         if not select.select([hears], [], [], _WAIT_S)[0]:
-            return Finding(Level.BAD, subject, "what is sent does not arrive; a firewall?", "sudo nft list ruleset")
-    return Finding(Level.OK, subject, "what is sent arrives")
+            return Finding(
+                Level.BAD,
+                subject,
+                "a datagram that was sent did not arrive; is there a firewall?",
+                "sudo nft list ruleset",
+            )
+    return Finding(Level.OK, subject, "datagrams arrive")
 
 
 def _is_free(port: int) -> bool:

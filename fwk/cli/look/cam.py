@@ -1,4 +1,4 @@
-"""`fwk cam`: what a camera sees, in a run that goes on or in a recording."""
+"""`fwk cam`: frames of a camera, of a run or of a recording."""
 
 import json
 import sys
@@ -40,14 +40,14 @@ def cam(
 ) -> None:
     """Lists cameras, or saves or shows a frame of one.
 
-    Recordings have pictures if the launch file says 'record: {frames: ...}', or has a component that writes some.
+    Recordings have pictures if the launch file says 'record: {frames: ...}', or names a component that writes pictures.
     """
     if raw and not save:
-        raise typer.BadParameter("--raw says how to save; add --save FILE")
+        raise typer.BadParameter("--raw is an option of --save; add --save FILE")
     if tick and not log:
         raise typer.BadParameter("--tick is for recordings; add --log LOG")
     if name and not save and not sys.stdout.isatty():
-        raise typer.BadParameter("a picture is shown in a terminal only; say where it shall go with --save FILE")
+        raise typer.BadParameter("a picture is shown only in a terminal; add --save FILE")
     if log:
         with failing(BAD_INPUT):
             recorded = Recorded(find_log(log), tick)
@@ -87,7 +87,7 @@ def _list(rows: list[dict[str, Any]], as_json: bool) -> None:
         return
     for row in rows:
         age = "no frame yet" if row["age_s"] is None else f"frame {row['sequence']}, {row['age_s']:.2f} s ago"
-        typer.echo(f"{row['writer'] or 'nobody':20} {row['channel']:20} {age}")
+        typer.echo(f"{row['writer'] or 'none':20} {row['channel']:20} {age}")
 
 
 def _newest(name: str, chosen: str | None) -> tuple[Pixels, str]:

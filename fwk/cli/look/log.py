@@ -21,7 +21,7 @@ from fwk.logs.rotating import names
 
 
 class Level(StrEnum):
-    """Levels of lines, the harmless first."""
+    """Levels of lines, the least severe first."""
 
     DEBUG = "debug"
     INFO = "info"
@@ -33,19 +33,17 @@ def log(
     run_dir: Annotated[
         Path | None,
         typer.Argument(
-            metavar="RUN", help="run directory or its name; by default that of the run that goes on, or the newest"
+            metavar="RUN", help="run directory or its name; default: that of the current run, or the newest"
         ),
     ] = None,
     follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
-    level: Annotated[Level, typer.Option(help="lines of this level and worse")] = Level.DEBUG,
+    level: Annotated[Level, typer.Option(help="lines of this level and above")] = Level.DEBUG,
     component: Annotated[str | None, typer.Option(metavar="NAME", help="of this component or pattern")] = None,
     tick: Annotated[str | None, typer.Option(metavar="N|A..B", help="of this tick, or from A to B")] = None,
     time: Annotated[str | None, typer.Option(metavar="A..B", help="from A to B seconds of logical time")] = None,
     file: Annotated[str | None, typer.Option(metavar="NAME", help="written in this source file")] = None,
     line: Annotated[int | None, typer.Option(metavar="N", help="written in this line of the source file")] = None,
-    text: Annotated[
-        str | None, typer.Option(metavar="REGEXP", help="in whose text this is found, in capitals or not")
-    ] = None,
+    text: Annotated[str | None, typer.Option(metavar="REGEXP", help="whose text matches, ignoring case")] = None,
     since: Annotated[
         str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="of the last so many seconds, or from then on")
     ] = None,
@@ -55,7 +53,7 @@ def log(
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Shows the lines that components and framework have written; all conditions have to hold.
+    """Shows the log lines of components and framework that meet all conditions.
 
     In A..B one end may be left out. With `--json` a line is an object with the fields of core.log_t.
     """
@@ -78,7 +76,7 @@ def log(
 
 
 def _find(run_dir: Path | None, chosen: str | None) -> tuple[Path, Callable[[], bool]]:
-    """The log that is meant, and what says whether it may still grow."""
+    """Returns the log, and a function that tells whether it may still grow."""
     if run_dir is None:
         try:
             run = ask(chosen, "run")

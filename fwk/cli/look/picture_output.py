@@ -1,4 +1,4 @@
-"""Pictures for people: saved to a file, or drawn in the terminal with two pixels a character."""
+"""Saves pictures to files, or draws them in the terminal with two pixels a character."""
 
 import shutil
 from pathlib import Path
@@ -20,9 +20,9 @@ _UPPER_HALF = "▀"
 
 
 def save(pixels: Pixels, file: Path, raw: bool = False) -> None:
-    """Writes a picture in the format that the file's name says, or its bytes as they are."""
+    """Writes a picture in the format of the file's suffix, or its bytes as they are."""
     if not raw and file.suffix.lower() not in SUFFIXES:
-        fail(f"{file}: the name says no format; end it in {', '.join(SUFFIXES)}, or say --raw", BAD_INPUT)
+        fail(f"{file}: the name has no suffix of a picture; use one of {', '.join(SUFFIXES)}, or --raw", BAD_INPUT)
     try:
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_bytes(pixels.tobytes() if raw else cv2.imencode(file.suffix.lower(), pixels)[1].tobytes())
@@ -37,7 +37,7 @@ def show(pixels: Pixels) -> None:
 
 
 def as_text(pixels: Pixels, columns: int, rows: int) -> Text:
-    """A picture of at most so many columns and rows of characters, each two pixels high; it keeps its proportions."""
+    """Returns a picture of at most so many columns and rows of characters, each two pixels high, in its proportions."""
     height_px, width_px = pixels.shape[:2]
     factor = min(columns / width_px, 2 * rows / height_px)
     size = max(1, round(width_px * factor)), 2 * max(1, round(height_px * factor / 2))

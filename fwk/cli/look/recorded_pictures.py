@@ -1,4 +1,4 @@
-"""The pictures of a recording, as `fwk cam` lists, saves and shows them."""
+"""Pictures of a recording, for `fwk cam`."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -15,7 +15,7 @@ from fwk.recording.replay.recording import Recording, RecordingError
 
 
 class Recorded:
-    """Pictures of a log up to a tick, if one is named."""
+    """Pictures of a log, up to a tick if one is given."""
 
     def __init__(self, log: Path, tick: int | None) -> None:
         self._log = log
@@ -31,7 +31,7 @@ class Recorded:
             fail(f"{log}: no pictures{upto}; {how}")
 
     def rows(self) -> list[dict[str, Any]]:
-        """Every camera with how many pictures there are of it, for programs."""
+        """Returns each camera with its number of pictures, for programs."""
         found = sorted(self._last.items())
         return [
             {"channel": camera, "pictures": self._counts[camera], "format": last.format, "tick": last.tick}
@@ -39,20 +39,20 @@ class Recorded:
         ]
 
     def lines(self) -> list[str]:
-        """The same for people."""
+        """Returns the same as lines of text."""
         return [
             f"{row['channel']:20} {row['pictures']} pictures ({row['format']}), the last of tick {row['tick']}"
             for row in self.rows()
         ]
 
     def newest(self, name: str) -> tuple[Pixels, str]:
-        """The last picture of a camera, and what it is."""
+        """Returns the last picture of a camera, and its channel, frame, tick and time."""
         picture = self._last[self._camera(name)]
         where = f"{picture.camera}, frame {picture.frame}, tick {picture.tick}, {picture.time_us / US_PER_S:.3f} s"
         return self._decoded(picture), where
 
     def save_all(self, name: str, folder: Path) -> int:
-        """Writes all pictures of a camera as numbered png files; returns how many there were."""
+        """Writes all pictures of a camera as numbered png files; returns their number."""
         camera = self._camera(name)
         for picture in self._pictures():
             if picture.camera == camera:
@@ -63,14 +63,14 @@ class Recorded:
         return (each for each in pictures_in(self._log) if self._tick is None or each.tick <= self._tick)
 
     def _camera(self, name: str) -> str:
-        """The channel that is meant by its name or by that of the camera's component."""
+        """Returns the channel of that name, or of the camera component of that name."""
         camera = self._written_by().get(name, name)
         if camera not in self._last:
             fail(f"{self._log}: no pictures of '{name}'; {hint(name, self._last)}", BAD_INPUT)
         return camera
 
     def _written_by(self) -> dict[str, str]:
-        """Camera components with their channels, if the recording says."""
+        """Returns camera components with their channels, if the recording contains its plan."""
         try:
             plan = Recording(self._log).plan
         except RecordingError:

@@ -1,1 +1,1 @@
-"""What belongs to starting a run: its directory, its files, its profile."""
+"""Start of a run: `fwk-launch`, run directory, files, profile, video."""

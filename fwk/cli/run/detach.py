@@ -62,7 +62,7 @@ def _ticks(bus_port: int) -> bool:
 
 
 def _ended(code: int, run_dir: Path) -> int:
-    """Prints what a run that has already ended left on its console, and returns its exit code."""
+    """Prints the console output of a run that has already ended, and returns its exit code."""
     try:
         sys.stdout.write((run_dir / CONSOLE_FILE).read_text(errors="replace"))
         sys.stdout.flush()

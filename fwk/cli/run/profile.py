@@ -1,4 +1,4 @@
-"""Makes readable pages of the samples that a profiled component left in its run directory."""
+"""Writes readable pages from the samples of a profiled component."""
 
 from pathlib import Path
 
@@ -6,9 +6,9 @@ from fwk.host.profile import SUFFIX
 
 
 def write_profiles(run_dir: Path) -> list[str]:
-    """Writes each profile as text, as a page for the browser, and for speedscope; says where they are."""
+    """Writes each profile as text, as a page for the browser, and for speedscope; returns lines with their places."""
     return [_write(file) for file in sorted(run_dir.glob(f"profile-*{SUFFIX}"))] or [
-        "no profile: no iteration of the component came to its end"
+        "no profile: the component finished no iteration"
     ]
 
 

@@ -32,10 +32,10 @@ class Progress:
 
 
 def render(log: Path, out: Path, draw: Draw) -> list[str]:
-    """Draws a recording; returns the lines that say what came of it.
+    """Draws a recording; returns the lines of the report.
 
     Raises:
-        KeyboardInterrupt: interrupted; a line on stderr says what the video holds.
+        KeyboardInterrupt: interrupted; a line on stderr says how many pictures the video holds.
         VideoError, LogError: the video cannot be made.
     """
     progress = Progress()

@@ -1,4 +1,4 @@
-"""The folders that keep what belongs to one run: made, listed, and removed when there are too many."""
+"""Run directories: creates, lists and prunes them."""
 
 import contextlib
 import fcntl
@@ -15,15 +15,15 @@ from fwk.clock import US_PER_S, wall_us
 RUNS = Path(".cache", "fwk", "runs")
 """Below the home folder."""
 IN_USE = "in-use"
-"""A file in a run directory that every process of the run holds locked."""
+"""A file in a run directory, locked by every process of the run."""
 GB = 1_000_000_000
 KEEP = "keep"
-"""A file that somebody puts into a run directory that is not to be removed by itself."""
+"""A file that protects a run directory from automatic removal."""
 _NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
 
 
 class RunDirError(Exception):
-    """The folder of a run cannot be created; says which and why."""
+    """A run directory cannot be created; the text says which and why."""
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class RunDir:
 
 def make_run_dir(name: str, runs: Path | None = None) -> Path:
     """Creates `<date-time>-<name>-<pid>` in `runs`, by default `~/.cache/fwk/runs`; in use until this process and all
-    that come from it have ended.
+    its descendants have ended.
 
     Raises:
         RunDirError: the folder cannot be created.
@@ -59,7 +59,7 @@ def make_run_dir(name: str, runs: Path | None = None) -> Path:
 
 
 def run_dirs(runs: Path) -> list[RunDir]:
-    """All run directories, the oldest first; what has another name is none."""
+    """Returns all run directories, the oldest first; folders with other names are ignored."""
     found = [path for path in runs.glob("*") if _NAME.fullmatch(path.name) and path.is_dir() and not path.is_symlink()]
     found.sort(key=lambda path: path.name)
     return [RunDir(path, _size(path), in_use(path), (path / KEEP).exists()) for path in found]
@@ -68,7 +68,7 @@ def run_dirs(runs: Path) -> list[RunDir]:
 def prune(runs: Path, keep: int, max_bytes: int) -> list[RunDir]:
     """Removes the oldest run directories until there are at most `keep`, of that size together; 0: any.
 
-    The newest, those in use and those that somebody wants to keep stay; they count.
+    The newest run directory, those in use and those with a `keep` file stay; they count.
     """
     removed = []
     with _alone(runs):
@@ -88,7 +88,7 @@ def prune(runs: Path, keep: int, max_bytes: int) -> list[RunDir]:
 
 @contextlib.contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Nobody makes or removes run directories meanwhile."""
+    """Keeps other processes from creating and removing run directories meanwhile."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -98,13 +98,13 @@ def _alone(folder: Path) -> Iterator[None]:
 
 
 def named(path: Path) -> Path:
-    """The run directory that has the name as `fwk runs list` shows it, if nothing is there as typed."""
+    """Returns the run directory of a name from `fwk runs list`, unless the path exists as typed."""
     own = Path.home() / RUNS / path.name
     return own if str(path) == path.name and not os.path.lexists(path) and os.path.isdir(own) else path
 
 
 def in_use(path: Path) -> bool:
-    """Whether a process of that run directory's run still lives."""
+    """Whether a process of the run is alive."""
     try:
         descriptor = os.open(path / IN_USE, os.O_RDWR)
     except OSError:

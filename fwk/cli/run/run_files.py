@@ -1,4 +1,4 @@
-"""What a run directory keeps beside log and plan, so that a run can be understood and repeated later."""
+"""Files of a run directory with which a run can be understood and repeated: plan, settings, versions, types."""
 
 import json
 import platform
@@ -30,9 +30,7 @@ def write_run_files(folder: Path, plan: Plan) -> None:
         for source in _sources(plan):
             shutil.copyfile(source, types / source.name)
     except OSError as error:
-        raise RunDirError(
-            f"{error.filename or folder}: cannot write what belongs to the run: {error.strerror}"
-        ) from error
+        raise RunDirError(f"{error.filename or folder}: cannot write the files of the run: {error.strerror}") from error
 
 
 def _settings(plan: Plan) -> list[str]:
@@ -54,6 +52,6 @@ def _versions() -> dict[str, str]:
 
 
 def _sources(plan: Plan) -> list[Path]:
-    """Those of the user's folders last, so that they are kept where a name stands twice."""
+    """Returns the .lcm files, those of the user last, so that they replace installed ones of the same name."""
     folders = [str(INSTALLED), *reversed(plan.folders)]
     return [source for folder in folders for source in sorted((Path(folder) / "lcmtypes").glob("*.lcm"))]

@@ -1,4 +1,4 @@
-"""The files that say what a run was and how it ended: `run.json` at its start, `result.json` at its end."""
+"""Record of a run in its run directory: `run.json` from its start, `result.json` from its end."""
 
 import contextlib
 import json
@@ -15,7 +15,7 @@ RESULT_FILE = "result.json"
 
 @dataclass(frozen=True)
 class RunRecord:
-    """What a run directory says about its run; None and empty text: unknown, as in directories of older versions."""
+    """Start and result of a run; None or empty text: unknown, as in run directories of older versions."""
 
     name: str = ""
     started_us: int | None = None
@@ -30,7 +30,7 @@ class RunRecord:
 
 
 def write_start(folder: Path, plan: Plan, name: str) -> None:
-    """Notes a run that begins."""
+    """Writes the record of the start of a run."""
     about = {
         "name": name,
         "plan": plan.name,
@@ -44,14 +44,14 @@ def write_start(folder: Path, plan: Plan, name: str) -> None:
 
 
 def write_result(folder: Path, exit_code: int, reason: str, ticks: int, wall_s: float) -> None:
-    """Notes how a run ended; a run directory that was deleted meanwhile stays deleted."""
+    """Writes the result of a run; a run directory that was deleted meanwhile stays deleted."""
     result = {"exit_code": exit_code, "result": reason, "ticks": ticks, "duration_s": wall_s, "ended_us": wall_us()}
     with contextlib.suppress(OSError):
         (folder / RESULT_FILE).write_text(json.dumps(result, indent=1) + "\n")
 
 
 def read_record(folder: Path) -> RunRecord:
-    """Returns what a run directory says about its run, whatever its files contain."""
+    """Returns the record of a run; damaged files count as missing."""
     about, result = _read(folder / RUN_FILE), _read(folder / RESULT_FILE)
     exit_code = _number(result, "exit_code")
     return RunRecord(

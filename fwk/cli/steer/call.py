@@ -37,16 +37,16 @@ def call(
             "--expires",
             parser=seconds,
             metavar="SECONDS",
-            help="logical time after which it is not begun; default: as long",
+            help="logical time after which it is not begun; default: the same",
         ),
     ] = None,
     accepted: Annotated[bool, typer.Option("--accepted", help="do not wait until it is done")] = False,
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
-    """Sends a command or a request to the component of a run that carries it out, and shows what becomes of it.
+    """Sends a command or a request to the component that carries it out, and shows its answers.
 
-    Exit codes: 0 it was done, or accepted if that is asked for; 1 it was not; 2 it could not be sent.
+    Exit codes: 0 done, or accepted with --accepted; 1 not done; 2 it could not be sent.
     """
     wanted = ("done", "accepted") if accepted else ("done",)
     with asking():
@@ -65,7 +65,7 @@ def call(
 def _called(
     name: str, fields: list[str], timeout_s: float, expires_s: float, accepted: bool, chosen: str | None
 ) -> dict[str, Any]:
-    """The last answer, or, after the time-out, `timed_out` and what was the last until then."""
+    """Returns the last answer; after the time-out, the last one until then, with `timed_out`."""
     with client.gateway(chosen) as gateway:
         data = _encoded(gateway, name, fields, chosen)
         last: dict[str, Any] = {}
@@ -77,7 +77,7 @@ def _called(
 
 
 def _owner(name: str, chosen: str | None) -> str:
-    """Who carries the commands out, and how that is."""
+    """Returns the component that carries the commands out, with its state."""
     with client.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")

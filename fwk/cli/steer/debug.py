@@ -30,15 +30,15 @@ def debug(
         typer.Option(min=1, max=65535, metavar="PORT", help="wait for debugpy at this port, not for pdb"),
     ] = None,
     no_debugger: Annotated[
-        bool, typer.Option("--no-debugger", help="only start it by hand, here; Ctrl-C gives it back")
+        bool, typer.Option("--no-debugger", help="only run it here, without a debugger; Ctrl-C gives it back")
     ] = False,
     chosen: RunChoice = None,
 ) -> None:
     """Runs one component of a running system in this terminal under pdb; leaving the debugger gives it back.
 
     It is a restart: the run's own process ends between two ticks, and a new one here, with the files as they are now,
-    takes its place. At breakpoints everybody waits in lockstep; in real time the loop goes on without it.
-    Exit code 0: given back; 1: the component failed or was ended; 2: it cannot be done.
+    takes its place. At breakpoints the run waits in lockstep; in real time the loop goes on without the component.
+    Exit code 0: given back; 1: the component failed or was ended; 2: the request was refused.
     """
     if debugpy and no_debugger:
         raise typer.BadParameter("--debugpy and --no-debugger exclude each other; keep one")

@@ -8,10 +8,10 @@ from fwk.cli.run_options import RunChoice, ask, asking
 
 
 def note(
-    text: Annotated[list[str], typer.Argument(metavar="TEXT", help="what there is to say about this moment")],
+    text: Annotated[list[str], typer.Argument(metavar="TEXT", help="a remark about this moment")],
     chosen: RunChoice = None,
 ) -> None:
-    """Writes a line into the log and the recording of a run, so that the moment is found again; says at which tick."""
+    """Writes a line into the log and the recording of a run, to find this moment again; prints the tick."""
     with asking():
         answer = ask(chosen, "note", text=" ".join(text))
     typer.echo(f"noted, tick {answer['tick']}")

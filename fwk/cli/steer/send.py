@@ -25,7 +25,7 @@ def send(
 ) -> None:
     """Publishes one message on the public bus of a run, on a channel that programs outside may write.
 
-    The run stamps it when it takes it, between two ticks.
+    The run stamps the message when it takes it in, between two ticks.
     """
     with asking():
         with client.gateway(chosen) as board:
@@ -36,7 +36,7 @@ def send(
         row = rows.get(channel)
         outside = [name for name, each in rows.items() if each["outside"]]
         if row is None or not row["outside"]:
-            who = f"{row['writer'] or 'nobody'} writes it" if row else "it is not there"
+            who = f"{row['writer'] or 'no component'} writes it" if row else "no such channel"
             right = hint(channel, outside) if outside else "name it under 'outside:' in the launch file"
             raise MessageError(f"{channel}: {who}; {right}")
         for folder in about["folders"]:
@@ -55,10 +55,10 @@ def send(
 
 
 def made(type_name: str, fields: list[str]) -> Any:
-    """A message with these fields set.
+    """Returns a message with these fields set.
 
     Raises:
-        MessageError: there is no such type or field, or a value is none.
+        MessageError: no such type or field, or a value that is not YAML.
     """
     message: Any = messages.type_named(type_name)()
     for text in fields:
@@ -70,7 +70,7 @@ def made(type_name: str, fields: list[str]) -> Any:
             raise MessageError(f"{path}: {error}") from error
         node = read_value(typed, "", problems)
         if not equals or problems or node is None:
-            raise MessageError(f"'{text}' is no FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")
+            raise MessageError(f"'{text}' is not FIELD=VALUE; write for example x_m=1.5, or xs=[1, 2]")
         *above, last = path.split(".")
         target = message
         for name in above:

@@ -74,10 +74,13 @@ def test_raw_bytes_are_those_of_the_frame(log: Path) -> None:
     [
         (("cyan1/imag", "--log", "{log}", "--save", "{log}.png"), "did you mean 'cyan1/image'?"),
         (("cyan3/image", "--log", "{log}", "--save", "{log}.png"), "no pictures of 'cyan3/image'"),
-        (("cyan1/image", "--log", "{log}", "--save", "{log}.tga"), "the name says no format; end it in .bmp, "),
-        (("cyan1/image", "--log", "{log}"), "a picture is shown in a terminal only"),
+        (
+            ("cyan1/image", "--log", "{log}", "--save", "{log}.tga"),
+            "the name has no suffix of a picture; use one of .bmp, ",
+        ),
+        (("cyan1/image", "--log", "{log}"), "a picture is shown only in a terminal"),
         (("--log", "none.lcm"), "none.lcm: cannot read"),
-        (("--raw",), "--raw says how to save"),
+        (("--raw",), "--raw is an option of --save"),
         (("--tick", "3"), "--tick is for recordings"),
     ],
 )

@@ -38,7 +38,7 @@ def test_ports_of_other_programs_are_named(ports: PortBlock) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", ports.bus + 2))
         found = checks.ports(Ports(ports.bus, 3, 4))
-    assert (found.level, found.text) == (Level.WARNING, f"other programs have {ports.bus + 2}")
+    assert (found.level, found.text) == (Level.WARNING, f"other programs use {ports.bus + 2}")
     assert found.advice.startswith("fwk-launch FILE --bus-port ")
 
 

@@ -22,8 +22,8 @@ def test_fields_are_set_by_name_and_others_are_zero() -> None:
     ("fields", "error"),
     [
         (["vx_m_=1"], "robot.motor_command_t has no field 'vx_m_'; did you mean 'vx_m_s'?"),
-        (["vx_m_s"], "'vx_m_s' is no FIELD=VALUE"),
-        (["vx_m_s=[1"], "'vx_m_s=[1' is no FIELD=VALUE"),
+        (["vx_m_s"], "'vx_m_s' is not FIELD=VALUE"),
+        (["vx_m_s=[1"], "'vx_m_s=[1' is not FIELD=VALUE"),
         (["a.b=1"], "has no field 'a.b'"),
     ],
 )

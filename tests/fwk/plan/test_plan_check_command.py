@@ -51,7 +51,7 @@ def test_the_channels_are_listed(fwk: typer.Typer) -> None:
         ["b/odometry", "robot.odometry_t", "programs", "outside"],
     ]
     lines = CliRunner().invoke(fwk, ["it.yaml", "--channels", "--without", "a/pilot"]).stdout.splitlines()[2:]
-    assert lines[0].split() == ["a/motor_command", "robot.motor_command_t", "nobody", "a/wheels"]
+    assert lines[0].split() == ["a/motor_command", "robot.motor_command_t", "none", "a/wheels"]
 
 
 def test_the_settings_are_listed_with_their_origins(fwk: typer.Typer) -> None:

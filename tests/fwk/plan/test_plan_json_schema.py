@@ -149,6 +149,6 @@ def test_settings_of_a_file_are_searched(load: Callable[..., Plan]) -> None:
         1,
         "error: no setting matches 'no such words'\n",
     )
-    assert "is no regular expression" in said("search", "a(", "--file", "it.yaml")[1]
+    assert "is not a regular expression" in said("search", "a(", "--file", "it.yaml")[1]
     assert said("get", "a/wheels.count", "--file", "it.yaml") == (0, "2\n")
     assert "did you mean 'count'?" in said("get", "a/wheels.cuont", "--file", "it.yaml")[1]
