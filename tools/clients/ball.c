@@ -1,5 +1,6 @@
 // Prints the ball as a robot sees it: a C program that knows nothing of the framework but its .lcm files.
 //
+//   mkdir -p build
 //   lcm-gen -c --c-cpath build --c-hpath build lcmtypes/*.lcm
 //   cc -Ibuild $(pkg-config --cflags lcm) -o ball tools/clients/ball.c build/*.c $(pkg-config --libs lcm)
 //   ./ball cyan1

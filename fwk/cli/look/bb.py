@@ -17,7 +17,7 @@ _RATE_S = 1.0
 _ITEMS_SHOWN = 12
 _ROW_SHOWN = 4
 bb = typer.Typer(add_completion=False, no_args_is_help=True)
-Channel = Annotated[str, typer.Argument(metavar="CHANNEL", help="its full name, such as cyan1/odometry")]
+Channel = Annotated[str, typer.Argument(metavar="CHANNEL", help="full name of a channel, such as cyan1/odometry")]
 
 
 @bb.callback()

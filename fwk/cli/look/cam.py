@@ -21,19 +21,19 @@ FRAME_TYPE = "core.frame_t"
 
 def cam(
     name: Annotated[
-        str, typer.Argument(metavar="[NAME]", help="a camera, such as cyan1/camera, or its channel; none: lists them")
+        str, typer.Argument(metavar="NAME", help="a camera, such as cyan1/camera, or its channel; none: lists them")
     ] = "",
     save: Annotated[
         Path | None,
         typer.Option(metavar="FILE", help="write the frame there; with --log also a folder, for all pictures"),
     ] = None,
     show: Annotated[bool, typer.Option("--show", help="draw it in the terminal, as without --save")] = False,
-    raw: Annotated[bool, typer.Option("--raw", help="with --save: the bytes as they are, row by row")] = False,
+    raw: Annotated[bool, typer.Option("--raw", help="with --save: uncompressed bytes, row by row")] = False,
     log: Annotated[
-        Path | None, typer.Option(metavar="LOG", help="of a recording with pictures, or its run directory")
+        Path | None, typer.Option(metavar="LOG", help="a recording with pictures, or its run directory")
     ] = None,
     tick: Annotated[
-        int | None, typer.Option(min=1, metavar="N", help="with --log: the newest as of tick N, not the last")
+        int | None, typer.Option(min=1, metavar="N", help="with --log: the newest frame up to tick N")
     ] = None,
     chosen: RunChoice = None,
     as_json: Json = False,

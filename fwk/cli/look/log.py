@@ -38,17 +38,17 @@ def log(
     ] = None,
     follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
     level: Annotated[Level, typer.Option(help="lines of this level and above")] = Level.DEBUG,
-    component: Annotated[str | None, typer.Option(metavar="NAME", help="of this component or pattern")] = None,
-    tick: Annotated[str | None, typer.Option(metavar="N|A..B", help="of this tick, or from A to B")] = None,
-    time: Annotated[str | None, typer.Option(metavar="A..B", help="from A to B seconds of logical time")] = None,
-    file: Annotated[str | None, typer.Option(metavar="NAME", help="written in this source file")] = None,
-    line: Annotated[int | None, typer.Option(metavar="N", help="written in this line of the source file")] = None,
-    text: Annotated[str | None, typer.Option(metavar="REGEXP", help="whose text matches, ignoring case")] = None,
+    component: Annotated[str | None, typer.Option(metavar="NAME", help="lines of this component or pattern")] = None,
+    tick: Annotated[str | None, typer.Option(metavar="N|A..B", help="lines of this tick, or from A to B")] = None,
+    time: Annotated[str | None, typer.Option(metavar="A..B", help="lines from A to B seconds of logical time")] = None,
+    file: Annotated[str | None, typer.Option(metavar="NAME", help="lines written in this source file")] = None,
+    line: Annotated[int | None, typer.Option(metavar="N", help="lines written at this line of the source file")] = None,
+    text: Annotated[str | None, typer.Option(metavar="REGEXP", help="lines whose text matches, ignoring case")] = None,
     since: Annotated[
-        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="of the last so many seconds, or from then on")
+        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="from so many seconds ago, or from a time of day")
     ] = None,
     until: Annotated[
-        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="older than so many seconds, or until then")
+        str | None, typer.Option(metavar="SECONDS|HH:MM:SS", help="until so many seconds ago, or until a time of day")
     ] = None,
     chosen: RunChoice = None,
     as_json: Json = False,

@@ -1,4 +1,4 @@
-"""`fwk spy`: lcm-spy that knows our types."""
+"""`fwk spy`: lcm-spy with all message types."""
 
 from pathlib import Path
 from typing import Annotated
@@ -16,10 +16,10 @@ def spy(
     jar: Annotated[bool, typer.Option("--jar", help="only build the jar and print the class path")] = False,
     url: Annotated[str, typer.Option(help="bus to listen on")] = Plan.public_url,
     types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ are added to the framework's")
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ is added")
     ] = Path(),
 ) -> None:
-    """Starts lcm-spy with our types on its class path, so that it shows decoded messages.
+    """Starts lcm-spy with all message types on its class path, so that it shows decoded messages.
 
     For other Java programs: java -cp "$(fwk spy --jar)" MyProgram
     """

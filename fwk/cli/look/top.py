@@ -23,13 +23,15 @@ _MEGABYTE = 1 << 20
 
 
 def top(
-    once: Annotated[bool, typer.Option("--once", help="print one picture and end")] = False,
+    once: Annotated[bool, typer.Option("--once", help="print one table and end")] = False,
     interval_s: Annotated[
-        float, typer.Option("--interval", min=0.1, max=86_400, metavar="SECONDS", help="time from picture to picture")
+        float, typer.Option("--interval", min=0.1, max=86_400, metavar="SECONDS", help="time from table to table")
     ] = 1.0,
     since: Annotated[
         Since,
-        typer.Option(metavar="start|now|picture", help="start of the times: the run's start, now, or the last picture"),
+        typer.Option(
+            metavar="start|now|picture", help="start of the measurement: the run's start, now, or the last table"
+        ),
     ] = "start",
     chosen: RunChoice = None,
     as_json: Json = False,

@@ -23,7 +23,7 @@ def compare(
         bool, typer.Option("--common", help="only sequence numbers that both logs reach; for logs of different length")
     ] = False,
     types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ names the fields")
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
     as_json: Json = False,
 ) -> None:

@@ -20,7 +20,7 @@ def log_info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="log or run directory")],
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
     types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
 ) -> None:
     """Shows channels, types, counts, rates, ticks, gaps and damage of a log."""

@@ -43,7 +43,7 @@ def run_directories() -> None:
 
 @runs.command("list")
 def list_runs(as_json: Json = False) -> None:
-    """Lists all run directories, the oldest first: start, duration, seed, result, size, and whether the run goes on."""
+    """Lists all run directories, the oldest first: start, duration, seed, result, size, and state."""
     found = run_dirs(Path.home() / RUNS)
     if as_json:
         typer.echo(json.dumps([_plain(each) for each in found], indent=2))
@@ -74,10 +74,10 @@ def list_runs(as_json: Json = False) -> None:
 @runs.command("prune")
 def prune_runs(
     keep: Annotated[
-        int, typer.Option(min=0, metavar="N", help="number of runs that stay; 0: any number")
+        int, typer.Option(min=0, metavar="N", help="number of run directories; 0: any number")
     ] = RunsPlan.keep,
     size_gb: Annotated[
-        float, typer.Option(parser=_gigabytes, metavar="GB", help="their size together; 0: any size")
+        float, typer.Option(parser=_gigabytes, metavar="GB", help="size of all run directories; 0: any size")
     ] = RunsPlan.size_gb,
 ) -> None:
     """Removes the oldest runs beyond these limits; never the newest, one that goes on, or one that is kept."""

@@ -21,7 +21,7 @@ def video(
     ],
     draw: Annotated[str, typer.Option(help="module:function that draws; by default the launch file's 'video'")] = "",
     types: Annotated[
-        Path, typer.Option(parser=folder, metavar="FOLDER", help="whose lcmtypes/ the messages are of")
+        Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
 ) -> None:
     """Draws a recording into an mp4 video, as H.264 or VP9 where available, else as MPEG-4 part 2.

@@ -23,9 +23,13 @@ TIMEOUT_S = 10.0
 
 
 def call(
-    name: Annotated[str, typer.Argument(metavar="NAME", help="of the commands or requests, such as house/pour")],
+    name: Annotated[str, typer.Argument(metavar="NAME", help="a command or request, such as house/pour")],
     fields: Annotated[
-        list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
+        list[str] | None,
+        typer.Argument(
+            metavar="FIELD=VALUE...",
+            help="fields of the message, the others are zero; member of a struct: field.below=1",
+        ),
     ] = None,
     timeout_s: Annotated[
         float,

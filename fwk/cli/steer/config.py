@@ -67,9 +67,9 @@ def search(
 @config.command()
 def schema(
     of: Annotated[
-        str, typer.Argument(metavar="[FILE|MODULE]", help="a launch file, or a component's module: only its settings")
+        str, typer.Argument(metavar="FILE|MODULE", help="a launch file, or a component's module: only its settings")
     ] = "",
-    host: Annotated[bool, typer.Option("--host", help="of host-specific files, NAME.host.yaml")] = False,
+    host: Annotated[bool, typer.Option("--host", help="the schema of host-specific files, NAME.host.yaml")] = False,
 ) -> None:
     """Prints the JSON Schema of launch files, with all settings and ports of the components found from here.
 

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.run_options import FAILED, Json, Names, RunChoice, SomeNames, Timeout, ask, asking
+from fwk.cli.run_options import FAILED, Json, Names, RunChoice, Timeout, ask, asking
 from fwk.control import client
 from fwk.control.client import NoAnswerError, RefusedError
 from fwk.control.requests import Action
@@ -53,7 +53,7 @@ load = _command(
 )
 kill = _command(
     "kill",
-    """Ends components at once, even in the middle of an iteration, and does not start them again.
+    """Ends components immediately, also within an iteration, and does not start them again.
 
     No component sees any output of that iteration; `finalize` is not called. `fwk start` brings
     the components back.""",
@@ -61,7 +61,9 @@ kill = _command(
 
 
 def stop(
-    names: SomeNames = None,
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="NAME...", help="components, or patterns such as 'cyan1/*'")
+    ] = None,
     whole: Annotated[bool, typer.Option("--all", help="end the whole run, as Ctrl-C in its terminal does")] = False,
     chosen: RunChoice = None,
     timeout_s: Timeout = WAIT_S,

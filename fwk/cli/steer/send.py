@@ -17,9 +17,15 @@ from fwk.plan.files.source import read_value
 
 
 def send(
-    channel: Annotated[str, typer.Argument(metavar="CHANNEL", help="one that the launch file names under 'outside:'")],
+    channel: Annotated[
+        str, typer.Argument(metavar="CHANNEL", help="a channel that the launch file names under 'outside:'")
+    ],
     fields: Annotated[
-        list[str] | None, typer.Argument(metavar="FIELD=VALUE...", help="others are zero; of a struct: field.below=1")
+        list[str] | None,
+        typer.Argument(
+            metavar="FIELD=VALUE...",
+            help="fields of the message, the others are zero; member of a struct: field.below=1",
+        ),
     ] = None,
     chosen: RunChoice = None,
 ) -> None:
