@@ -15,7 +15,7 @@ _LAUNCH_FILES = (".yaml", ".yml")
 
 
 class Hosting(StrEnum):
-    """Which components share a process."""
+    """Distribution of components to processes."""
 
     PROCESS = "process"
     ROBOT = "robot"
@@ -23,7 +23,7 @@ class Hosting(StrEnum):
 
 
 class SeveralNames(TyperCommand):
-    """A command whose `--only` and `--without` take several names in a row: `--only cyan1 world`."""
+    """Command whose `--only` and `--without` take several names in a row: `--only cyan1 world`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         return super().parse_args(ctx, spread(args))

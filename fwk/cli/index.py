@@ -39,7 +39,7 @@ class Command(NamedTuple):
 
     @property
     def arguments(self) -> list[Parameter]:
-        """All parameters without a name."""
+        """Returns all parameters without a name."""
         return [each for each in self.parameters if not each.options]
 
 

@@ -1,4 +1,4 @@
-"""What commands print, and how they end: sentences instead of tracebacks, whatever happens to the terminal."""
+"""Output and end of the commands: sentences instead of tracebacks, whatever happens to the terminal."""
 
 import errno
 import os
@@ -109,6 +109,6 @@ def _ended(error: OSError) -> int:
 
 
 def _discard_output() -> None:
-    """Discards what is still buffered, so that the interpreter does not fail on it at its end."""
+    """Discards buffered output, so that the interpreter does not fail on it at its end."""
     null = os.open(os.devnull, os.O_WRONLY)
     os.dup2(null, sys.stdout.fileno())

@@ -13,18 +13,18 @@ FUNCTIONS = {
 """Command to the function that carries it out; its arguments are the command's parameters, it returns the exit code."""
 
 
-class _Unreadable(Exception):  # noqa: N818 - typer explains what is wrong
-    pass
+class _UnreadableError(Exception):
+    """The words contain something that only typer understands or explains."""
 
 
 def prepared(words: list[str]) -> Callable[[], int] | None:
-    """Returns the call that the words mean; None if another command is meant, or a mistake has to be explained."""
+    """Returns the call of a thin command; None for other commands, and for words with a mistake, which typer explains."""
     if words[0] not in FUNCTIONS:
         return None
     command = next(each for each in read() if each.words == ("fwk", words[0]))
     try:
         values = arguments(command, words[1:])
-    except _Unreadable:
+    except _UnreadableError:
         return None
     module, _, name = FUNCTIONS[words[0]].partition(":")
 
@@ -45,7 +45,7 @@ def arguments(command: Command, words: list[str]) -> dict[str, Any]:
     """Reads words into values by the names of the command's parameters.
 
     Raises:
-        _Unreadable: a word that the full parser has to judge.
+        _UnreadableError: a word that the full parser has to judge.
     """
     values: dict[str, Any] = {each.name: _empty(each) for each in command.parameters}
     places = command.arguments
@@ -54,7 +54,7 @@ def arguments(command: Command, words: list[str]) -> dict[str, Any]:
         word = left.pop(0)
         if not word.startswith("-") or word == "-":
             if not places:
-                raise _Unreadable
+                raise _UnreadableError
             _keep(values, places[0], word)
             if not places[0].many:
                 places = places[1:]
@@ -62,10 +62,10 @@ def arguments(command: Command, words: list[str]) -> dict[str, Any]:
         name, equals, value = word.partition("=")
         option = command.option(name)
         if option is None or (option.flag and equals) or (not option.flag and not equals and not left):
-            raise _Unreadable
+            raise _UnreadableError
         _keep(values, option, True if option.flag else value if equals else left.pop(0))
     if any(each.required and not values[each.name] for each in command.arguments):
-        raise _Unreadable
+        raise _UnreadableError
     return values
 
 
@@ -75,7 +75,7 @@ def _empty(parameter: Parameter) -> Any:
 
 def _keep(values: dict[str, Any], parameter: Parameter, value: Any) -> None:
     if parameter.kind not in ("text", "boolean") or parameter.choices:
-        raise _Unreadable
+        raise _UnreadableError
     if parameter.many:
         values[parameter.name].append(value)
     else:

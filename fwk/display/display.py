@@ -1,4 +1,4 @@
-"""The process that shows a run: a live picture on a terminal, lines of text otherwise."""
+"""Display process: a live picture of the run on a terminal, lines of text otherwise."""
 
 import contextlib
 import os

@@ -11,7 +11,7 @@ from lcmtypes.core import log_t
 WINDOW_US = 2 * US_PER_S
 """Wall time in which equivalent lines are one group."""
 _WARNING_WINDOW_US = 60 * US_PER_S
-"""The same for warnings on the live display: one that returns every few seconds does not push out all other lines."""
+"""Such wall time for warnings on the live display, where a warning every few seconds would push out all other lines."""
 PRINTED_MAX = 4
 """Number of lines of a group that are printed; the others are counted."""
 _VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")
@@ -27,7 +27,7 @@ class LineGroup:
 
     def __init__(self, line: log_t) -> None:
         self.line = line
-        """The newest of them."""
+        """Newest line of the group."""
         self.count = 1
         self.since_us = 0
         """When the group began, in monotonic wall time."""
@@ -40,7 +40,7 @@ class LineGroup:
 
 
 class LineGroups:
-    """The last lines of a log, in groups, the newest last."""
+    """Groups of the last lines of a log, the newest last."""
 
     def __init__(self, kept: int) -> None:
         self._groups: deque[LineGroup] = deque(maxlen=kept)
@@ -71,7 +71,7 @@ class FloodGate:
         self._groups: dict[tuple[int, str], LineGroup] = {}
 
     def passes(self, line: log_t, now_us: int) -> bool:
-        """Whether a line that came at `now_us` of monotonic wall time is to be printed."""
+        """Tells whether to print a line that came at `now_us` of monotonic wall time."""
         key = meaning(line)
         group = self._groups.get(key)
         if group is None:

@@ -121,7 +121,7 @@ def terminal_width(descriptor: int = 1) -> int | None:
 
 
 def has_colour(descriptor: int = 1) -> bool:
-    """Whether output may have colours: on a terminal, unless NO_COLOR is set."""
+    """Tells whether output may have colours: on a terminal, unless NO_COLOR is set."""
     try:
         return os.isatty(descriptor) and not os.environ.get("NO_COLOR")
     except OSError:

@@ -37,7 +37,7 @@ class View:
         self.level = 0
         """Index in `LEVELS` of the least level that is shown."""
         self.message = ""
-        """The answer to the last key."""
+        """Answer to the last key."""
         self._statuses: deque[status_t] = deque(maxlen=_RATE_STATUSES)
         self._types = {channel.name: channel.type_name for channel in plan.channels}
         self._raw: dict[str, bytes] = {}

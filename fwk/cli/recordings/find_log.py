@@ -1,4 +1,4 @@
-"""What the commands on recordings share: finding the log in a run directory, and ending with a plain sentence."""
+"""Finds the log of a recording, and turns unreadable files into a sentence and an exit code."""
 
 import os
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ from fwk.lcm.typegen import TypeGenerationError
 
 @contextmanager
 def failing(code: int) -> Iterator[None]:
-    """Turns mistakes in files into their sentence on stderr and an exit code."""
+    """Turns unreadable files into a sentence on stderr and an exit code."""
     try:
         yield
     except (LogError, TypeGenerationError) as error:
@@ -23,13 +23,13 @@ def failing(code: int) -> Iterator[None]:
 
 
 def find_log(path: Path) -> Path:
-    """The log that is meant: the file itself, or the one log in a run directory, which may be said by its name alone.
+    """Returns the log: the file itself, or the only log in a run directory, which may be given by its name alone.
 
     Raises:
-        LogError: the directory holds no log, or several.
+        LogError: the directory contains no log, or several.
     """
     path = named(path)
-    if not os.path.isdir(path):  # False, too, for what can be no path or is forbidden
+    if not os.path.isdir(path):  # also False for text that cannot be a path, and without permission
         return path
     found = [file for file in sorted(path.iterdir()) if file.is_file() and _is_log(file)]
     if len(found) != 1:

@@ -15,10 +15,10 @@ from fwk.clock import US_PER_S, wall_us
 RUNS = Path(".cache", "fwk", "runs")
 """Below the home folder."""
 IN_USE = "in-use"
-"""A file in a run directory, locked by every process of the run."""
+"""File in a run directory, locked by every process of the run."""
 GB = 1_000_000_000
 KEEP = "keep"
-"""A file that protects a run directory from automatic removal."""
+"""File that protects a run directory from automatic removal."""
 _NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
 
 
@@ -28,7 +28,7 @@ class RunDirError(Exception):
 
 @dataclass(frozen=True)
 class RunDir:
-    """A run directory."""
+    """Run directory with its size and state."""
 
     path: Path
     size_bytes: int
@@ -104,7 +104,7 @@ def named(path: Path) -> Path:
 
 
 def in_use(path: Path) -> bool:
-    """Whether a process of the run is alive."""
+    """Tells whether a process of the run is alive."""
     try:
         descriptor = os.open(path / IN_USE, os.O_RDWR)
     except OSError:
