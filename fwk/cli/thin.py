@@ -18,7 +18,7 @@ class _UnreadableError(Exception):
 
 
 def prepared(words: list[str]) -> Callable[[], int] | None:
-    """Returns the call of a thin command; None for other commands, and for words with a mistake, which typer explains."""
+    """Returns the call of a thin command; None for other commands and for mistakes, which typer explains."""
     if words[0] not in FUNCTIONS:
         return None
     command = next(each for each in read() if each.words == ("fwk", words[0]))
