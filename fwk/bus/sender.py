@@ -2,12 +2,10 @@
 
 import itertools
 from collections import deque
-from collections.abc import Container
 
 from fwk.bus.network import Network
-from fwk.bus.sockets import GROUP, LOOPBACK, Address, port_of, told
+from fwk.bus.sockets import GROUP, LOOPBACK, Address
 from fwk.lcm import wire
-from fwk.lcm.messages import MessageError
 
 FRAGMENT_INTERVAL_US = 1_000
 """Wall time between two fragments of a paced message."""
@@ -16,7 +14,7 @@ NEVER_US = 1 << 62
 
 
 class Sender:
-    """Sends LCM messages from a port of its own, by which receivers know the process; hears what is sent to that port.
+    """Sends LCM messages from a port of its own, by which receivers know the process; `socket` hears that port.
 
     A paced message needs `send_due` to be called again at the time that `due_us` names.
     """
@@ -32,7 +30,6 @@ class Sender:
         # The next process on this port must not seem to continue a message that this one left incomplete. A process
         # sends less than a message a microsecond, so the numbers of two lives do not meet.
         self._number = itertools.count(network.now_us())
-        self._assembler = wire.Assembler()
         self._paced: deque[tuple[bytes, Address]] = deque()
 
     def publish(self, channel: bytes, data: bytes, port: int) -> None:
@@ -62,23 +59,6 @@ class Sender:
     def send(self, channel: bytes, data: bytes, port: int) -> None:
         """Sends a message to the one process that has `port`."""
         self._send(channel, data, (LOOPBACK, port))
-
-    def receive(self, members: Container[int]) -> tuple[bytes, bytes] | None:
-        """Returns the next message that was sent to this port alone as (channel, data); None when none waits.
-
-        Raises:
-            MessageError: the datagram is not an LCM message, or does not come from one of the ports of `members`.
-        """
-        message = None
-        while message is None:
-            try:
-                datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
-            except OSError:  # no datagram, or the news that an earlier one found no receiver
-                return None
-            if port_of(address) not in members:
-                raise MessageError(f"datagram from {told(address)}, which is not of this run")
-            message = self._assembler.feed(datagram, address[1])
-        return message
 
     def _send(self, channel: bytes, data: bytes, address: Address) -> None:
         try:

@@ -16,7 +16,7 @@ Hosting = Literal["process", "robot", "single", "mixed"]
 Settings = dict[str, str | int | float | bool]
 
 
-MANY = 600
+MANY = 400
 """More messages of an iteration than a writer keeps for readers that lose them."""
 
 
@@ -176,7 +176,7 @@ def _in_turns(random: Random, parts: tuple[Part, ...]) -> tuple[Part, ...]:
 
 def _settings(random: Random, crashes: bool) -> Settings:
     made: Settings = {
-        "bursts": random.choice([0, 1, 3, MANY if random.random() < 0.04 else 3]),
+        "bursts": random.choice([0, 1, 3, MANY if random.random() < 0.02 else 3]),
         "ballast": random.choice([0, 20, 20, 20, 200_000 if random.random() < 0.2 else 20]),
         "work_us": random.choice([0, 0, 500, 20_000 if random.random() < 0.3 else 0]),
         "eager": random.choice([0.1, 0.3, 0.8]),

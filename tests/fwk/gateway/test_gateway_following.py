@@ -14,6 +14,7 @@ from fwk.lcm.messages import sequence_of
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_records_t, fetch_t, gone_t, log_t, protocol_t, tick_record_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
+from tests.harness.datagrams import received
 from tests.harness.runs import PortBlock
 
 RUN = 4711
@@ -138,7 +139,7 @@ def test_a_record_that_is_missing_is_asked_for(followed: Followed) -> None:
     followed.record(4)
     followed.serve()
     assert followed.kept.ticks == [1]
-    message = followed.supervisor.receive(followed.ports.members)
+    message = received(followed.supervisor, followed.ports)
     assert message
     fetch = fetch_records_t.decode(message[1])
     assert (message[0], fetch.first_tick, fetch.last_tick) == (b"fwk/fetch_records", 2, 3)
@@ -168,7 +169,7 @@ def test_gateway_answers_for_a_dead_writer_with_two_ticks(followed: Followed) ->
     ears = multicast_receiver(followed.ports.channel(0))
     followed.ask(host=1, first=1, last=6)
     followed.serve()
-    gone = [gone_of(followed.reader.receive(followed.ports.members)) for _ in range(2)]
+    gone = [gone_of(received(followed.reader, followed.ports)) for _ in range(2)]
     assert gone == [(1, 2), (6, 6)]
     came = [wire.Assembler().feed(ears.recv(wire.DATAGRAM_MAX), 0) for _ in range(3)]
     sent = [sequence_of(data) for _, data in filter(None, came)]
@@ -183,7 +184,7 @@ def test_it_keeps_the_newest_of_who_has_not_written_for_long(followed: Followed)
     followed.receive()
     followed.ask(host=1, first=1, last=1)
     followed.serve()
-    assert followed.reader.receive(followed.ports.members) is None
+    assert received(followed.reader, followed.ports) is None
 
 
 def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) -> None:

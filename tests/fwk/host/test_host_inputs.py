@@ -14,10 +14,11 @@ from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.message_history import MESSAGES_MAX
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
-from fwk.lcm.messages import MessageError, sequence_of
+from fwk.lcm.messages import sequence_of
 from fwk.model.ports import Ports
 from lcmtypes.core import fetch_t, gone_t, void_t
 from tests.fwk.host.host_parts import IMU, imu, plan
+from tests.harness.datagrams import received
 from tests.harness.runs import PortBlock, pause
 
 RUN = 4711
@@ -61,7 +62,7 @@ class Pair:
     def serve(self) -> bool:
         """The writer answers, the reader takes the answer."""
         for end in (self.writer_socket, self.reader_socket):
-            while message := end.receive(self.ports.members):
+            while message := received(end, self.ports):
                 if message[0] == b"fwk/fetch":
                     self.asked.append(fetch_t.decode(message[1]))
                     self.outputs.answer(fetch_t.decode(message[1]))
@@ -174,11 +175,11 @@ def test_only_messages_of_a_predecessor_come_from_the_gateway(make: Make) -> Non
     fetch = fetch_t()
     fetch.run, fetch.host, fetch.channel, fetch.first_sequence, fetch.last_sequence = RUN, 1, 0, 4, 7
     pair.outputs.answer(fetch)
-    message = pair.gateway_socket.receive(pair.ports.members)
+    message = received(pair.gateway_socket, pair.ports)
     assert message
     passed = fetch_t.decode(message[1])
     assert (passed.host, passed.first_sequence, passed.last_sequence) == (1, 4, 5)
-    assert pair.gateway_socket.receive(pair.ports.members) is None
+    assert received(pair.gateway_socket, pair.ports) is None
 
 
 def test_restarted_process_fetches_its_own_past_from_the_gateway(make: Make) -> None:
@@ -223,6 +224,7 @@ def test_a_stranger_cannot_ask_or_answer(make: Make) -> None:
     pair = make()
     stranger = Sender(pair.ports.end + 1, pair.network)
     stranger.send(b"fwk/gone", gone_t().encode(), pair.ports.host(1))
-    with pytest.raises(MessageError, match=rf"port {pair.ports.end + 1}, which is not of this run"):
-        pair.reader_socket.receive(pair.ports.members)
+    said: list[str] = []
+    assert received(pair.reader_socket, pair.ports, lambda _, text: said.append(text)) is None
+    assert said == [f"datagram from port {pair.ports.end + 1}, which is not of this run; refused"]
     stranger.socket.close()
