@@ -1,4 +1,4 @@
-"""The one module that asks for the time and waits: logical time for components, wall time for the framework."""
+"""The only module that reads clocks and waits: logical time for components, wall time for the framework."""
 
 import operator
 import time
@@ -7,16 +7,15 @@ US_PER_S = 1_000_000
 _SILENT_ITERATIONS = 20  # of a time source that has never set the time, before it is reported
 _TIME_MAX_US = 10**18  # of logical time: 30,000 years, so that periods can be added
 SECONDS_MAX = 1e9
-"""The longest duration that anybody may ask for, 30 years."""
+"""The longest duration that can be requested, 30 years."""
 SPEED_MIN, SPEED_MAX = 1e-6, 1e6
-"""Of simulated time, in logical seconds per wall second."""
+"""Limits of the speed of simulated time, in logical seconds per wall second."""
 
 
 class Clock:
-    """Logical time of the iteration that runs; what every component uses instead of the wall clock.
+    """Logical time of the running iteration, which components use instead of the wall clock.
 
-    `now_us` and `tick` stay the same during an iteration. In a recording's replay they are what they were: then the
-    recording is the only source of time, whatever a time source of the run says.
+    `now_us` and `tick` do not change during an iteration. In a replay the recording is the only source of time.
     """
 
     def __init__(self, period_us: int = 50_000) -> None:
@@ -39,14 +38,14 @@ class Clock:
         return self.period_us / US_PER_S
 
     def since_s(self, time_us: int) -> float:
-        """Seconds of logical time since `time_us`."""
+        """Returns the logical time since `time_us`, in s."""
         return (self.now_us - time_us) / US_PER_S
 
 
 class TimeSource:
-    """The time-source aspect: its owner says at which logical time the next tick happens. One a system.
+    """Sets the logical time of the next tick; the time-source aspect, of one component of a system.
 
-    A simulator sets `next_us` in every iteration; without that time goes on by the clock's period.
+    A simulator sets `next_us` in every iteration; otherwise time advances by the clock's period.
     """
 
     def __init__(self) -> None:
@@ -91,7 +90,7 @@ class TimeSource:
 
 
 def rate_word(rate_hz: float) -> str:
-    """Where others have stages: how often a continuous component iterates."""
+    """Returns the rate of a continuous component as it is shown in place of stages."""
     return f"{rate_hz:g} Hz" if rate_hz else "continuous"
 
 
@@ -101,20 +100,20 @@ def turns_word(every: int, offset: int) -> str:
 
 
 def speed_word(speed: float) -> str:
-    """A speed as it is typed; 0 is as fast as it goes."""
+    """Returns a speed as it is typed; 0 is as fast as possible."""
     return f"{speed:g}" if speed else "max"
 
 
 def monotonic_us() -> int:
-    """Wall time in µs that never goes back; for measuring and waiting, never for what a component outputs."""
+    """Returns monotonic wall time in us, for measuring and waiting, never for outputs of components."""
     return time.monotonic_ns() // 1000
 
 
 def wall_us() -> int:
-    """Wall time in µs since the epoch; for people who read logs."""
+    """Returns wall time in us since the epoch, for log lines."""
     return time.time_ns() // 1000
 
 
 def sleep_s(duration_s: float) -> None:
-    """Waits; only tools and the framework's own processes may."""
+    """Waits; for tools and the framework's own processes only."""
     time.sleep(max(0.0, duration_s))

@@ -1,4 +1,4 @@
-"""A whole system in one process and one thread, for tests of many components."""
+"""A whole system in one process and one thread."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 class MemorySystem:
-    """Components in lockstep, each in a host of its own: the same `Host` as in a process, told by a loop in memory.
+    """Components in lockstep, each in a host of its own: the same `Host` as in a process, driven by a loop in memory.
 
     `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those of
     the same components in processes. A test writes the channels of `outside`, given with their types, with `come_in`.
@@ -69,7 +69,7 @@ class MemorySystem:
         self.ticks = 0
         self.logged: list[log_t] = []
         self.sent: dict[str, list[bytes]] = {channel.name: [] for channel in plan.channels}
-        """Every message so far, by channel."""
+        """All messages so far, by channel."""
         self._plan = plan
         self._types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
         self._indices = {channel.name: channel.index for channel in plan.channels}
@@ -136,7 +136,7 @@ class MemorySystem:
                 self._publish(written)
 
     def come_in(self, channel: str, message: Any) -> None:
-        """Writes a message as a program outside does between two ticks; it is visible from the next tick on."""
+        """Writes a message as a program outside does; it is visible from the next tick on."""
         stamp = envelope.stamper(self._types[channel], channel)
         number = len(self.sent[channel]) + 1
         self._publish([(channel, stamp(message, self.ticks + 1, number, self.now_us, header_t.OUTSIDE, WRITER))])
@@ -147,7 +147,7 @@ class MemorySystem:
         return envelope.decode(self._types[channel], sent[-1], channel) if sent else self._types[channel]()
 
     def _due(self) -> list[ComponentPlan]:
-        """Returns the continuous components whose time has come: here it is logical time, and a tick is long enough."""
+        """Returns the continuous components that are due by logical time; an iteration takes no longer than a tick."""
         found = []
         for component in self._plan.components:
             due_us = self._due_us.get(component.index, 0)
@@ -195,7 +195,7 @@ class MemorySystem:
                 self._hosts[reader].put(index, data)
 
     def _decide(self) -> None:
-        """Decides at the boundary what components asked of the blackboard."""
+        """Decides the requests for dynamic channels at the boundary."""
         facts, _ = self._openings.decide()
         numbered = [
             fact.numbered(self._ledger.latest(fact.opening.channel)) if fact.opening else fact for fact in facts
@@ -219,7 +219,7 @@ class MemorySystem:
 
     @staticmethod
     def _call(work: Callable[[], T]) -> T:
-        """Lets a host work; what a component raises comes out as it was raised."""
+        """Lets a host work; exceptions of a component leave as they were raised."""
         try:
             return work()
         except ComponentFailedError as failure:
