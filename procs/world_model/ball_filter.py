@@ -104,7 +104,7 @@ class BallFilter:
             rolling_m_s2: deceleration of the rolling ball.
             contact: a robot, a post or a wall is near the ball.
         """
-        self._mix(duration_s, contact)
+        self._mix(self._moves(duration_s, contact))
         x, p = self._x, self._p
         speeds_m_s = np.sqrt((x[:, 2:] ** 2).sum(axis=1)) + 1e-9
         losses_m_s2 = np.array((0.0, rolling_m_s2, SLIDING_M_S2, 0.0, 0.0))
@@ -171,8 +171,11 @@ class BallFilter:
         self._weights = np.full(_MODES, _LEAST)
         self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
 
-    def _mix(self, duration_s: float, contact: bool) -> None:
-        """Lets the models exchange their beliefs; a fast ball does not rest, a slow one does not slide."""
+    def _moves(self, duration_s: float, contact: bool) -> Floats:
+        """Returns the probabilities (old, new) of passing from model to model.
+
+        A fast ball does not rest, and after a known kick the ball slides until it is slow enough to roll.
+        """
         rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
         slow = float(np.hypot(*self._x[Mode.ROLLS, 2:])) < _SLOW_M_S
         rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
@@ -184,6 +187,10 @@ class BallFilter:
         moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
         moves[_EACH, _EACH] = stays
         moves[Mode.HIT] = _AFTER_HIT
+        return moves
+
+    def _mix(self, moves: Floats) -> None:
+        """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
         joint = self._weights[:, None] * moves
         weights = np.maximum(joint.sum(axis=0), 1e-12)
         shares = (joint / weights).T  # (new, old)
