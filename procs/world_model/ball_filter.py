@@ -187,7 +187,7 @@ class BallFilter:
         moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
         moves[_EACH, _EACH] = stays
         moves[Mode.HIT] = _AFTER_HIT
-        return moves
+        return np.asarray(moves)
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
