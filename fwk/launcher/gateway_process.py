@@ -3,6 +3,7 @@
 import signal
 import socket
 from collections.abc import Mapping
+from contextlib import suppress
 
 from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
@@ -71,5 +72,6 @@ def run_gateway(
     network.run(gateway.serve())
     if run_files.deleted:
         control.setblocking(True)
-        control.send(DELETED + b"\0" + run_files.deleted.encode())
+        with suppress(OSError):  # the supervisor has died
+            control.send(DELETED + b"\0" + run_files.deleted.encode())
     return 0

@@ -40,7 +40,17 @@ class RunFiles:
 
     def _look(self) -> None:
         for what, path in self._watched if not self.deleted else ():
-            if not path.exists():
+            if _is_gone(path):
                 self.deleted = f"the {what} {path} was deleted during the run"
                 self._report(f"{self.deleted}; what is written there is lost")
                 return
+
+
+def _is_gone(path: Path) -> bool:
+    try:
+        path.stat()
+    except FileNotFoundError:
+        return True
+    except OSError:  # it cannot be seen from here, such as for lack of rights
+        return False
+    return False
