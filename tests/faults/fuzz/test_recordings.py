@@ -213,7 +213,7 @@ def test_a_type_changed_since_the_recording_is_named(log: Path) -> None:
     entries = recorded()
     other = [(channel, b"12345678" + data[8:] if channel == "r/pose" else data) for channel, data in entries]
     write(log, other)
-    with pytest.raises(RecordingError, match=r"r/pose has a message that is no soccer\.pose_t as it is now"):
+    with pytest.raises(RecordingError, match=r"r/pose has a message that is not a soccer\.pose_t as it is now"):
         replay(log)
     sensor = Replay(Recording(log), ["r/sensor"])
     sensor.run()
@@ -222,7 +222,7 @@ def test_a_type_changed_since_the_recording_is_named(log: Path) -> None:
 
 def test_a_record_of_another_version_is_named(log: Path) -> None:
     entries = [(channel, b"12345678" + data[8:] if channel == "fwk/record" else data) for channel, data in recorded()]
-    with pytest.raises(RecordingError, match=r"fwk/record has a message that is no core\.tick_record_t as it is now"):
+    with pytest.raises(RecordingError, match=r"fwk/record has a message that is not a core\.tick_record_t as it is"):
         replay(write(log, entries))
 
 
