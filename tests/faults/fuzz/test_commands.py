@@ -159,6 +159,7 @@ def test_every_field_and_value_of_fwk_send_is_answered(name: str, value: Any, da
         "sequence": 1,
         "tick": 1,
         "time_us": 1,
+        "plain": not messages.has_header(kind),
         "value": plain(kind.decode(sent)),
     }
     assert json.dumps(shown)
