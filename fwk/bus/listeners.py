@@ -13,6 +13,8 @@ FIRST_LOOK_US = US_PER_S // 4
 """The same as long as no program listens."""
 THREADS_MAX = 8
 """Of a program with more threads, only those are watched that have run since the look before."""
+QUEUE_LOOK_US = 10_000
+"""Wall time between two looks at what waits in sockets; what the gateway sends meanwhile fits into a small socket."""
 _SOCKETS = Path("/proc/net/udp")
 _STATE_BYTES = 128
 
@@ -21,7 +23,8 @@ class Listeners:
     """The listeners on a port, except this process, as far as the kernel shows them to this user.
 
     A listener is busy while one of its threads can run: it has not taken everything from its socket, or has not
-    handled everything that it took. A listener that waits has handled everything.
+    handled everything that it took. A listener whose threads wait has handled everything, or is held up: a Java program
+    while it tidies its memory. So the sockets are looked at too, less often, because that takes longer.
 
     Args:
         port: UDP port on which the programs listen.
@@ -32,7 +35,10 @@ class Listeners:
         self._own = str(own)
         self._port = f":{port:04X}"
         self._look_us = 0
+        self._queue_look_us = 0
+        self._held_up = ""  # name of a listener with datagrams in its socket
         self._inodes: set[str] = set()
+        self._processes: dict[str, str] = {}  # by inode of their sockets
         self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last look
 
@@ -52,7 +58,10 @@ class Listeners:
             except OSError:  # the program, or one of its threads, has ended
                 self._forget(process)
                 self._look_us = now_us
-        return ""
+        if self._held_up or now_us >= self._queue_look_us:
+            self._queue_look_us = now_us + QUEUE_LOOK_US
+            self._held_up = self._with_datagrams()
+        return self._held_up
 
     def close(self) -> None:
         """Closes the files with the states."""
@@ -61,10 +70,11 @@ class Listeners:
 
     def _look(self) -> None:
         """Finds out which processes listen, if they are others than before, and which threads they have."""
-        inodes = set(self._inodes_of_sockets())
+        inodes = {inode for inode, _ in self._sockets()}
         if inodes != self._inodes:
             self._inodes = inodes
-            processes = _processes_with({f"socket:[{inode}]" for inode in inodes}) if inodes else []
+            self._processes = _processes_with(inodes)
+            processes = list(dict.fromkeys(self._processes.values()))
         else:
             processes = list(self._threads)
         self.close()
@@ -79,27 +89,36 @@ class Listeners:
                 for thread in threads:
                     self._threads[process].append(os.open(f"{thread}/stat", os.O_RDONLY | os.O_CLOEXEC))
 
-    def _inodes_of_sockets(self) -> Iterator[str]:
+    def _sockets(self) -> Iterator[tuple[str, bool]]:
+        """Yields the inode of each socket on the port, and whether datagrams wait in it."""
         with contextlib.suppress(OSError):
             for line in _SOCKETS.read_text().splitlines():
-                columns = line.split()
-                if columns[1].endswith(self._port) and columns[9] != self._own:
-                    yield columns[9]
+                if self._port in line:
+                    columns = line.split()
+                    if columns[1].endswith(self._port) and columns[9] != self._own:
+                        yield columns[9], not columns[4].endswith(":00000000")
+
+    def _with_datagrams(self) -> str:
+        for inode, waiting in self._sockets():
+            if waiting and inode in self._processes:
+                return _name_of(self._processes[inode])
+        return ""
 
     def _forget(self, process: str) -> None:
         for file in self._threads.pop(process):
             os.close(file)
 
 
-def _processes_with(sockets: set[str]) -> list[str]:
-    """Returns the other processes of this user that have one of these sockets."""
-    found = []
-    for process in filter(str.isdigit, os.listdir("/proc")):
+def _processes_with(inodes: set[str]) -> dict[str, str]:
+    """Returns the other processes of this user that have one of these sockets, by inode."""
+    found: dict[str, str] = {}
+    sockets = {f"socket:[{inode}]": inode for inode in inodes}
+    for process in filter(str.isdigit, os.listdir("/proc") if sockets else ()):
         with contextlib.suppress(OSError):
-            if int(process) != os.getpid() and any(
-                os.readlink(f"/proc/{process}/fd/{number}") in sockets for number in os.listdir(f"/proc/{process}/fd")
-            ):
-                found.append(process)
+            if int(process) != os.getpid():
+                for number in os.listdir(f"/proc/{process}/fd"):
+                    if inode := sockets.get(os.readlink(f"/proc/{process}/fd/{number}")):
+                        found[inode] = process
     return found
 
 

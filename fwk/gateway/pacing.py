@@ -16,9 +16,11 @@ SLOT_BYTES = 2_048
 LEAST = 4
 """Datagrams of a group, at the least."""
 LARGEST = 14
-"""Datagrams of a group, at the most: two groups fit into the queue of a subscription."""
-SHORT_SLOT_US = 200
-"""Wall time from one of these largest groups to the next."""
+"""Datagrams of a group, at the most: two groups fit into the queue of a subscription.
+
+A Java program stands still for some milliseconds when it tidies its memory, which its other threads do not show. Its
+socket holds the groups of that time, not more.
+"""
 QUEUE_MAX = 16_384
 """Datagrams that wait, at the most; of a system that writes more, the excess leaves at once."""
 LONGEST_US = 250_000
@@ -94,7 +96,7 @@ class PacedPublisher:
             self._send_group(self._size)
             return
         self._busy_us = (self._busy_us or now_us) if busy else 0
-        self._due_us = now_us + (SLOT_US if self._group < LARGEST else SHORT_SLOT_US)
+        self._due_us = now_us + SLOT_US
         if busy and excess <= 0 and now_us < self._busy_us + self._patience_us:
             return
         self.overrun = busy or self.overrun
