@@ -83,7 +83,8 @@ class Gateway:
         self._own = Receiver(sender.socket, ports.members, "of this run", "fwk/fetch", complaints)
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
-        self._request: Backoff | None = None  # of the records that are missing
+        self._request: Backoff | None = None  # of the record that is missing
+        self._requested = 0  # its tick
         self._announced = 0  # newest change whose channels were announced
         self._open = True
         self._idle_us = 0
@@ -299,7 +300,9 @@ class Gateway:
             self._request = None
             return
         now_us = self._network.now_us()
-        self._request = self._request or Backoff(now_us, 0, LONGEST_REQUEST_US, SECOND_REQUEST_US)
+        if not self._request or self._requested != self._next:  # each record has waits of its own
+            self._request = Backoff(now_us, 0, LONGEST_REQUEST_US, SECOND_REQUEST_US)
+            self._requested = self._next
         if now_us >= self._request.due_us:
             self._request.repeated(now_us)
             fetch = fetch_records_t()
