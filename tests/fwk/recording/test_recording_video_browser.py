@@ -1,8 +1,10 @@
 """Videos play in a browser: Chromium without a window loads a page with the video and reports how far it came."""
 
 import http.server
+import os
 import queue
 import shutil
+import signal
 import subprocess
 import sys
 import threading
@@ -80,9 +82,10 @@ def test_a_browser_plays_the_video(site: Site, monkeypatch: pytest.MonkeyPatch, 
     assert encoder.codec == codec
     profile = f"--user-data-dir={site.video.parent / 'browser'}"
     address = f"http://127.0.0.1:{site.server_port}/"
-    browser = subprocess.Popen([str(BROWSER), *OPTIONS, profile, address], stderr=subprocess.DEVNULL)
+    command = [str(BROWSER), *OPTIONS, profile, address]
+    browser = subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
     try:
         assert site.reports.get(timeout=WAIT_S) == "320x240 until 1.0 s"
     finally:
-        browser.kill()
+        os.killpg(browser.pid, signal.SIGKILL)  # the command may be a script that starts the browser
         browser.wait()
