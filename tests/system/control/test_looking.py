@@ -51,7 +51,7 @@ def test_status_and_top_show_every_component(run: Steered, ports: PortBlock) -> 
     for each in measured:
         assert sum(count for _, count in each["histogram"]) == each["count"] > 0
         assert each["p50_ms"] in {longest_ms for longest_ms, _ in each["histogram"]} | {each["max_ms"]}
-    (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now"))["times"]]
+    (newer,) = [json.loads(run.fwk("top", "--once", "--json", "--since", "now", "--interval", "0.1"))["times"]]
     assert newer["loop"]["count"] < times["loop"]["count"]
     assert "cycle" in run.fwk("top", "--once", "--interval", "0.1")
     assert run.ask("state", name="r/counter")["state"] == "running"
