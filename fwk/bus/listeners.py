@@ -12,7 +12,7 @@ LOOK_US = US_PER_S
 FIRST_LOOK_US = US_PER_S // 4
 """The same as long as no program listens."""
 THREADS_MAX = 8
-"""Of a program with more threads, only those are watched that have run since the look before."""
+"""Number of threads up to which all threads of a program are watched; of a larger one, those that ran lately."""
 QUEUE_LOOK_US = 10_000
 """Wall time between two looks at what waits in sockets; what the gateway sends meanwhile fits into a small socket."""
 _SOCKETS = Path("/proc/net/udp")

@@ -18,7 +18,7 @@ def state_of(answer: answer_t) -> RequestState:
 
 
 class Call(Generic[R]):
-    """What has become of a request as of this iteration; it does not change during an iteration."""
+    """A request as its client sees it; nothing of it changes during an iteration."""
 
     def __init__(self, sequence: int, timeout_us: int, empty: R) -> None:
         self.state = RequestState.SENT

@@ -22,7 +22,7 @@ QUEUE_MAX = 64
 
 
 class RequestState(StrEnum):
-    """What has become of a request."""
+    """States of a request."""
 
     SENT = "sent"
     ACCEPTED = "accepted"

@@ -1,4 +1,4 @@
-"""What a host is given when it starts."""
+"""The assignment of a host: plan, place in it, and the state of the run when the host starts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ class WorkMarker(Protocol):
 
 @dataclass(frozen=True)
 class Start:
-    """What differs from incarnation to incarnation of a host."""
+    """State of the run when an incarnation of a host starts."""
 
     incarnation: int
     sequences: Mapping[str, int]

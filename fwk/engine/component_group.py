@@ -27,7 +27,7 @@ Written = list[tuple[str, bytes]]
 
 
 class Ran(NamedTuple):
-    """What one step of a tick made of the group."""
+    """Result of one step of a tick for the whole group."""
 
     written: Written
     next_us: int

@@ -1,4 +1,4 @@
-"""What one component has not seen yet of the channels that it reads."""
+"""Messages that one component has not seen yet of the channels that it reads."""
 
 from collections.abc import Mapping, Sequence
 

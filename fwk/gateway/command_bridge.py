@@ -20,7 +20,7 @@ from lcmtypes.core import answer_t
 
 @dataclass
 class _Service:
-    """What one component offers under one name, and the tools that wait for its replies."""
+    """Service that one component offers under one name, with the tools that wait for its replies."""
 
     message_type: Any
     reply_type: Any

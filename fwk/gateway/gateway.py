@@ -84,7 +84,6 @@ class Gateway:
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
         self._request: Backoff | None = None  # of the record that is missing
-        self._requested = 0  # its tick
         self._announced = 0  # newest change whose channels were announced
         self._open = True
         self._idle_us = 0
@@ -190,6 +189,7 @@ class Gateway:
             if not (yield from self._take(record, data)):
                 return
             self._next += 1
+            self._request = None  # each record has waits of its own
             self._acknowledge()
 
     def _hear_announcement(self, announcement: announcement_t) -> None:
@@ -300,9 +300,7 @@ class Gateway:
             self._request = None
             return
         now_us = self._network.now_us()
-        if not self._request or self._requested != self._next:  # each record has waits of its own
-            self._request = Backoff(now_us, 0, LONGEST_REQUEST_US, SECOND_REQUEST_US)
-            self._requested = self._next
+        self._request = self._request or Backoff(now_us, 0, LONGEST_REQUEST_US, SECOND_REQUEST_US)
         if now_us >= self._request.due_us:
             self._request.repeated(now_us)
             fetch = fetch_records_t()

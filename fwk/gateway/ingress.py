@@ -1,4 +1,4 @@
-"""What comes into a run from outside: checked and stamped here, sent to its readers, and named until it is visible."""
+"""Messages from outside the run: checked, stamped, sent to their readers, and reported until they are visible."""
 
 from collections.abc import Callable
 from typing import Any

@@ -69,7 +69,7 @@ class RunsPlan:
 
 @dataclass(frozen=True)
 class RecordPlan:
-    """What is recorded besides all messages."""
+    """Contents of a recording besides all messages."""
 
     frames: tuple[str, ...] = ()
     """Channels of cameras whose frames are recorded."""

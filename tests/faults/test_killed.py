@@ -9,11 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from fwk.control.address import supervisor_address
-from fwk.control.client import Client, ControlError
+from fwk.control.client import ControlError
 from tests.faults.aftermath import Aftermath
 from tests.harness.fixtures import Launch
-from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, pause
+from tests.harness.runs import PortBlock
 from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
@@ -23,22 +22,16 @@ MATCH_S = 30
 TICKS_BETWEEN = 40
 
 
-def victims(run: Launched, ports: PortBlock, luck: random.Random) -> Iterator[int]:
+def victims(steered: Steered, luck: random.Random) -> Iterator[int]:
     """Yields processes of components in a random order, each component once before any twice, until the run ends.
 
     Some ticks pass before each: in lockstep no tick begins until a killed component is back.
     """
     while True:
-        with Client(supervisor_address(ports.bus), TIMEOUT_S) as client:
-            names = [each["name"] for each in client.ask("status")["components"]]
-            for name in luck.sample(names, len(names)):
-                status = client.ask("status", names=[name])
-                before = status["tick"]
-                while status["tick"] < before + TICKS_BETWEEN:
-                    pause(0.1)
-                    status = client.ask("status", names=[name])
-                (component,) = status["components"]
-                yield component["pid"]
+        names = [each["name"] for each in steered.ask("status")["components"]]
+        for name in luck.sample(names, len(names)):
+            steered.ticks_pass(TICKS_BETWEEN)
+            yield steered.component(name)["pid"]
 
 
 @pytest.mark.slow
@@ -52,7 +45,7 @@ def test_a_match_goes_on_when_components_are_killed(
     after.note(run)
     killed = 0
     try:
-        for pid in victims(run, ports, random.Random(1)):
+        for pid in victims(Steered(run, ports), random.Random(1)):
             if pid and run.process.poll() is None:
                 os.kill(pid, signal.SIGKILL)
                 killed += 1

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Callable
 from functools import partial
@@ -19,7 +20,7 @@ SEND_US = 3
 _FIRST_DESCRIPTOR = 10_000
 
 
-class Source:
+class Source(ABC):
     """Something that a process can wait for."""
 
     def __init__(self, ether: Ether) -> None:
@@ -31,9 +32,9 @@ class Source:
         return self._descriptor
 
     @property
+    @abstractmethod
     def readable(self) -> bool:
         """Whether there is something to read."""
-        raise NotImplementedError
 
 
 class Signal(Source):

@@ -86,7 +86,7 @@ class RobotEntry(_Entry):
 
 
 class RecordEntry(_Entry):
-    """What is recorded besides all messages."""
+    """Contents of a recording besides all messages."""
 
     frames: Words | None = None
     """Channels of cameras whose frames are recorded, lossless: names or patterns such as `*/image`."""

@@ -1,7 +1,6 @@
 """Completion in real shells: what the tab key makes of a command that has begun, without a run and beside one."""
 
-import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -93,24 +92,20 @@ def beside(folder: Path, ports: PortBlock) -> Iterator[str]:
     run(folder, "fwk", "stop", "--all", "--run", name)
 
 
-def installed(name: str) -> str:
-    if shutil.which(name) is None:
-        pytest.skip(f"left out: completion in {name}, which is not installed")
-    return name
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SHELLS)
-def test_the_tab_key_completes_commands_and_files(folder: Path, name: str) -> None:
-    shell = Shell(installed(name), folder)
+def test_the_tab_key_completes_commands_and_files(folder: Path, needs: Callable[..., None], name: str) -> None:
+    needs(name)
+    shell = Shell(name, folder)
     assert {typed: shell.completed(typed, wanted) for typed, wanted in ALONE.items()} == ALONE
     shell.close()
 
 
 @pytest.mark.system
 @pytest.mark.parametrize("name", SHELLS)
-def test_the_tab_key_completes_names_of_a_run(folder: Path, beside: str, name: str) -> None:
-    shell = Shell(installed(name), folder, beside)
+def test_the_tab_key_completes_names_of_a_run(folder: Path, beside: str, needs: Callable[..., None], name: str) -> None:
+    needs(name)
+    shell = Shell(name, folder, beside)
     name = beside.removesuffix("-beside")
     wanted = {typed.format(name=name): words.format(name=name) for typed, words in BESIDE_A_RUN.items()}
     assert {typed: shell.completed(typed, words) for typed, words in wanted.items()} == wanted

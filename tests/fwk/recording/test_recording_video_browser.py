@@ -8,8 +8,9 @@ import signal
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NoReturn
 from urllib.parse import unquote
 
 import numpy as np
@@ -18,7 +19,6 @@ import pytest
 from fwk.recording.video_encoder import open_encoder
 
 BROWSERS = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chrome")
-BROWSER = next(filter(None, map(shutil.which, BROWSERS)), None)
 OPTIONS = ("--headless", "--no-sandbox", "--disable-gpu", "--autoplay-policy=no-user-gesture-required")
 WAIT_S = 60.0
 PICTURES, PER_S = 20, 20.0
@@ -30,10 +30,7 @@ PAGE = b"""<video id="video" muted autoplay src="video.mp4"></video>
   video.onerror = () => report("refused: " + video.error.message);
 </script>"""
 
-pytestmark = [
-    pytest.mark.slow,
-    pytest.mark.skipif(BROWSER is None, reason=f"left out: whether a browser plays videos; needs {BROWSERS[0]}"),
-]
+pytestmark = pytest.mark.slow
 
 
 class Site(http.server.ThreadingHTTPServer):
@@ -71,8 +68,16 @@ def site(tmp_path: Path) -> Iterator[Site]:
         thread.join()
 
 
+@pytest.fixture
+def browser(leave_out: Callable[[str], NoReturn]) -> str:
+    """The path of a browser."""
+    return next(filter(None, map(shutil.which, BROWSERS)), None) or leave_out(f"needs {BROWSERS[0]}, to play videos")
+
+
 @pytest.mark.parametrize(("library", "codec"), [("PyAV", "H.264"), ("OpenCV", "VP9")])
-def test_a_browser_plays_the_video(site: Site, monkeypatch: pytest.MonkeyPatch, library: str, codec: str) -> None:
+def test_a_browser_plays_the_video(
+    site: Site, browser: str, monkeypatch: pytest.MonkeyPatch, library: str, codec: str
+) -> None:
     if library == "OpenCV":
         monkeypatch.setitem(sys.modules, "av", None)
     encoder = open_encoder(site.video, PER_S, 320, 240)
@@ -82,10 +87,10 @@ def test_a_browser_plays_the_video(site: Site, monkeypatch: pytest.MonkeyPatch, 
     assert encoder.codec == codec
     profile = f"--user-data-dir={site.video.parent / 'browser'}"
     address = f"http://127.0.0.1:{site.server_port}/"
-    command = [str(BROWSER), *OPTIONS, profile, address]
-    browser = subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
+    command = [browser, *OPTIONS, profile, address]
+    playing = subprocess.Popen(command, stderr=subprocess.DEVNULL, start_new_session=True)
     try:
         assert site.reports.get(timeout=WAIT_S) == "320x240 until 1.0 s"
     finally:
-        os.killpg(browser.pid, signal.SIGKILL)  # the command may be a script that starts the browser
-        browser.wait()
+        os.killpg(playing.pid, signal.SIGKILL)  # the command may be a script that starts the browser
+        playing.wait()
