@@ -50,6 +50,12 @@ def changed_modules(plan: Plan) -> dict[str, str]:
     return changed
 
 
+def different_modules(plans: tuple[Plan, Plan]) -> list[str]:
+    """Returns the names of the modules that both of two runs imported, but with different content."""
+    first, second = plans[0].modules, plans[1].modules
+    return [name for name in first if name in second and first[name].sha256 != second[name].sha256]
+
+
 def blas_kernel() -> str:
     """Returns the name of the processor-specific kernel of the loaded OpenBLAS; empty if none is loaded.
 

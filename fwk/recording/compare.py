@@ -10,6 +10,7 @@ from fwk.lcm.event_log import Event, LogError
 from fwk.lcm.messages import HEADER_SIZE, sequence_of
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import header_of, is_interface
+from fwk.model.plan import Plan
 from fwk.recording.difference import Difference, changed, missing
 from fwk.recording.versions import BROKEN, PLAN, read_plan
 
@@ -36,8 +37,8 @@ def compare(a: Path, b: Path, common: bool = False) -> Difference | None:
     return Comparison(a, b, common).difference
 
 
-def kernel_of(log: Path) -> str:
-    """Returns the BLAS kernel that a recording was made with; empty if the log has no plan that names one.
+def plan_in(log: Path) -> Plan | None:
+    """Returns the plan that a recording begins with; None if the log has no plan that can be read.
 
     Raises:
         LogError: the file cannot be read, or is not a log.
@@ -45,10 +46,10 @@ def kernel_of(log: Path) -> str:
     for event in islice(StampedLog(log), _PLAN_WITHIN):
         if event.channel == PLAN:
             try:
-                return read_plan(event.data)[0].blas_kernel
+                return read_plan(event.data)[0]
             except BROKEN:
-                return ""
-    return ""
+                return None
+    return None
 
 
 class Comparison:

@@ -1,6 +1,7 @@
 """`fwk compare A B`: compares the messages of two logs."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated
 
@@ -10,8 +11,9 @@ from fwk.cli.arguments import folder
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.run_options import Json
 from fwk.lcm.type_registry import use_types_of
-from fwk.plan.what_ran import other_kernel
-from fwk.recording.compare import Comparison, kernel_of
+from fwk.model.plan import Plan
+from fwk.plan.what_ran import different_modules, other_kernel
+from fwk.recording.compare import Comparison, plan_in
 
 EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
 
@@ -34,13 +36,14 @@ def compare(
     with failing(UNUSABLE):
         use_types_of(types)
         logs = find_log(a), find_log(b)
-        if text := other_kernel((str(a), str(b)), (kernel_of(logs[0]), kernel_of(logs[1]))):
+        notes = list(_different_conditions((str(a), str(b)), logs))
+        for text in notes:
             typer.echo(text, err=True)
         result = Comparison(*logs, common)
     if as_json:
         difference = str(result.difference) if result.difference else None
         counts = {"messages": result.messages, "channels": result.channels, "damaged_bytes": list(result.skipped_bytes)}
-        typer.echo(json.dumps({"equal": difference is None, "difference": difference, **counts}))
+        typer.echo(json.dumps({"equal": difference is None, "difference": difference, **counts, "notes": notes}))
         raise typer.Exit(DIFFERENT if difference else EQUAL)
     for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
         if skipped:
@@ -49,3 +52,18 @@ def compare(
         typer.echo(f"different: {result.difference}")
         raise typer.Exit(DIFFERENT)
     typer.echo(f"equal: {result.messages} messages on {result.channels} channels")
+
+
+def _different_conditions(names: tuple[str, str], logs: tuple[Path, Path]) -> Iterator[str]:
+    """Yields what the two runs did not have in common: the BLAS kernel and the content of modules."""
+    plans = plan_in(logs[0]), plan_in(logs[1])
+    if plans[0] is None or plans[1] is None:
+        return
+    if text := other_kernel(names, (plans[0].blas_kernel, plans[1].blas_kernel)):
+        yield text
+    for module in different_modules((plans[0], plans[1])):
+        yield f"{module} was not the same module in both runs: {' and '.join(_places(module, (plans[0], plans[1])))}"
+
+
+def _places(module: str, plans: tuple[Plan, Plan]) -> list[str]:
+    return [f"{plan.modules[module].file} with hash {plan.modules[module].sha256}" for plan in plans]

@@ -47,13 +47,13 @@ def replay(
     with failing(UNUSABLE):
         log = find_log(run)
         try:
-            done = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
+            done, notes = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
         except RecordingError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(UNUSABLE) from error
     found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
     if as_json:
-        typer.echo(json.dumps(_plain(done, found, verify), indent=2))
+        typer.echo(json.dumps({**_plain(done, found, verify), "notes": notes}, indent=2))
         raise typer.Exit(DIFFERENT if verify and found else 0)
     typer.echo(f"{done.iterations} iterations replayed")
     for name, reason in done.left_out.items():
@@ -87,17 +87,21 @@ def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, obj
     return {**about, **counts, "first": {**where, "text": str(named)} if first else None}
 
 
-def _replay(log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None) -> Replay:
+def _replay(
+    log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None
+) -> tuple[Replay, list[str]]:
+    """Replays a log; returns the replay, and what was not as in the run."""
     recording = Recording(log)
     use_folders(recording.plan.folders)
     made = Replay(recording, only)
-    for text in _not_as_in_the_run(recording.plan):
+    notes = list(_not_as_in_the_run(recording.plan))
+    for text in notes:
         typer.echo(f"{log}: {text}", err=True)
     if debugged:
         _debug(made, debugged, from_tick, to_tick)
     else:
         made.run(to_tick)
-    return made
+    return made, notes
 
 
 def _not_as_in_the_run(plan: Plan) -> Iterator[str]:

@@ -72,9 +72,9 @@ class Replay:
         self._messages = RecordedMessages(recording.path, self._comparison.lost)
         self._run_plan = plan
         self._plan = one_component_a_host(plan)
-        choice = choose(recording, only)
-        self._chosen = choice.components
         self._guard = Guard()
+        choice = choose(recording, only, self._guard)
+        self._chosen = choice.components
         self.left_out = {plan.components[index].name: reason for index, reason in choice.left_out.items()}
         """Components that are not run, with the reason."""
         self._recorded = {channel: RecordedFrames(recording.path, channel) for channel in plan.record.frames}
@@ -118,6 +118,9 @@ class Replay:
         for tick in self.recording.ticks(to_tick, self._types()):
             begins(tick.record.tick)
             self._tick(tick)
+        for component in self._plan.components:
+            if component.name in self._guard.refused and component.index in self._chosen:  # a thread of its own did
+                self._leave_out(component, self._guard.refused[component.name])
 
     def _types(self) -> dict[str, bytes]:
         """Returns the first bytes of messages, by channel, of all channels that the chosen components read or write."""
@@ -329,7 +332,7 @@ class Replay:
         Raises:
             RecordingError: the component failed, unless its exception left the debugger.
         """
-        watching = nullcontext() if reaches_outside(component) is False else self._guard.watching()
+        watching = nullcontext() if reaches_outside(component) is False else self._guard.watching(component.name)
         try:
             with watching:
                 yield

@@ -10,6 +10,7 @@ from pydantic import ValidationError
 
 from fwk.component.declaration import Declaration, declaration
 from fwk.model.plan import ComponentPlan
+from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.recording.replay.recording import Recording, RecordingError
 
 
@@ -22,13 +23,15 @@ class Choice:
     """Components that were asked for and cannot be run, each with the reason."""
 
 
-def choose(recording: Recording, only: Sequence[str]) -> Choice:
+def choose(recording: Recording, only: Sequence[str], guard: Guard) -> Choice:
     """Selects components by name or pattern, or all, and the cameras of frames that are not recorded.
+
+    Their modules are imported while the guard watches.
 
     Raises:
         RecordingError: a pattern matches no component, or none that can be run again.
     """
-    choosing = _Choosing(recording)
+    choosing = _Choosing(recording, guard)
     asked = [choosing.meant(pattern) for pattern in only] or [{each.index for each in recording.plan.components}]
     for found in asked:
         choosing.add(found)
@@ -55,8 +58,9 @@ def reaches_outside(component: ComponentPlan) -> bool | None:
 
 
 class _Choosing:
-    def __init__(self, recording: Recording) -> None:
+    def __init__(self, recording: Recording, guard: Guard) -> None:
         self.made = Choice()
+        self._guard = guard
         self._recording = recording
         self._components = recording.plan.components
         self._channels = {channel.name: channel for channel in recording.plan.channels}
@@ -70,8 +74,9 @@ class _Choosing:
 
     def add(self, found: set[int]) -> None:
         for index in sorted(found):
-            cameras = self._cameras(index)
-            reason = self._reason(index) or self._blind(cameras)
+            reason = self._reason(index)
+            cameras = {} if reason else self._cameras(index)
+            reason = reason or self._blind(cameras)
             if reason:
                 self.made.left_out[index] = reason
             else:
@@ -90,8 +95,16 @@ class _Choosing:
         return ""
 
     def _reason(self, index: int) -> str:
+        try:
+            self._with_place(index, self._import)
+        except ReachesOutsideError as error:
+            return f"{self._components[index].module} cannot be imported in a replay: {error}"
         found: str = self._with_place(index, lambda component: unrepeatable(component, component.config))
         return found
+
+    def _import(self, component: ComponentPlan) -> None:
+        with self._guard.watching(component.name):
+            import_module(component.module)
 
     def _cameras(self, index: int) -> dict[str, int]:
         """Returns the channels of unrecorded frames that a component reads, each with the index of its camera."""

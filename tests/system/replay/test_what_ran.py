@@ -1,5 +1,6 @@
 """Replay and comparison say first if they do not run what the recorded run ran."""
 
+import json
 import os
 import subprocess
 from pathlib import Path
@@ -15,12 +16,17 @@ pytestmark = pytest.mark.system
 KERNEL = "OPENBLAS_CORETYPE"
 
 
-def said(folder: Path, *words: str, kernel: str = "") -> str:
-    """Returns what a command writes to its standard error."""
+def done(folder: Path, *words: str, kernel: str = "") -> subprocess.CompletedProcess[str]:
+    """Runs a command of `fwk` to its end."""
     env = {**os.environ, "HOME": str(folder), **({KERNEL: kernel} if kernel else {})}
     return subprocess.run(
         [BIN / "fwk", *words], cwd=folder, env=env, capture_output=True, text=True, timeout=120, check=False
-    ).stderr
+    )
+
+
+def said(folder: Path, *words: str, kernel: str = "") -> str:
+    """Returns what a command writes to its standard error."""
+    return done(folder, *words, kernel=kernel).stderr
 
 
 def test_another_kernel_or_module_is_named_first(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
@@ -34,6 +40,13 @@ def test_another_kernel_or_module_is_named_first(tmp_path: Path, ports: PortBloc
     code.write_text(code.read_text() + "\n# changed\n")
     text = said(tmp_path, "replay", "a.lcm", "--verify")
     assert text == f"a.lcm: traders is not the module that ran: {code} was changed\n"
+    answer = json.loads(done(tmp_path, "replay", "a.lcm", "--verify", "--json").stdout)
+    assert (answer["equal"], answer["notes"]) == (True, [f"traders is not the module that ran: {code} was changed"])
+    assert launch("market.yaml", "--ticks", "5", "--record", "b.lcm").wait() == 0
+    answer = json.loads(done(tmp_path, "compare", "a.lcm", "b.lcm", "--json").stdout)
+    assert answer["equal"]
+    (note,) = answer["notes"]
+    assert note.startswith(f"traders was not the same module in both runs: {code} with hash ")
 
 
 def test_compare_names_different_kernels_first(

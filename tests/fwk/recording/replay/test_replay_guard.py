@@ -1,9 +1,13 @@
 """A replay reaches nothing outside: no device, no program, no connection."""
 
+import ctypes
 import os
 import socket
+import struct
 import subprocess
+import threading
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -17,6 +21,7 @@ from tests.fwk.recording.replay.replay_logs import HandMadeLog
 
 THINK = 5
 DEVICE = "/dev/ptmx"
+TERMINAL = os.ttyname(os.openpty()[1])
 opened: list[int] = []
 
 
@@ -81,6 +86,18 @@ def _connect() -> None:
         made.connect(("127.0.0.1", 9))
 
 
+def _open_in_c() -> None:
+    """Opens a terminal, which is a device, as a library in C does: Python hears nothing of that."""
+    opened.append(ctypes.CDLL(None).open(TERMINAL.encode(), os.O_RDWR | os.O_NOCTTY))
+
+
+def _bind_in_c() -> None:
+    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    opened.append(made.detach())
+    address = struct.pack("=HH4s8x", socket.AF_INET, 0, socket.inet_aton("127.0.0.1"))
+    assert ctypes.CDLL(None).bind(opened[-1], address, len(address)) == 0
+
+
 @pytest.mark.parametrize(
     ("attempt", "reason"),
     [
@@ -88,19 +105,67 @@ def _connect() -> None:
         (lambda: subprocess.run(["true"], check=True), "program"),
         (lambda: os.system("true"), "program"),
         (_connect, "network"),
+        (lambda: os.spawnlp(os.P_WAIT, "true", "true"), "program"),
+        (lambda: os.kill(os.getpid(), 0), "signal"),
+        (lambda: Path("/proc/self/comm").write_text("wheels"), "/proc/self/comm"),
+        (_open_in_c, TERMINAL),
+        (_bind_in_c, "connection at 127.0.0.1"),
     ],
-    ids=["device", "subprocess", "system", "network"],
+    ids=["device", "subprocess", "system", "network", "spawn", "signal", "setting", "library", "socket"],
 )
 def test_guard_refuses_what_reaches_outside(attempt: Callable[[], object], reason: str) -> None:
     guard = Guard()
-    with pytest.raises(ReachesOutsideError, match=reason), guard.watching():
+    with pytest.raises(ReachesOutsideError, match=reason), guard.watching("r/wheels"):
         attempt()
 
 
 def test_guard_lets_files_be_read_and_written(tmp_path: Path) -> None:
     guard = Guard()
-    with guard.watching():
+    with guard.watching("r/wheels"):
         (tmp_path / "notes").write_text("a")
         assert (tmp_path / "notes").read_text() == "a"
     with pytest.raises(FileNotFoundError):
         (tmp_path / "missing").read_bytes()
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
+def test_thread_of_a_component_reaches_nothing_later() -> None:
+    guard, go = Guard(), threading.Event()
+    done: list[int] = []
+
+    def open_later() -> None:
+        go.wait()
+        done.append(os.open(DEVICE, os.O_RDWR | os.O_NOCTTY))
+
+    thread = threading.Thread(target=open_later)
+    with guard.watching("r/wheels"):
+        thread.start()
+    go.set()
+    thread.join()
+    assert done == []
+    assert guard.refused == {"r/wheels": f"it opens {DEVICE}"}
+    with pytest.raises(ReachesOutsideError, match=DEVICE), guard.watching("r/wheels"):
+        pass
+
+
+def test_threads_of_the_replay_itself_are_not_watched() -> None:
+    guard, done = Guard(), []
+    with guard.watching("r/eyes"):
+        pass
+    thread = threading.Thread(target=lambda: done.append(Path("/dev/null").stat()))
+    thread.start()
+    thread.join()
+    assert (len(done), guard.refused) == (1, {})
+
+
+def test_module_that_opens_a_device_is_not_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = tmp_path / "code"
+    folder.mkdir()
+    source = f"import os\nos.mkdir({str(tmp_path / 'imported')!r})\nos.open({DEVICE!r}, os.O_RDWR | os.O_NOCTTY)\n"
+    (folder / "opening_wheels.py").write_text(source)
+    monkeypatch.syspath_prepend(str(folder))
+    plan = plan_of({"r/wheels": Wheels})
+    component = replace(plan.components[0], module="opening_wheels")
+    replay = HandMadeLog(tmp_path / "log.lcm", replace(plan, components=(component,))).replayed()
+    assert (tmp_path / "imported").is_dir()
+    assert replay.left_out == {"r/wheels": f"opening_wheels cannot be imported in a replay: it opens {DEVICE}"}

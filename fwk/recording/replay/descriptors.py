@@ -1,0 +1,93 @@
+"""Finds devices and connections that a library in C has opened."""
+
+import fcntl
+import os
+import socket
+import stat
+import struct
+from pathlib import Path
+
+_TIOCGPTN = 0x80045430  # asks a pseudo terminal for its number; Python 3.11 does not name it
+_OPEN = Path("/proc/self/fd")
+_HARMLESS = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom", "/dev/tty")
+_WITHIN = ("/dev/shm/", "/dev/pts/ptmx")
+
+
+class Descriptors:
+    """Compares the open descriptors of this process before and after a call.
+
+    A descriptor that is opened takes the lowest free number; while that number stays the same, nothing is looked at.
+    """
+
+    def __init__(self) -> None:
+        self._lowest = -1
+        self._known: set[str] = set()
+
+    def note(self) -> None:
+        """Takes down the descriptors before a call."""
+        if _lowest_free() != self._lowest:
+            self._lowest = _lowest_free()
+            self._known = set(os.listdir(_OPEN)) - {str(self._lowest)}  # which the listing itself took
+
+    def opened(self) -> str:
+        """Describes a device or connection that was opened since `note`; empty: none."""
+        if _lowest_free() == self._lowest:
+            return ""
+        opened = sorted(set(os.listdir(_OPEN)) - self._known, key=int)
+        own = {name for number in opened if (name := _own_terminal(int(number)))}
+        return next((found for number in opened if (found := _reached(int(number), own))), "")
+
+
+def is_harmless(name: str) -> bool:
+    """Returns whether a path belongs to a file in /dev that reaches nothing."""
+    return name in _HARMLESS or name.startswith(_WITHIN)
+
+
+def is_device(mode: int) -> bool:
+    """Returns whether a file's mode is that of a device or of a pipe with a name."""
+    return stat.S_ISCHR(mode) or stat.S_ISBLK(mode) or stat.S_ISFIFO(mode)
+
+
+def _lowest_free() -> int:
+    number = os.dup(0) if _is_open(0) else os.open("/dev/null", os.O_RDONLY)
+    os.close(number)
+    return number
+
+
+def _is_open(number: int) -> bool:
+    try:
+        fcntl.fcntl(number, fcntl.F_GETFD)
+    except OSError:
+        return False
+    return True
+
+
+def _own_terminal(number: int) -> str:
+    """Returns the path of the pseudo terminal of which this descriptor is the master; empty: it is another file."""
+    try:
+        (index,) = struct.unpack("I", fcntl.ioctl(number, _TIOCGPTN, b"\0\0\0\0"))
+    except OSError:
+        return ""
+    return f"/dev/pts/{index}"
+
+
+def _reached(number: int, own_terminals: set[str]) -> str:
+    try:
+        mode, name = os.fstat(number).st_mode, os.readlink(_OPEN / str(number))
+    except OSError:  # closed meanwhile
+        return ""
+    if stat.S_ISSOCK(mode):
+        return _connection(number)
+    harmless = is_harmless(name) or name in own_terminals or name == "/dev/ptmx" or name.startswith("pipe:")
+    return "" if harmless or not is_device(mode) else name
+
+
+def _connection(number: int) -> str:
+    """Describes a socket that has an address or speaks to hardware; empty: it is one within the machine."""
+    with socket.socket(fileno=os.dup(number)) as copy:
+        if copy.family in (socket.AF_UNIX, socket.AF_NETLINK):
+            return ""
+        if copy.family in (socket.AF_INET, socket.AF_INET6):
+            address, port, *_ = copy.getsockname()
+            return f"a connection at {address}:{port}" if port else ""
+        return f"a socket of family {copy.family}"
