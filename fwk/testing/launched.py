@@ -55,12 +55,13 @@ def _class(component: ComponentPlan) -> Any:
 
 
 def _channels(component: ComponentPlan) -> dict[str, str]:
-    """Returns the channel of each port, or the pattern of a port with many instances."""
+    """Returns the channel or the service of each port, or the pattern of a port with many instances."""
     each = {port.attribute for port in declaration(_class(component)).ports if port.each}
-    return {port: _pattern(names) if port in each else names[0] for port, names in component.channels.items() if names}
+    found = {port: [name.partition("@")[0] for name in names] for port, names in component.channels.items()}
+    return {port: _pattern(names) if port in each else names[0] for port, names in found.items() if names}
 
 
-def _pattern(names: tuple[str, ...]) -> str:
+def _pattern(names: list[str]) -> str:
     """Returns the shortest pattern of channels in one interface: `cyan*/team_message`."""
     columns = zip(*(name.rpartition("/")[0] for name in names), strict=False)
     prefix = "".join(letters[0] for letters in takewhile(lambda each: len(set(each)) == 1, columns))

@@ -3,9 +3,9 @@
 import math
 from typing import Literal
 
-from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
+from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.robot import kicker_state_t
-from lcmtypes.soccer import game_state_t, role_t, skill_command_t, skill_status_t, world_model_t
+from lcmtypes.soccer import game_state_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
 from procs.behaviour.game import Game, game_of
 from procs.behaviour.skills.book import SKILLS
@@ -15,6 +15,9 @@ from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
 from procs.model.robot import side_of, team_of
 from procs.referee.restarts import team_number
+
+_EXPIRES_S = 1.0
+"""A command that the skiller has not begun by then is not begun."""
 
 
 class AgentConfig(Config):
@@ -41,14 +44,14 @@ class Agent(Component):
     world_model: Reads[world_model_t]
     game_state: Reads[game_state_t] = channel("world/game_state")
     kicker_state: Reads[kicker_state_t]
-    skill_status: Reads[skill_status_t]
     role: Writes[role_t]
-    skill_command: Writes[skill_command_t]
+    skill: Calls[skill_command_t]
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._frame = Frame(-side_of(team_of(self._robot)))
         self._tactics = Tactics(self.config.field)
+        self._call: Call | None = None
 
     def loop(self) -> None:
         role = self.role.value
@@ -69,21 +72,22 @@ class Agent(Component):
         return job.role, self._tactics.decide(view, game, job, held, self.clock.period_s)
 
     def _command(self, order: Order) -> None:
-        command = self.skill_command.value
         place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)
         if self._is_new(order.skill, place, heading_rad):
-            command.command_id += 1
+            command = self.skill.value
             command.skill = order.skill
             command.x_m, command.y_m, command.heading_rad = *place, heading_rad
-        self.skill_command.write()
+            self._call = self.skill.call(expires_s=_EXPIRES_S)
 
     def _is_new(self, skill: str, place: Point, heading_rad: float) -> bool:
-        command, status = self.skill_command.value, self.skill_status.value
-        if skill != command.skill or math.dist(place, (command.x_m, command.y_m)) > self.config.new_target_m:
+        command = self.skill.value
+        if (
+            self._call is None
+            or skill != command.skill
+            or math.dist(place, (command.x_m, command.y_m)) > self.config.new_target_m
+        ):
             return True
         if abs(wrap_rad(heading_rad - command.heading_rad)) > self.config.new_heading_rad:
             return True
-        # The skill has ended and is wanted again.
-        ended = status.status in (skill_status_t.FINAL, skill_status_t.FAILED)
-        known = SKILLS.get(status.skill)
-        return ended and status.command_id == command.command_id and known is not None and not known.lasting
+        # The skill has ended and is wanted again; a lasting one that is done goes on.
+        return self._call.finished and not (self._call.done and SKILLS[skill].lasting)

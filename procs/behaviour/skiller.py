@@ -1,16 +1,19 @@
-"""Runs the skill that the agent asks for: says where to drive, when to handle the ball and when to kick."""
+"""Carries out skills as commands: where to drive, when to handle the ball and when to kick."""
 
-from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
-from lcmtypes.robot import kick_command_t, kicker_state_t
+from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
+from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t
 from lcmtypes.soccer import drive_target_t, game_state_t, skill_command_t, skill_status_t, world_model_t
 from procs.behaviour.game import Whose, game_of
-from procs.behaviour.skills.book import Machine
+from procs.behaviour.skills.book import SKILLS, Machine
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Frame, view_of
 from procs.model.field import Field
 from procs.model.geometry import plausible
 from procs.model.robot import side_of, team_of
 from procs.referee.restarts import team_number
+
+_KICK_TIMEOUT_S = 0.15
+"""A kick without an answer by then has failed."""
 
 
 class SkillerConfig(Config):
@@ -21,41 +24,63 @@ class SkillerConfig(Config):
 
 
 class Skiller(Component):
-    """Thinks in the attack frame, speaks in the world frame."""
+    """Carries out the newest command; thinks in the attack frame, speaks in the world frame.
+
+    A command is done when its skill has reached its end, and fails when the skill fails or a newer command replaces it.
+    """
 
     stage = "skill"
 
     config: SkillerConfig
     clock: Clock
     log: Logger
-    skill_command: Reads[skill_command_t]
+    skill: Serves[skill_command_t]
     world_model: Reads[world_model_t]
     kicker_state: Reads[kicker_state_t]
     game_state: Reads[game_state_t] = channel("world/game_state")
     skill_status: Writes[skill_status_t]
     drive_target: Writes[drive_target_t]
-    kick_command: Writes[kick_command_t]
+    kick: Calls[kick_command_t]
+    dribble_command: Writes[dribble_command_t]
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._frame = Frame(-side_of(team_of(self._robot)))
         self._machine = Machine()
+        self._request: Request[skill_command_t] | None = None
+        self._kick: Call | None = None
 
     def loop(self) -> None:
-        command = self.skill_command.value
-        step = Step(status=Status.INACTIVE)
-        if self.skill_command.has_value and plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
-            step = self._machine.step(command.command_id, command.skill, self._scene(command))
-        self._report(command, step)
+        for request in self.skill:
+            self._begin(request)
+        step = self._machine.step(self._scene())
+        self._answer(step)
+        self._report(step)
         self._drive(step.drive)
-        self._kick(step)
+        self._handle(step.dribble)
+        if step.kick_m_s > 0:
+            self.kick.value.speed_m_s = step.kick_m_s
+            self._kick = self.kick.call(timeout_s=_KICK_TIMEOUT_S, expires_s=0.0)  # aimed for this tick alone
 
     def finalize(self) -> None:
         """Leaves the robot without a target and the ball handling off."""
         self._drive(None)
-        self._kick(Step(status=Status.INACTIVE))
+        self._handle(on=False)
 
-    def _scene(self, command: skill_command_t) -> Scene:
+    def _begin(self, request: Request[skill_command_t]) -> None:
+        command = request.value
+        if command.skill not in SKILLS:
+            request.reject(f"no skill '{command.skill}'; there are {', '.join(SKILLS)}")
+        elif not plausible(command.x_m, command.y_m, command.heading_rad, command.speed_m_s):
+            request.reject("the target is not a place on the field, or the speed is not a number")
+        else:
+            if self._request and not self._request.finished:
+                self._request.fail(f"replaced by command {request.sequence} of {request.sender}")
+            self._request = request
+            self._machine.begin(command.skill)
+
+    def _scene(self) -> Scene:
+        command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
         game = game_of(self.game_state.value, team_number(self._robot), self._frame)
         return Scene(
@@ -65,28 +90,28 @@ class Skiller(Component):
             command.speed_m_s,
             kicker.ball_held,
             kicker.charged,
-            kicker.kick_id,
-            self._newest_kick,
+            self._kick.done if self._kick and self._kick.finished else None,
             set_piece=game.whose is Whose.OURS and not game.free_play,
             duration_s=self.clock.period_s,
             field=self.config.field,
         )
 
-    @property
-    def _newest_kick(self) -> int:
-        # After a restart numbers go on from the kicker's, so that the next kick is again a new one.
-        return max(self.kick_command.value.kick_id, self.kicker_state.value.kick_id)
+    def _answer(self, step: Step) -> None:
+        if self._request is None or self._request.finished:
+            return
+        if step.status is Status.FINAL:
+            self._request.done()
+        elif step.status is Status.FAILED:
+            self.log.debug(f"{self._request.value.skill} failed: {step.reason}")
+            self._request.fail(step.reason)
+        elif self._request.state is RequestState.SENT:
+            self._request.accept()
 
-    def _report(self, command: skill_command_t, step: Step) -> None:
+    def _report(self, step: Step) -> None:
         status = self.skill_status.value
-        if step.status is Status.FAILED and (status.status, status.command_id) != (Status.FAILED, command.command_id):
-            self.log.debug(f"{command.skill} failed: {step.reason}")
-        status.status, status.command_id, status.skill, status.reason = (
-            step.status,
-            command.command_id,
-            command.skill,
-            step.reason,
-        )
+        status.status, status.reason = step.status, step.reason
+        if self._request:
+            status.command_id, status.skill = self._request.sequence, self._request.value.skill
         self.skill_status.write()
 
     def _drive(self, drive: Drive | None) -> None:
@@ -102,9 +127,6 @@ class Skiller(Component):
             target.target_id += 1
         self.drive_target.write()
 
-    def _kick(self, step: Step) -> None:
-        kick = self.kick_command.value
-        if step.kick_m_s > 0:
-            kick.kick_id = self._newest_kick + 1
-        kick.speed_m_s, kick.dribble = step.kick_m_s, step.dribble
-        self.kick_command.write()
+    def _handle(self, on: bool) -> None:
+        self.dribble_command.value.on = on
+        self.dribble_command.write()

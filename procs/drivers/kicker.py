@@ -1,9 +1,12 @@
-"""Driver of the kicker: fires a kick once ball and charge are there, and reports the kicks carried out."""
+"""Driver of the kicker: carries out kicks once ball and charge are there, and handles the ball."""
 
 from pydantic import PositiveFloat
 
-from fwk import Clock, Component, Config, Logger, Reads, Writes
-from lcmtypes.robot import kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
+from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
+from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
+
+_KICKS_MAX = 2**31 - 1
+"""Kicks are numbered from 1 to this number, then from 1 again."""
 
 
 class KickerConfig(Config):
@@ -12,20 +15,21 @@ class KickerConfig(Config):
     speed_limit_m_s: PositiveFloat = 12.0
     """Highest speed of a kick."""
     command_timeout_s: PositiveFloat = 0.25
-    """Without a newer kick command ball handling stops, and a kick that has not been carried out is forgotten."""
+    """Without a newer dribble command ball handling stops; a kick that the hardware has not carried out has failed."""
 
 
 class Kicker(Component):
     """State of the kicker when sensors are read, its drive when actuators act.
 
-    Kicks are numbered from 1. A kick whose number is not that of the newest one carried out waits for ball and charge
-    as long as its command is younger than the time-out; a command with speed 0 takes it back.
+    A kick waits for ball and charge until it expires. It is accepted when the hardware is told to kick, and done
+    when the hardware has kicked.
     """
 
     stage = ("sensor_acquire", "act_exec")
 
     kicker_sensor: Reads[kicker_sensor_t]
-    kick_command: Reads[kick_command_t]
+    kick: Serves[kick_command_t]
+    dribble_command: Reads[dribble_command_t]
     kicker_state: Writes[kicker_state_t]
     kicker_drive: Writes[kicker_drive_t]
     config: KickerConfig
@@ -34,16 +38,14 @@ class Kicker(Component):
 
     def init(self) -> None:
         self._kicks = 0
-        self._speeds_m_s: dict[int, float] = {}  # of kicks asked of the hardware and not yet carried out
+        self._asked_m_s = 0.0  # speed of the newest kick that the hardware was told
+        self._asked_us = 0  # when it was told
         self._late = False
 
     def loop(self) -> None:
         for sensor in self.kicker_sensor.fresh:
             if sensor.kick_id != self.kicker_state.value.kick_id:
-                self._kicks += 1
-                self.kicker_state.value.kick_speed_m_s = self._speeds_m_s.get(sensor.kick_id, 0.0)
-                self._speeds_m_s.clear()
-            self.kicker_state.value.kick_id = sensor.kick_id
+                self._kicked(sensor.kick_id)
         if self.clock.stage == "act_exec":
             self._act()
         else:
@@ -55,27 +57,49 @@ class Kicker(Component):
         self.kicker_drive.value.kick_id = self.kicker_sensor.value.kick_id
         self.kicker_drive.write()
 
+    def _kicked(self, kick_id: int) -> None:
+        self._kicks += 1
+        self.kicker_state.value.kick_id = kick_id
+        self.kicker_state.value.kick_speed_m_s = self._asked_m_s
+        self._asked_m_s = 0.0
+        for request in self.kick.open:
+            request.done()
+
     def _report(self) -> None:
         state, sensor = self.kicker_state.value, self.kicker_sensor.value
         state.ball_held, state.charged, state.kicks = sensor.ball_held, sensor.charged, self._kicks
         self.kicker_state.write()
+        if self.clock.since_s(self._asked_us) > self.config.command_timeout_s:
+            self._fail_open("the hardware has not kicked")
 
     def _act(self) -> None:
-        command, sensor, drive = self.kick_command.value, self.kicker_sensor.value, self.kicker_drive.value
-        fresh = self._is_fresh()
-        wanted = fresh and command.kick_id != sensor.kick_id and command.speed_m_s > 0
-        fire = wanted and sensor.ball_held and sensor.charged
-        drive.kick_id = command.kick_id if fire else sensor.kick_id
-        drive.kick_m_s = min(command.speed_m_s, self.config.speed_limit_m_s) if fire else 0.0
-        if fire:
-            self._speeds_m_s[drive.kick_id] = drive.kick_m_s
-        drive.dribble = fresh and command.dribble
+        sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
+        drive.kick_id, drive.kick_m_s = sensor.kick_id, 0.0
+        if sensor.ball_held and sensor.charged and (request := self._next_kick()):
+            self._fail_open("a newer kick replaced it", besides=request)
+            request.accept()
+            drive.kick_id = sensor.kick_id % _KICKS_MAX + 1
+            drive.kick_m_s = min(request.value.speed_m_s, self.config.speed_limit_m_s)
+            self._asked_m_s, self._asked_us = drive.kick_m_s, self.clock.now_us
+        drive.dribble = self._is_fresh() and self.dribble_command.value.on
         self.kicker_drive.write()
 
+    def _next_kick(self) -> Request[kick_command_t] | None:
+        for request in self.kick:
+            if request.value.speed_m_s > 0:
+                return request
+            request.reject(f"speed_m_s is {request.value.speed_m_s}; it should be above 0")
+        return None
+
+    def _fail_open(self, reason: str, besides: Request[kick_command_t] | None = None) -> None:
+        for request in self.kick.open:
+            if request is not besides:
+                request.fail(reason)
+
     def _is_fresh(self) -> bool:
-        age_s = self.clock.since_s(self.kick_command.header.time_us)
-        late = self.kick_command.has_value and age_s > self.config.command_timeout_s
+        age_s = self.clock.since_s(self.dribble_command.header.time_us)
+        late = self.dribble_command.has_value and age_s > self.config.command_timeout_s
         if late and not self._late:
-            self.log.warning(f"no kick command for {age_s:.2f} s: ball handling stops")
+            self.log.warning(f"no dribble command for {age_s:.2f} s: ball handling stops")
         self._late = late
-        return self.kick_command.has_value and not late
+        return self.dribble_command.has_value and not late

@@ -54,11 +54,11 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
 def _passes(piece: Piece) -> list[bool]:
     """Returns for each pass whether a mate had the ball in its mouth for a while before another robot touched it."""
     controlled = []
-    commands, kickers = piece.by_robot.get("skill_command", {}), piece.by_robot.get("kicker_state", {})
+    skills, kickers = piece.by_robot.get("skill_status", {}), piece.by_robot.get("kicker_state", {})
     for tick, events in piece.events.items():
         for event in events:
-            asked = commands.get(event.robot, {}).get(tick - 1)
-            if event.kind == match_event_t.KICK and asked and asked.skill == "pass":
+            running = skills.get(event.robot, {}).get(tick - 1)
+            if event.kind == match_event_t.KICK and running and running.skill == "pass":
                 controlled.append(_receiver(piece, tick, event.robot, kickers) != "")
     return controlled
 

@@ -12,7 +12,7 @@ from lcmtypes.soccer import (
     ground_truth_t,
     match_event_t,
     match_events_t,
-    skill_command_t,
+    skill_status_t,
     team_message_t,
     true_robot_t,
     world_model_t,
@@ -22,7 +22,7 @@ from procs.model.robot import team_of
 BELIEFS: dict[str, Any] = {
     "world_model": world_model_t,
     "team_message": team_message_t,
-    "skill_command": skill_command_t,
+    "skill_status": skill_status_t,
     "kicker_state": kicker_state_t,
 }
 """Interfaces of each robot that a piece keeps."""

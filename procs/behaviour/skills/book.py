@@ -4,7 +4,7 @@ from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal
 from procs.behaviour.skills.moving import Goto, Mark, Stop
 from procs.behaviour.skills.playing import Dribble, Pass, Shoot
-from procs.behaviour.skills.skill import Scene, Skill, Status, Step, failed
+from procs.behaviour.skills.skill import Scene, Skill, Status, Step
 
 SKILLS: dict[str, type[Skill]] = {
     "stop": Stop,
@@ -28,20 +28,24 @@ class Machine:
 
     def __init__(self) -> None:
         self._name = ""
-        self._command_id = 0
-        self._skill: Skill | None = None
+        self._skill: Skill = Stop()
         self._ended: Step | None = None
 
-    def step(self, command_id: int, name: str, scene: Scene) -> Step:
-        """Runs one tick of the command."""
-        if command_id != self._command_id and (name != self._name or self._ended):
-            self._skill, self._ended = (SKILLS[name]() if name in SKILLS else None), None
-            if self._skill is None:
-                self._ended = failed(f"no skill '{name}'; there are {', '.join(SKILLS)}")
-        self._command_id, self._name = command_id, name
-        if self._ended or self._skill is None:
-            ended = self._ended or Step(status=Status.INACTIVE)
-            return ended._replace(drive=None, kick_m_s=0.0, dribble=scene.holds_ball)
+    def begin(self, name: str) -> None:
+        """Takes a new command.
+
+        Raises:
+            KeyError: no skill has that name.
+        """
+        if name != self._name or self._ended:
+            self._name, self._skill, self._ended = name, SKILLS[name](), None
+
+    def step(self, scene: Scene) -> Step:
+        """Runs one tick of the newest command; without a command the robot stands."""
+        if not self._name:
+            return Step(status=Status.INACTIVE)
+        if self._ended:
+            return self._ended._replace(drive=None, kick_m_s=0.0, dribble=scene.holds_ball)
         step = self._skill.step(scene)
         if step.status is not Status.RUNNING and not self._skill.lasting:
             self._ended = step

@@ -56,20 +56,21 @@ class _Kick(_WithBall):
 
     _TIMEOUT_S = 3.0
     _LEAD_S = 0.04  # from the view to the kick
-    _WAIT_S = 0.15  # for the kicker's report, before the kick is asked for again
     _BRAKE_M_S2 = 3.0
 
     def __init__(self) -> None:
         super().__init__()
         self._running_s = 0.0
-        self._kick = 0
-        self._asked_s = 0.0
+        self._asked = False
         self._stand: Point | None = None
         self._heading_rad = math.nan
 
     def step(self, scene: Scene) -> Step:
-        if self._kick:
-            return self._await(scene)
+        if self._asked and scene.kicked is None:
+            return Step(dribble=True)
+        if self._asked and scene.kicked:
+            return Step(status=Status.FINAL)
+        self._asked = False
         return super().step(scene)
 
     @abstractmethod
@@ -79,14 +80,6 @@ class _Kick(_WithBall):
     @abstractmethod
     def _tolerance_rad(self, distance_m: float) -> float:
         """Returns the largest error of the heading at that distance."""
-
-    def _await(self, scene: Scene) -> Step:
-        self._asked_s += scene.duration_s
-        if scene.kicks_done >= self._kick:
-            return Step(status=Status.FINAL)
-        if self._asked_s > self._WAIT_S:
-            self._kick, self._asked_s = 0, 0.0
-        return Step(dribble=True)
 
     def _play(self, scene: Scene) -> Step:
         own = scene.view.own
@@ -102,7 +95,7 @@ class _Kick(_WithBall):
         off_rad = wrap_rad(wanted_rad - own.heading_rad - turn_rad_s * self._LEAD_S)
         patience = 1.0 + self._running_s  # a poor kick is better than none
         if abs(off_rad) < self._tolerance_rad(distance_m) * patience and scene.charged and scene.holds_ball:
-            self._kick = scene.kicks_asked + 1
+            self._asked = True
             return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
         return Step(self._turn(scene, wanted_rad), dribble=True)
 

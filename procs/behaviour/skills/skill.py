@@ -28,10 +28,8 @@ class Scene(NamedTuple):
     """Limit of the order; 0: the robot's own."""
     holds_ball: bool = False
     charged: bool = True
-    kicks_done: int = 0
-    """Number of the newest kick that the kicker carried out."""
-    kicks_asked: int = 0
-    """Number of the newest kick that was asked for."""
+    kicked: bool | None = None
+    """Whether the kicker has carried out the newest kick; None: not known yet, or none was asked for."""
     set_piece: bool = False
     """The ball lies still and waits for the own team."""
     duration_s: float = 0.05

@@ -7,6 +7,7 @@ import pytest
 
 from fwk import Component
 from fwk.testing import Bench
+from lcmtypes.core import answer_t
 from lcmtypes.soccer import (
     ball_estimate_t,
     drive_target_t,
@@ -18,7 +19,11 @@ from lcmtypes.soccer import (
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
+from procs.behaviour.skills.book import SKILLS
 from procs.referee.referee import Referee
+
+MOUTH_M = 0.33
+"""Distance of a ball in the mouth."""
 
 
 def estimate(x_m: float, y_m: float) -> robot_estimate_t:
@@ -118,60 +123,158 @@ def test_both_teams_decide_alike(robot: str, sign: float) -> None:
     put_situation(bench, x_m=sign * -2.0, y_m=sign, ball=seen_ball(sign * 6.0, sign * 0.5))
     bench.port("kicker_state").put(ball_held=True)
     bench.iterate()
-    command = newest(bench, "skill_command")
+    command = newest(bench, "skill")
     assert command.skill == "shoot"
     assert command.x_m == sign * 11.0
     assert newest(bench, "role").role == "attacker"
 
 
-def test_agent_numbers_commands_and_repeats_an_unchanged_one() -> None:
-    bench = Bench(Agent, "cyan2/agent")
-    for x_m in (3.0, 3.0, 3.5):
-        put_situation(bench, ball=seen_ball(x_m, 0.0))
-        bench.iterate()
-    assert [command.command_id for command in bench.port("skill_command").sent] == [1, 1, 2]
+@pytest.fixture
+def agent() -> Bench:
+    return Bench(Agent, "cyan2/agent")
 
 
-def test_agent_asks_again_when_a_skill_has_failed() -> None:
-    bench = Bench(Agent, "cyan2/agent")
-    for status in (skill_status_t.RUNNING, skill_status_t.FAILED, skill_status_t.RUNNING):
-        put_situation(bench, ball=seen_ball(3.0, 0.0))
-        bench.port("skill_status").put(status=status, command_id=1, skill="get_ball")
-        bench.iterate()
-    assert [command.command_id for command in bench.port("skill_command").sent] == [1, 2, 2]
+def think(agent: Bench, x_m: float = 3.0) -> list[str]:
+    """One tick; returns the skills that were asked for so far."""
+    put_situation(agent, ball=seen_ball(x_m, 0.0))
+    agent.iterate()
+    return [command.skill for command in agent.skill.sent]
+
+
+def test_agent_asks_once_until_the_target_moves(agent: Bench) -> None:
+    assert [len(think(agent, x_m)) for x_m in (3.0, 3.0, 3.5)] == [1, 1, 2]
+
+
+@pytest.mark.parametrize(
+    ("state", "reason"),
+    [
+        (answer_t.DONE, ""),
+        (answer_t.FAILED, "lost the ball"),
+        (answer_t.REJECTED, "no skill"),
+        (answer_t.EXPIRED, "it was not begun in time"),
+        (answer_t.FORGOTTEN, "cyan2/skiller was started after it had been sent"),
+    ],
+)
+def test_agent_asks_again_once_a_skill_has_ended(agent: Bench, state: int, reason: str) -> None:
+    think(agent)
+    agent.owner_of("skill").answer(answer_t.ACCEPTED)
+    assert think(agent) == ["get_ball"]
+    agent.owner_of("skill").answer(state, reason)
+    assert think(agent) == ["get_ball"] * 2
+    assert think(agent) == ["get_ball"] * 2
+
+
+def test_agent_asks_again_when_no_answer_comes(agent: Bench) -> None:
+    counts = [len(think(agent)) for _ in range(202)]
+    assert (counts[199], counts[201]) == (1, 2)  # 10 s later
+
+
+@pytest.mark.parametrize(("state", "asked"), [(answer_t.DONE, 1), (answer_t.FAILED, 2)])
+def test_lasting_skill_that_is_done_is_not_asked_for_again(agent: Bench, state: int, asked: int) -> None:
+    for _ in range(3):
+        put_situation(agent)
+        agent.port("game_state").put(state=game_state_t.FROZEN, stopped=True)
+        agent.iterate()
+        if agent.tick == 1:
+            agent.owner_of("skill").answer(state)
+    assert [command.skill for command in agent.skill.sent] == ["stop"] * asked
+
+
+@pytest.fixture
+def skiller() -> Bench:
+    return Bench(Skiller, "cyan2/skiller")
+
+
+def carry_out(skiller: Bench, times: int = 1, ball_m: float | None = None, **command: Any) -> list[tuple[int, str]]:
+    """Sends a command if one is given, and runs ticks; returns the states and reasons that were answered so far."""
+    if command:
+        skiller.skill.put(**command)
+    for _ in range(times):
+        put_situation(skiller, ball=ball_estimate_t() if ball_m is None else seen_ball(ball_m, 0.0))
+        skiller.port("kicker_state").put(ball_held=ball_m == MOUTH_M, charged=True)
+        skiller.iterate()
+    return [(sent.answer.state, sent.answer.reason) for sent in skiller.skill.sent]
 
 
 @pytest.mark.parametrize(("robot", "sign"), [("cyan2", 1.0), ("magenta2", -1.0)])
 def test_skiller_speaks_in_the_world_frame(robot: str, sign: float) -> None:
     bench = Bench(Skiller, f"{robot}/skiller")
-    put_situation(bench)
-    bench.port("skill_command").put(command_id=1, skill="mark", x_m=sign * -5.0)
-    bench.iterate()
+    carry_out(bench, skill="mark", x_m=sign * -5.0)
     target: drive_target_t = newest(bench, "drive_target")
     assert not target.stop
     assert target.x_m == pytest.approx(sign * -5.9)
-    assert newest(bench, "skill_status").command_id == 1
+    status = newest(bench, "skill_status")
+    assert (status.command_id, status.skill, status.status) == (1, "mark", skill_status_t.RUNNING)
 
 
-def test_without_a_command_the_robot_stands_and_does_not_kick() -> None:
-    bench = Bench(Skiller, "cyan2/skiller")
-    bench.iterate()
-    assert newest(bench, "drive_target").stop
-    assert newest(bench, "skill_status").status == skill_status_t.INACTIVE
-    kick = newest(bench, "kick_command")
-    assert (kick.kick_id, kick.speed_m_s, kick.dribble) == (0, 0.0, False)
+def test_skill_is_accepted_and_done_when_it_has_reached_its_end(skiller: Bench) -> None:
+    assert carry_out(skiller, 2, 1.0, skill="get_ball") == [(answer_t.ACCEPTED, "")]
+    assert carry_out(skiller, 4, MOUTH_M) == [(answer_t.ACCEPTED, ""), (answer_t.DONE, "")]
 
 
-def test_kicks_are_numbered_on_from_the_kickers_newest() -> None:
-    bench = Bench(Skiller, "cyan2/skiller")
-    for _ in range(3):
-        put_situation(bench, ball=seen_ball(0.33, 0.0))
-        bench.port("kicker_state").put(ball_held=True, charged=True, kick_id=6)
-        bench.port("skill_command").put(command_id=1, skill="shoot", x_m=11.0)
-        bench.iterate()
-    kicks = [(kick.kick_id, kick.speed_m_s > 0) for kick in bench.port("kick_command").sent]
-    assert (7, True) in kicks
-    assert sum(fires for _, fires in kicks) == 1
+def test_skill_that_fails_says_why(skiller: Bench) -> None:
+    assert carry_out(skiller, 3, skill="get_ball") == [(answer_t.FAILED, "the ball is unknown")]
+    assert newest(skiller, "skill_status").reason == "the ball is unknown"
+
+
+def test_newer_command_replaces_the_running_one(skiller: Bench) -> None:
+    carry_out(skiller, 1, 2.0, skill="get_ball")
+    answers = carry_out(skiller, 1, 2.0, skill="mark", x_m=-5.0)
+    assert answers[1:] == [(answer_t.FAILED, "replaced by command 2 of test/sender"), (answer_t.ACCEPTED, "")]
+    assert newest(skiller, "skill_status").skill == "mark"
+
+
+def test_of_several_commands_at_once_the_newest_is_carried_out(skiller: Bench) -> None:
+    skiller.skill.put(skill="get_ball")
+    answers = carry_out(skiller, 1, 2.0, skill="mark", x_m=-5.0)
+    assert answers == [(answer_t.FAILED, "replaced by command 2 of test/sender"), (answer_t.ACCEPTED, "")]
+
+
+def test_skill_that_does_not_exist_is_rejected(skiller: Bench) -> None:
+    ((state, reason),) = carry_out(skiller, skill="juggle")
+    assert state == answer_t.REJECTED
+    assert "juggle" in reason
+    assert all(name in reason for name in SKILLS)
+
+
+@pytest.mark.parametrize("target", [{"x_m": math.nan}, {"y_m": 1e300}, {"speed_m_s": math.inf}])
+def test_senseless_target_is_rejected_and_the_skill_goes_on(skiller: Bench, target: dict[str, float]) -> None:
+    carry_out(skiller, 1, 2.0, skill="get_ball")
+    assert carry_out(skiller, 1, 2.0, skill="goto", **target)[-1][0] == answer_t.REJECTED
+    assert newest(skiller, "skill_status").skill == "get_ball"
+    assert not newest(skiller, "drive_target").stop
+
+
+def test_skiller_that_is_stopped_fails_its_command(skiller: Bench) -> None:
+    carry_out(skiller, 1, 2.0, skill="get_ball")
+    skiller.finalize()
+    assert skiller.skill.sent[-1].answer.reason == "cyan2/skiller was stopped"
+
+
+def test_without_a_command_the_robot_stands_and_does_not_kick(skiller: Bench) -> None:
+    skiller.iterate()
+    assert newest(skiller, "drive_target").stop
+    assert newest(skiller, "skill_status").status == skill_status_t.INACTIVE
+    assert not newest(skiller, "dribble_command").on
+    assert not skiller.kick.sent
+
+
+def test_shot_is_one_kick_for_this_tick_and_done_with_it(skiller: Bench) -> None:
+    carry_out(skiller, 3, MOUTH_M, skill="shoot", x_m=11.0)
+    (kick,) = skiller.kick.sent
+    assert kick.speed_m_s > 8.0
+    assert kick.command.expires_us == kick.header.time_us
+    skiller.owner_of("kick").answer()
+    assert carry_out(skiller, 1, 1.0)[-1] == (answer_t.DONE, "")
+
+
+@pytest.mark.parametrize("answered", [True, False])
+def test_kick_that_fails_is_asked_for_again(skiller: Bench, answered: bool) -> None:
+    carry_out(skiller, 1, MOUTH_M, skill="shoot", x_m=11.0)
+    if answered:
+        skiller.owner_of("kick").answer(answer_t.EXPIRED)
+    carry_out(skiller, 2 if answered else 6, MOUTH_M)
+    assert len(skiller.kick.sent) == 2
 
 
 def senseless(value: float, message: Any) -> Any:
@@ -197,11 +300,12 @@ def test_senseless_numbers_do_no_harm(component: type[Component], value: float) 
     bench = Bench(component, "cyan2/component")
     for skill in ("get_ball", "intercept", "shoot", "pass", "dribble", "keep_goal", "mark", "goto"):
         for declared in bench.declaration.ports:
-            if not declared.writes:
+            if not declared.writes and not declared.sends:
                 message = senseless(value, bench.port(declared.attribute).message_type())
                 message.header.time_us = bench.time_us
-                if declared.attribute == "skill_command":
-                    message.skill, message.command_id = skill, bench.tick
+                if declared.attribute == "skill":
+                    message.skill = skill
+                    bench.skill.put(skill=skill, x_m=5.0)  # carried out even if the other one is rejected
                 if declared.attribute == "game_state":
                     message.state, message.stopped = game_state_t.PLAY, False
                 bench.port(declared.attribute).put(message)
@@ -221,9 +325,8 @@ def test_stopped_navigator_leaves_the_motors_off() -> None:
 
 def test_stopped_skiller_leaves_no_target_kick_or_handling() -> None:
     bench = Bench(Skiller, "cyan2/skiller")
-    bench.component.kick_command.value.kick_id = 3
-    bench.component.kick_command.value.dribble = True
+    bench.component.dribble_command.value.on = True
     bench.finalize()
-    kick = newest(bench, "kick_command")
-    assert (kick.kick_id, kick.speed_m_s, kick.dribble) == (3, 0.0, False)
+    assert not newest(bench, "dribble_command").on
+    assert not bench.kick.sent
     assert newest(bench, "drive_target").stop

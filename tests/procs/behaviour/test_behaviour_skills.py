@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from procs.behaviour.skills.book import SKILLS, Machine
+from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal
 from procs.behaviour.skills.moving import Goto, Mark
@@ -103,15 +103,15 @@ def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
 
 def test_shoot_turns_first_and_kicks_when_aimed() -> None:
     skill = Shoot()
-    aside = scene(view(OWN._replace(heading_rad=0.5), ball(0.3, 0.1)), holds_ball=True, kicks_asked=4, kicks_done=4)
+    aside = scene(view(OWN._replace(heading_rad=0.5), ball(0.3, 0.1)), holds_ball=True)
     turning = skill.step(aside)
     assert turning.kick_m_s == 0.0
     assert drive(turning).heading_rad == pytest.approx(0.0)
     aimed = aside._replace(view=view(OWN, ball(0.33, 0.0)))
     steps = [skill.step(aimed) for _ in range(2)]
     assert steps[-1].kick_m_s > 8.0
-    assert skill.step(aimed._replace(kicks_asked=5)).status is Status.RUNNING
-    assert skill.step(aimed._replace(kicks_asked=5, kicks_done=5, holds_ball=False)).status is Status.FINAL
+    assert skill.step(aimed).status is Status.RUNNING
+    assert skill.step(aimed._replace(kicked=True, holds_ball=False)).status is Status.FINAL
 
 
 def test_shoot_waits_for_the_charge() -> None:
@@ -129,9 +129,13 @@ def test_kick_allows_for_the_robots_own_motion() -> None:
 def test_kick_that_the_kicker_ignores_is_requested_again() -> None:
     skill, held = Shoot(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
     assert skill.step(held).kick_m_s > 0
-    later = [skill.step(held._replace(kicks_asked=1)).kick_m_s for _ in range(8)]
-    assert later[0] == 0.0
-    assert max(later) > 0
+    assert [skill.step(held).kick_m_s for _ in range(8)] == [0.0] * 8
+    assert skill.step(held._replace(kicked=False)).kick_m_s > 0
+
+
+def test_kick_before_this_skill_does_not_count_as_its_own() -> None:
+    step = Shoot().step(scene(view(OWN, ball(0.33, 0.0)), holds_ball=True, kicked=True))
+    assert (step.status, step.kick_m_s > 0) == (Status.RUNNING, True)
 
 
 def test_pass_is_softer_the_nearer_the_mate_is() -> None:
@@ -165,24 +169,31 @@ def test_keeper_covers_the_ball_side_between_the_posts() -> None:
 
 def test_machine_moves_a_running_skill_and_restarts_an_ended_one() -> None:
     machine, seen = Machine(), view(OWN, Ball(known=False))
-    assert machine.step(1, "get_ball", scene(seen)).status is Status.FAILED
-    assert machine.step(1, "get_ball", scene(view(OWN, FAR_BALL))).status is Status.FAILED
-    assert machine.step(2, "get_ball", scene(view(OWN, FAR_BALL))).status is Status.RUNNING
-    assert drive(machine.step(3, "goto", scene(seen, 1.0))).place.x_m == 1.0
-    assert drive(machine.step(4, "goto", scene(seen, 2.0))).place.x_m == 2.0
+    machine.begin("get_ball")
+    assert machine.step(scene(seen)).status is Status.FAILED
+    assert machine.step(scene(view(OWN, FAR_BALL))).status is Status.FAILED
+    machine.begin("get_ball")
+    assert machine.step(scene(view(OWN, FAR_BALL))).status is Status.RUNNING
+    machine.begin("shoot")
+    held = scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
+    assert machine.step(held).kick_m_s > 0
+    machine.begin("shoot")
+    assert machine.step(held).kick_m_s == 0.0  # still waits for the kick that it asked for
+    for x_m in (1.0, 2.0):
+        machine.begin("goto")
+        assert drive(machine.step(scene(seen, x_m))).place.x_m == x_m
 
 
 def test_ended_skill_stops_the_robot_and_keeps_the_ball() -> None:
     machine, held = Machine(), scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
-    steps = [machine.step(1, "get_ball", held) for _ in range(4)]
+    machine.begin("get_ball")
+    steps = [machine.step(held) for _ in range(4)]
     assert [(step.status, step.drive, step.dribble) for step in steps[2:]] == [(Status.FINAL, None, True)] * 2
 
 
-def test_skill_that_does_not_exist_fails_and_says_which_do() -> None:
-    step = Machine().step(1, "juggle", scene(view(OWN, FAR_BALL)))
-    assert step.status is Status.FAILED
-    assert "juggle" in step.reason
-    assert all(name in step.reason for name in SKILLS)
+def test_machine_without_a_command_stands() -> None:
+    step = Machine().step(scene(view(OWN, FAR_BALL), holds_ball=True))
+    assert (step.status, step.drive, step.dribble, step.kick_m_s) == (Status.INACTIVE, None, False, 0.0)
 
 
 @pytest.mark.parametrize(("speed_m_s", "omega_rad_s"), [(0.0, 1.0), (3.5, 1.0), (3.5, -1.0)])

@@ -14,7 +14,7 @@ from lcmtypes.soccer import (
     ground_truth_t,
     match_event_t,
     robot_estimate_t,
-    skill_command_t,
+    skill_status_t,
     team_message_t,
     true_robot_t,
     world_model_t,
@@ -138,10 +138,10 @@ def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, 
 @pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False)])
 def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled: bool) -> None:
     made = piece([robot("cyan1", 0.0, 0.0), robot("cyan2", 3.0, 0.0), robot("magenta1", 3.0, 1.0)])
-    command, holding = skill_command_t(), kicker_state_t()
-    command.skill, holding.ball_held = "pass", True
+    status, holding = skill_status_t(), kicker_state_t()
+    status.skill, holding.ball_held = "pass", True
     made.by_robot |= {
-        "skill_command": {"cyan1": {FIRST: command}},
+        "skill_status": {"cyan1": {FIRST: status}},
         "kicker_state": {"cyan2": dict.fromkeys(made.truth, holding), "magenta1": {}},
     }
     made.events = {FIRST + 1: [event(match_event_t.KICK, "cyan1", 4.0)]}

@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from fwk import Component, Reads, Writes
+from fwk import Calls, Component, Reads, Writes
 from fwk.testing import Bench, MemorySystem
 from lcmtypes.robot import (
+    dribble_command_t,
     imu_t,
     kick_command_t,
     kicker_drive_t,
@@ -177,16 +178,19 @@ class Wanderer(Component):
     odometry: Reads[odometry_t]
     kicker_state: Reads[kicker_state_t]
     motor_command: Writes[motor_command_t]
-    kick_command: Writes[kick_command_t]
+    kick: Calls[kick_command_t]
+    dribble_command: Writes[dribble_command_t]
 
     def loop(self) -> None:
-        motor, kick = self.motor_command.value, self.kick_command.value
-        motor.enabled, kick.dribble = True, True
+        motor, dribble = self.motor_command.value, self.dribble_command.value
+        motor.enabled, dribble.on = True, True
         if self.odometry.header.tick % 20 == 1:
             motor.vx_m_s, motor.omega_rad_s = self.rng.uniform(0.0, 2.5), self.rng.uniform(-1.5, 1.5)
-        kick.kick_id, kick.speed_m_s = self.kicker_state.value.kick_id + 1, 8.0 * self.rng.integers(2)
+        if self.rng.integers(2):
+            self.kick.value.speed_m_s = 8.0
+            self.kick.call(expires_s=0.0)
         self.motor_command.write()
-        self.kick_command.write()
+        self.dribble_command.write()
 
 
 class Crew(Component):
