@@ -1,4 +1,4 @@
-"""What all tests share: ports of their own, and leaving out what this machine cannot run, which the end names."""
+"""Fixtures that all tests share: ports, and skips for programs and rights that the machine lacks."""
 
 import shutil
 import subprocess
@@ -8,7 +8,7 @@ from typing import NoReturn
 
 from fwk.model.linear_algebra import limit_threads
 
-limit_threads()  # before numpy: components in the tests' own process compute as they do in a run
+limit_threads()  # before numpy: components in the test process use the same BLAS kernel as in a run
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
@@ -17,7 +17,7 @@ from tests.harness.runs import PortBlock  # noqa: E402
 
 settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
 settings.register_profile("long", deadline=None, max_examples=5000)
-settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long looks for new ones
+settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long searches for new ones
 
 _PACKAGES = {
     "Xvfb": "xvfb",
@@ -35,7 +35,7 @@ _PACKAGES = {
 
 @pytest.fixture
 def ports() -> Iterator[PortBlock]:
-    """Ports that no other test on this machine uses meanwhile, whichever suite or worker it belongs to."""
+    """Ports that no other test on this machine uses at the same time, in any suite or worker."""
     made = PortBlock()
     yield made
     made.release()
@@ -43,9 +43,9 @@ def ports() -> Iterator[PortBlock]:
 
 @pytest.fixture
 def leave_out() -> Callable[[str], NoReturn]:
-    """`leave_out("needs root")` skips the test; the reason is said at the end.
-
-    The one way to skip: only what this machine lacks is a reason to leave a test out, never the test's own trouble.
+    """`leave_out("needs root")` skips the test; the end of the test run lists the reason.
+    / This is the only way to skip. A test is skipped only for something that the machine lacks, never because the
+    test fails.
     """
     return pytest.skip
 
@@ -67,7 +67,7 @@ def needs(leave_out: Callable[[str], NoReturn]) -> Callable[..., None]:
 def small_disk(
     tmp_path: Path, needs: Callable[..., None], leave_out: Callable[[str], NoReturn]
 ) -> Iterator[Callable[[int], Path]]:
-    """`small_disk(8)` is a folder on a disk of its own of 8 MiB; only root can make one."""
+    """`small_disk(8)` is a folder on a separate disk of 8 MiB; only root can create one."""
     needs("mount", "umount")
     made: list[Path] = []
 
@@ -87,9 +87,8 @@ def small_disk(
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Lists what was left out and why, so that a green run does not hide it.
-
-    Asks the reports, which come from all workers.
+    """Lists the skipped tests with their reasons, so that a green run does not hide them.
+    / Uses the reports, which arrive from all workers.
     """
     left_out: dict[str, list[str]] = {}
     for report in terminalreporter.stats.get("skipped", []):

@@ -1,4 +1,4 @@
-"""A public bus for one test, and LCM's own programs on it."""
+"""A public bus for one test, with LCM's own programs on it."""
 
 import signal
 import subprocess
@@ -13,11 +13,11 @@ from fwk.lcm.event_log import LogReader
 from fwk.lcm.typegen import lcm_gen
 
 PROBE = "fwk/probe"
-_DEADLINE_S = 60.0  # a busy machine is slow; nothing waits that long when it works
+_DEADLINE_S = 60.0  # generous for a busy machine; no test waits that long in normal operation
 
 
 def program(name: str) -> str:
-    """The program itself, not the wheel's Python wrapper, which would leave it behind when killed."""
+    """Path of the program itself: the wheel's Python wrapper would leave it behind when killed."""
     return str(lcm_gen().with_name(name))
 
 
@@ -34,7 +34,7 @@ class Bus:
         subprocess.run(command, check=True, capture_output=True, timeout=_DEADLINE_S)
 
     def publish_until(self, heard: Callable[[], bool], data: bytes = b"probe", channel: str = PROBE) -> None:
-        """Publishes something again and again until it has had its effect: the other side listens now."""
+        """Publishes messages repeatedly until they take effect, that is, until the other side listens."""
 
         def asked() -> bool:
             self._lcm.publish(channel, data)
@@ -44,7 +44,7 @@ class Bus:
 
     @contextmanager
     def logger(self, log: Path) -> Iterator[None]:
-        """Runs lcm-logger; inside the block it listens, after the block everything published in it is in the file."""
+        """Runs lcm-logger: it listens inside the block; after the block the file holds everything published in it."""
         with process([program("lcm-logger"), "--flush-interval=20", f"--lcm-url={self.url}", str(log)]):
             self.publish_until(log.exists)
             self.publish_until(lambda: b"probe" in _probes(log))
@@ -58,7 +58,7 @@ def _probes(log: Path) -> set[bytes]:
 
 @contextmanager
 def process(command: Sequence[str], environment: dict[str, str] | None = None) -> Iterator[subprocess.Popen[str]]:
-    """Runs a program and ends it after the block."""
+    """Runs a program for the duration of the block."""
     started = subprocess.Popen(
         command, text=True, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, stdin=subprocess.DEVNULL
     )
@@ -74,7 +74,7 @@ def process(command: Sequence[str], environment: dict[str, str] | None = None) -
 
 
 def wait_until(condition: Callable[[], bool], failure: str) -> None:
-    """Waits for something that another process does."""
+    """Waits until another process has made `condition` true."""
     deadline_us = monotonic_us() + round(_DEADLINE_S * 1e6)
     while not condition():
         assert monotonic_us() < deadline_us, failure

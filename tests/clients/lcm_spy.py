@@ -1,4 +1,4 @@
-"""lcm-spy on a screen of its own, and the table that its window shows."""
+"""lcm-spy on a virtual screen, and the table that its window shows."""
 
 import csv
 import os
@@ -20,13 +20,13 @@ def screen() -> Iterator[str]:
     """Starts a virtual screen; its name is the value of DISPLAY."""
     with process(["Xvfb", "-displayfd", "1", "-screen", "0", "1024x768x24", "-nolisten", "tcp"]) as server:
         assert server.stdout
-        number = next(line.strip() for line in server.stdout if line.strip().isdigit())  # others may take one before it
+        number = next(line.strip() for line in server.stdout if line.strip().isdigit())  # another process may be faster
         yield f":{number}"
 
 
 @contextmanager
 def lcm_spy(bus: Bus, display: str, folder: Path) -> Iterator[Path]:
-    """Starts lcm-spy and waits until it listens; the folder that is returned is that of `read_table`."""
+    """Starts lcm-spy and waits until it listens; returns the folder for `read_table`."""
     (folder / "seen").mkdir()
     (folder / "agent").mkdir()
     environment = {
@@ -41,7 +41,7 @@ def lcm_spy(bus: Bus, display: str, folder: Path) -> Iterator[Path]:
 
 
 def read_table(folder: Path) -> Table:
-    """Returns the newest table of the window."""
+    """Returns the newest table that the window shows."""
     path = folder / "table.tsv"
     if not path.exists():
         return {}

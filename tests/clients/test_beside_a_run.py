@@ -50,7 +50,7 @@ while True:
 
 
 def burst(folder: Path, ports: PortBlock, speed: str) -> None:
-    """Runs a component that writes 200 messages in each tick, to the end."""
+    """Runs to its end a component that writes 200 messages in each tick."""
     write_files(folder, {"burst.py": BURST, "burst.yaml": LAUNCH.format(url=ports.public_url)})
     options = ("burst.yaml", "--ticks", str(TICKS), "--speed", speed, "--record", "log.lcm")
     run = Launched(folder, ports, options, {})

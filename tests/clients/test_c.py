@@ -1,4 +1,4 @@
-"""A C program made of nothing but our .lcm files reads the bus."""
+"""A C program built from the project's .lcm files alone reads the bus."""
 
 import os
 import subprocess
@@ -22,7 +22,7 @@ WHEEL = Path(lcm.__file__).parent.parent
 
 @pytest.fixture(scope="module")
 def ball(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
-    """Builds the program when first asked; every type of ours is compiled without a warning."""
+    """Builds the program on first use; all message types compile without a warning."""
     folder = tmp_path_factory.mktemp("ball")
 
     def build() -> str:
@@ -85,11 +85,11 @@ def test_c_program_and_lcm_logger_hear_a_running_robot(
     assert any("ball at (" in line for line in lines)
     own, heard = said(tmp_path / "own"), said(tmp_path / "heard")
     assert {channel for channel, _ in heard} == {channel for channel, _ in own}
-    assert set(heard) <= set(own)  # to the byte
-    assert len(set(heard)) > 0.9 * len(set(own))  # a public bus may lose some: beside a busy machine lcm-logger is late
+    assert set(heard) <= set(own)  # byte for byte
+    assert len(set(heard)) > 0.9 * len(set(own))  # the public bus may lose some on a busy machine
 
 
 def said(log: Path) -> list[tuple[str, bytes]]:
-    """What components published."""
+    """Messages that components published."""
     ours = [event for event in LogReader(log) if "/" in event.channel and not event.channel.startswith(FRAMEWORK)]
     return [(event.channel, event.data) for event in ours]

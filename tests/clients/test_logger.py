@@ -1,4 +1,4 @@
-"""lcm-logplayer plays our logs, and what lcm-logger records of it compares equal."""
+"""lcm-logplayer plays recordings of fwk, and the log that lcm-logger makes of them compares equal."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Tests that lack a program are left out by name, and the end of the run lists them."""
+"""Tests that lack a program are skipped, and the end of the test run lists them."""
 
 import shutil
 import subprocess

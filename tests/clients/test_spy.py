@@ -1,7 +1,6 @@
-"""lcm-spy, really started, decodes every channel.
-
-Its window is a Swing table, so a Java agent inside the unchanged program reads that table: what is checked is what a
-person would see, without guessing from pixels. A screenshot shows that the window was drawn.
+"""lcm-spy as a real process decodes every channel.
+/ Its window is a Swing table. A Java agent inside the unchanged program reads that table, so the test checks what a
+person would see, without analysing pixels. A screenshot shows that the window was drawn.
 """
 
 from collections.abc import Callable
@@ -22,10 +21,10 @@ pytestmark = pytest.mark.system
 
 
 def one_of_each_type() -> list[Entry]:
-    """Channel `every/soccer.pose_t` and so on, three messages each."""
+    """Publishes three messages of each type, on channels such as `every/soccer.pose_t`."""
     ours = {file.stem for file in (Path(__file__).parents[2] / "lcmtypes").glob("*.lcm")}
     types = [kind for kinds in by_fingerprint().values() for kind in kinds if has_header(kind)]
-    types = [kind for kind in types if type_name(kind).partition(".")[0] in ours]  # other tests know more types
+    types = [kind for kind in types if type_name(kind).partition(".")[0] in ours]  # other tests register more types
     return [(f"every/{type_name(kind)}", kind().encode(), 1) for kind in types for _ in range(3)]
 
 

@@ -1,4 +1,4 @@
-"""Who worries, and who listens."""
+"""A component that raises alarms, and one that listens to them."""
 
 from fwk import Clock, Component, Config, Logger, LogLines, Writes
 from lcmtypes.robot import imu_t

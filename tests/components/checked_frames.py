@@ -39,7 +39,7 @@ class FinderConfig(Config):
 
 
 class Finder(Component):
-    """Says which frame it saw and whether it was whole."""
+    """Reports which frame it saw and whether the frame was whole."""
 
     stage = "sensor_prepare"
     image: Image = channel("r/image")

@@ -1,4 +1,4 @@
-"""A counter that leaves to a plain module how much it adds."""
+"""A counter whose increment comes from a plain module."""
 
 import helper
 from fwk import Component, Writes

@@ -1,4 +1,4 @@
-"""One crane for all."""
+"""One crane that serves all clients."""
 
 from fwk import Call, Calls, Clock, Component, Each, Serves, Writes, channel
 from lcmtypes.core import acknowledgement_t

@@ -1,4 +1,4 @@
-"""Drives a device, and listens to it."""
+"""A driver of a device, and a listener to the device."""
 
 import os
 from pathlib import Path
@@ -14,7 +14,7 @@ class DriverConfig(Config):
 
 
 class Driver(Component):
-    """The motors do what the stick says; with nobody at the stick they follow the clock."""
+    """Moves the motors as the stick commands; without a stick they follow the clock."""
 
     stage = "think"
     config: DriverConfig
@@ -42,7 +42,7 @@ class Driver(Component):
 
 
 class Listener(Component):
-    """Adds up what the parts are told."""
+    """Sums up the commands to the parts."""
 
     stage = "act"
     parts: Each[Reads[motor_t]]

@@ -4,7 +4,7 @@ from fwk import Clock, Component, PluginControl
 
 
 class Director(Component):
-    """Has a script."""
+    """Carries out a script of requests."""
 
     stage = "worldstate"
     clock: Clock
@@ -27,7 +27,7 @@ class Director(Component):
 
 
 class Rival(Director):
-    """Asks for something else in the same tick; its name comes later."""
+    """Makes a different request in the same tick; its name sorts after the director's."""
 
     def loop(self) -> None:
         if self.clock.tick == 5:

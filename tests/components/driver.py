@@ -1,4 +1,4 @@
-"""Takes the main loop over and gives it back, again and again, and starts another component anew."""
+"""Repeatedly takes the main loop over and gives it back, and restarts another component."""
 
 from fwk import Clock, Component, MainLoop, PluginControl
 
@@ -6,7 +6,7 @@ ORDER = ["pre_loop", "sensor_acquire", "think", "sensor_prepare", "worldstate", 
 
 
 class Driver(Component):
-    """Has the main loop for eight ticks of twenty-four."""
+    """Holds the main loop for eight of every twenty-four ticks."""
 
     stage = "think"
     clock: Clock

@@ -1,4 +1,4 @@
-"""Says in the beginning what there is; dies once."""
+"""Publishes a message in `init`; dies once."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Who plans at its own pace, and who hears of it and of programs outside."""
+"""A planner with a rate of its own, and a follower that hears the planner and programs outside."""
 
 import zlib
 
@@ -18,7 +18,7 @@ class PlannerConfig(Config):
 
 
 class Planner(Component):
-    """Plans by all that it hears, as often as it can."""
+    """Plans from everything it hears, as often as it can."""
 
     rate_hz = 0
     config: PlannerConfig
@@ -43,7 +43,7 @@ class Planner(Component):
 
 
 class Follower(Component):
-    """Adds up plans and wishes; says at the end how far it has come, and by which settings."""
+    """Sums up plans and outside messages; reports its total and its settings in `finalize`."""
 
     stage = ("sensor_process", "act")
     config: PlannerConfig

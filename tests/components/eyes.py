@@ -1,4 +1,4 @@
-"""A camera that is a device, one that is not, and who looks at them."""
+"""A camera that is a device, a camera that is not, and their viewers."""
 
 import os
 import zlib
@@ -11,7 +11,7 @@ from lcmtypes.soccer import pose_t
 
 
 class Device(Component):
-    """What it sees is never the same again; in a replay it must not be touched."""
+    """Its pictures are never the same again; a replay must not run it."""
 
     stage = "sensor_acquire"
     image: VisionMaster
@@ -31,7 +31,7 @@ class Device(Component):
 
 
 class Grey(Component):
-    """Grey pictures, which depend on the run's seed alone."""
+    """Grey pictures, determined by the run's seed."""
 
     stage = "sensor_acquire"
     image: VisionMaster
@@ -42,7 +42,7 @@ class Grey(Component):
 
 
 class Watcher(Component):
-    """Says what it saw."""
+    """Reports which frame it saw."""
 
     stage = "sensor_prepare"
     image: Image
@@ -57,7 +57,7 @@ class Watcher(Component):
 
 
 class Follower(Component):
-    """Needs no picture."""
+    """Reads no frames."""
 
     stage = "think"
     pose: Reads[pose_t] = channel("a/pose")

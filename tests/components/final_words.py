@@ -1,10 +1,10 @@
-"""A counter that writes when it ends."""
+"""A counter that writes in `finalize`."""
 
 from small import Counter
 
 
 class LastWords(Counter):
-    """Counts up and writes -1 rad at the end."""
+    """Counts up and writes -1 rad in `finalize`."""
 
     def finalize(self) -> None:
         self.imu.value.heading_rad = -1.0

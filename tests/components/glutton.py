@@ -1,4 +1,4 @@
-"""One that works, and one that takes too much or falls over."""
+"""A component that computes, and one that takes too much memory or crashes."""
 
 import ctypes
 from pathlib import Path
@@ -17,7 +17,7 @@ def long_sum(number: int) -> float:
 
 
 class Worker(Component):
-    """Computes."""
+    """Uses processor time."""
 
     stage = "sensor_acquire"
     imu: Writes[imu_t]
@@ -37,7 +37,7 @@ class GluttonConfig(Config):
 
 
 class Glutton(Component):
-    """Takes."""
+    """Uses memory, or crashes."""
 
     stage = "think"
     config: GluttonConfig

@@ -1,6 +1,6 @@
-"""Asks for more channels than there are, all at once, and writes down what it got."""
+"""Requests more channels at once than the plan has spare, and reports the outcome."""
 
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Blackboard, Component, Config, Writes
 from lcmtypes.robot import imu_t
 

@@ -1,11 +1,11 @@
-"""Who lifts, who adds up, who wants it done."""
+"""A lifter, an adder, and a worker that uses both."""
 
 import os
 from pathlib import Path
 
 import numpy as np
 
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Call, Calls, Clock, Component, Config, Serves, Writes, channel
 from lcmtypes.core import acknowledgement_t
 from lcmtypes.lift import lift_t, lifted_t, sum_request_t, sum_t, tally_t
@@ -26,7 +26,7 @@ class LifterConfig(Config):
 
 
 class Lifter(Component):
-    """Lifts to the height that it is told, a few at a time; heights below zero it fails to reach."""
+    """Lifts to the commanded heights, a few commands at a time; fails for heights below zero."""
 
     stage = "act"
     config: LifterConfig
@@ -58,7 +58,7 @@ class Lifter(Component):
 
 
 class Adder(Component):
-    """Adds up what it is asked to."""
+    """Answers requests for sums."""
 
     stage = "worldstate"
     clock: Clock
@@ -85,7 +85,7 @@ class WorkerConfig(Config):
 
 
 class Worker(Component):
-    """Wants sums and lifts, by chance, and counts what has become of them."""
+    """Requests sums and lifts at random, and counts the outcomes."""
 
     stage = "think"
     config: WorkerConfig

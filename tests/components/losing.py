@@ -1,4 +1,4 @@
-"""A player whose messages get lost and who stands still before anybody can ask for them again."""
+"""A player whose messages get lost and that stops before its readers can fetch them."""
 
 import os
 import signal

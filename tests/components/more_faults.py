@@ -1,4 +1,4 @@
-"""What else can go wrong in a component."""
+"""Further faults of a component."""
 
 import os
 import subprocess

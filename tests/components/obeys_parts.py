@@ -1,15 +1,15 @@
-"""Obeys."""
+"""A component that obeys messages from outside."""
 
 import os
 from pathlib import Path
 
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Clock, Component, Reads, Writes, channel
 from lcmtypes.robot import imu_t, motor_command_t
 
 
 class Obeys(Component):
-    """Adds up what is wished, all of it and the newest three."""
+    """Sums up all outside messages, and the newest three."""
 
     stage = ("think", "act")
     clock: Clock

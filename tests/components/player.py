@@ -1,4 +1,4 @@
-"""Writes down what it heard."""
+"""Players that write down what they heard, and the conductor."""
 
 import os
 import zlib
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 import trouble
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Clock, Component, Config, Each, Reads, TimeSource, Writes, channel
 from lcmtypes.play import burst_t, heard_t, note_t
 
@@ -33,7 +33,7 @@ class PlayerConfig(Config):
 
 
 class Player(Component):
-    """Hears everybody."""
+    """Hears all players and writes down what it heard."""
 
     stage = "think"
 
@@ -102,7 +102,7 @@ class Player(Component):
 
 
 class Conductor(Component):
-    """Says when the next tick is."""
+    """Time source: sets the time of the next tick."""
 
     stage = "pre_loop"
 

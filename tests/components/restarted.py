@@ -1,8 +1,8 @@
-"""One that is started anew again and again and speaks until its end, and one that hears it."""
+"""A speaker that restarts repeatedly and writes until its end, and a listener."""
 
 import zlib
 
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Clock, Component, PluginControl, Reads, Writes
 from lcmtypes.robot import imu_t
 

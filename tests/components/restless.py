@@ -1,9 +1,9 @@
-"""A counter, a planner that is slow and continuous, and one that follows the planner."""
+"""A counter, a slow continuous planner, and a follower of the planner."""
 
 import os
 from pathlib import Path
 
-import weather  # noqa: F401 - loses datagrams if asked to
+import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Clock, Component, Config, MainLoop, Reads, Writes, channel
 from fwk.clock import monotonic_us, sleep_s
 from lcmtypes.robot import imu_t
@@ -11,7 +11,7 @@ from lcmtypes.soccer import pose_t
 
 
 class Counter(Component):
-    """Counts."""
+    """Counts its iterations."""
 
     stage = "think"
     imu: Writes[imu_t]
@@ -34,7 +34,7 @@ def note_time() -> None:
 
 
 class Planner(Component):
-    """Sums up all that it hears."""
+    """Sums up everything it hears."""
 
     rate_hz = 0
     clock: Clock
@@ -65,7 +65,7 @@ class Planner(Component):
 
 
 class Follower(Component):
-    """Adds up what the planner says."""
+    """Sums up the planner's messages."""
 
     stage = "act"
     pose: Reads[pose_t]

@@ -8,7 +8,7 @@ from lcmtypes.soccer import pose_t
 
 
 class Sensor(Component):
-    """Turns."""
+    """Writes a heading that changes in each tick."""
 
     stage = "sensor_acquire"
     imu: Writes[imu_t]
@@ -17,11 +17,11 @@ class Sensor(Component):
         self.imu.value.heading_rad += 0.1
         self.imu.write()
         Path("turns.new").write_text(str(self.imu.value.header.tick))
-        Path("turns.new").rename("turns.txt")  # who reads it sees no half of it
+        Path("turns.new").rename("turns.txt")  # a reader never sees half a message
 
 
 class WorldModel(Component):
-    """Believes."""
+    """Copies the sensor's newest value."""
 
     stage = "worldstate"
     imu: Reads[imu_t]

@@ -1,4 +1,4 @@
-"""A camera that takes its time to get ready."""
+"""A camera that takes a while to become ready."""
 
 from pathlib import Path
 
@@ -7,7 +7,7 @@ from small import Camera
 
 
 class SlowCamera(Camera):
-    """Is ready as soon as the file `go` exists."""
+    """Becomes ready as soon as the file `go` exists."""
 
     def init(self) -> None:
         while not Path("go").exists():

@@ -1,4 +1,4 @@
-"""Half a second until the gateway has its sockets."""
+"""Delays the opening of the gateway's sockets by half a second."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Counts, follows, and looks."""
+"""A counter, its follower, a camera and a viewer."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ class CounterConfig(Config):
 
 
 class Counter(Component):
-    """Counts up."""
+    """Counts its iterations."""
 
     stage = "think"
     config: CounterConfig
@@ -37,7 +37,7 @@ class Counter(Component):
 
 
 class Follower(Component):
-    """Says where the counter is; does not like 99."""
+    """Copies the counter's value; fails at 99."""
 
     stage = "act"
     imu: Reads[imu_t] = channel("r/imu")
@@ -50,7 +50,7 @@ class Follower(Component):
 
 
 class Camera(Component):
-    """Gives out frames."""
+    """Publishes frames."""
 
     stage = "sensor_acquire"
     image: VisionMaster
@@ -60,7 +60,7 @@ class Camera(Component):
 
 
 class Finder(Component):
-    """Looks at them."""
+    """Looks at the camera's frames."""
 
     stage = "sensor_prepare"
     image: Image

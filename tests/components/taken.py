@@ -1,4 +1,4 @@
-"""One takes the main loop, one wants it too, two play."""
+"""A driver that takes the main loop, a rival that also requests it, and two players."""
 
 import os
 import signal
@@ -30,7 +30,7 @@ class Player(Component):
 
 
 class Driver(Player):
-    """Has the main loop from one tick to another."""
+    """Holds the main loop from one tick to another."""
 
     stage = "think"
     clock: Clock

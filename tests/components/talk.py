@@ -1,4 +1,4 @@
-"""A talker whose messages get lost before it dies, and who listens to it."""
+"""A talker whose messages get lost before it dies, and its listener."""
 
 import os
 import signal
@@ -31,7 +31,7 @@ def lose_and_die() -> None:
 
 
 class Talker(Component):
-    """Says much, once."""
+    """Writes many messages, once."""
 
     stage = "sensor_acquire"
     clock: Clock
@@ -48,7 +48,7 @@ class Talker(Component):
 
 
 class Listener(Component):
-    """Counts what it hears."""
+    """Counts the messages it hears."""
 
     stage = "think"
     imu: Reads[imu_t]

@@ -1,4 +1,4 @@
-"""Talks, in several ways."""
+"""Writes to the log in several ways."""
 
 import os
 import sys
@@ -30,7 +30,7 @@ class TalkerConfig(Config):
 
 
 class Talker(Component):
-    """Talks."""
+    """Logs and prints."""
 
     stage = "think"
     config: TalkerConfig

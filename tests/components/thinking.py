@@ -1,4 +1,4 @@
-"""Knows nothing of fwk, and logs as every Python module does."""
+"""A plain module that knows nothing of fwk and logs with Python's `logging`."""
 
 import logging
 

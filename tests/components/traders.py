@@ -1,4 +1,4 @@
-"""Traders open, write, read and close goods at random; a diary holds a digest of everything that one sees."""
+"""Traders open, write, read and close channels at random; a diary holds a digest of what each of them sees."""
 
 import contextlib
 import zlib
@@ -89,7 +89,7 @@ class Trader(Component):
 
 
 class Wanderer(Trader):
-    """A trader at its own pace: the main loop goes on while it thinks."""
+    """A trader with a rate of its own: the main loop does not wait for it."""
 
     stage = ()  # type: ignore[assignment]
     rate_hz = 0
@@ -107,7 +107,7 @@ class Wanderer(Trader):
 
 
 class Bystander(Component):
-    """Knows of nothing and reads a diary."""
+    """Reads a diary and takes no part in the trade."""
 
     stage = "act"
     diary: Reads[imu_t]

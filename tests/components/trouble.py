@@ -1,4 +1,4 @@
-"""What can go wrong in a component."""
+"""Faults that a component can be told to have."""
 
 import ctypes
 import os

@@ -1,4 +1,4 @@
-"""A camera and who looks at its frames."""
+"""A camera and a viewer of its frames."""
 
 import zlib
 
@@ -9,7 +9,7 @@ from lcmtypes.play import look_t
 
 
 class Camera(Component):
-    """One to three frames of noise an iteration."""
+    """Publishes one to three frames of noise in each iteration."""
 
     stage = "sensor_acquire"
 
@@ -22,7 +22,7 @@ class Camera(Component):
 
 
 class Viewer(Component):
-    """Looks at the newest."""
+    """Looks at the newest frame."""
 
     stage = "sensor_process"
 

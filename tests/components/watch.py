@@ -1,4 +1,4 @@
-"""A camera of noise, and watchers that now and then are slow."""
+"""A camera of noise, and watchers that are slow now and then."""
 
 import os
 import zlib
@@ -12,7 +12,7 @@ from lcmtypes.soccer import pose_t
 
 
 class Camera(Component):
-    """Three frames in each tick."""
+    """Publishes three frames in each tick."""
 
     stage = "sensor_acquire"
     image: VisionMaster
@@ -31,7 +31,7 @@ class WatcherConfig(Config):
 
 
 class Watcher(Component):
-    """Says which frame it was told of, what it saw, and how many it has lost."""
+    """Reports which frame was announced, what it saw, and how many frames it lost."""
 
     stage = "sensor_prepare"
     image: Image = channel("r/image")

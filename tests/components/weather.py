@@ -1,4 +1,4 @@
-"""Bad weather for the processes that import this: datagrams get lost at the sender, buffers are small."""
+"""Makes the processes that import it lose datagrams at the sender and use small buffers."""
 
 import os
 import random

@@ -1,4 +1,4 @@
-"""A writer that opens its channel when it is told to."""
+"""A writer that opens its channel on command."""
 
 from fwk import Blackboard, Component, Config
 from fwk.component.blackboard import OpenWrites

@@ -12,7 +12,7 @@ _HEADER = "core.header_t"
 
 
 class Filling:
-    """Values for the fields of a message: every number, every list's length, and texts that differ from each other."""
+    """Values for the fields of a message: a number, a length of lists, and texts that differ from each other."""
 
     def __init__(self, number: float, text: str = "", length: int = 0, truth: bool = False) -> None:
         self._number = number

@@ -56,7 +56,7 @@ def test_a_component_replays_alone(
     used = usage(component)
     if used:
         log, name = recorded(used[0], ""), used[1].name
-    else:  # no launch file contains it: one robot with the component beside
+    else:  # no launch file contains it: add it to a system of one robot
         text = ALONE.format(file=LAUNCH / "one-robot.yaml", module=component.__module__, name=component.__name__)
         log, name = recorded("alone.yaml", text), "cyan1/component"
     monkeypatch.chdir(log.parent)

@@ -1,4 +1,4 @@
-"""The pages of the documentation, taken apart: links, headings, code spans, code blocks."""
+"""The pages of the documentation in parts: links, headings, code spans, code blocks."""
 
 import re
 from dataclasses import dataclass
@@ -54,5 +54,5 @@ def anchors(page: Path) -> set[str]:
 
 
 def tutorial_files() -> set[str]:
-    """Returns the paths of the files that readers of a tutorial write."""
+    """Returns the paths of the files that a tutorial tells its readers to write."""
     return {name for page in PAGES for name in _SAVED_FILE.findall(page.read_text())}

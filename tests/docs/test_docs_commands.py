@@ -39,7 +39,7 @@ def words_of(line: str) -> list[str]:
 
 
 def mistakes(line: str) -> list[str]:
-    """Returns what a command line names that does not exist."""
+    """Returns the parts of a command line that name something that does not exist."""
     words = words_of(line)
     if not words or words[0] not in ("fwk", "fwk-launch"):
         return []

@@ -26,7 +26,7 @@ def test_a_struct_has_the_members_that_lcm_gen_sees(struct: Struct) -> None:
     assert all(hasattr(generated, constant.name) for constant in struct.constants)
 
 
-def test_comments_belong_to_the_member_beside_and_below(tmp_path: Path) -> None:
+def test_comments_document_the_member_beside_and_below(tmp_path: Path) -> None:
     source = tmp_path / "garden.lcm"
     source.write_text(
         "package garden;\n// Water in the soil.\nstruct soil_t {\n  double wet;  // 0 to\n               // 1\n"

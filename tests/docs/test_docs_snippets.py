@@ -62,7 +62,7 @@ def test_a_name_that_does_not_exist_is_noticed(span: str, there: bool) -> None:
 
 
 def exists(span: str) -> bool:
-    """Whether the file or module that a code span names exists; true for every other span."""
+    """Returns whether the file or module that a code span names exists; true for every other span."""
     if _CHANNELS_AND_LOGS.fullmatch(span):
         return True
     if _FILE.fullmatch(span):
@@ -71,7 +71,7 @@ def exists(span: str) -> bool:
 
 
 def _module_exists(name: str) -> bool:
-    """Whether `name` is a module of this repository or of a tutorial, or an attribute of such a module."""
+    """Returns whether `name` is a module of this repository or of a tutorial, or an attribute of such a module."""
     path = name.replace(".", "/")
     if (ROOT / f"{path}.py").exists() or (ROOT / path).is_dir() or f"{path}.py" in tutorial_files():
         return True

@@ -1,4 +1,4 @@
-"""What has to hold after every fault: nothing is left of the run, and its recording says what happened."""
+"""Conditions that hold after every fault: the run leaves nothing behind, and its recording says what happened."""
 
 import contextlib
 import os
@@ -22,7 +22,7 @@ class Aftermath:
         self._sessions: set[int] = set()
 
     def note(self, run: Launched) -> None:
-        """Looks at what the run holds now."""
+        """Notes what the run holds now."""
         for process in run.processes():
             with contextlib.suppress(OSError):
                 self._sessions.add(os.getsid(process.pid))
@@ -39,9 +39,8 @@ class Aftermath:
         tracebacks: bool = False,
         gone_s: float = GONE_S,
     ) -> Recording:
-        """Asserts that the run ended with `code`, that nothing of it is left, and that its recording is whole.
-
-        `equal_to` is the log of an undisturbed run; `replays` says whether real components do the same again.
+        """Asserts that the run ended with `code`, left nothing behind, and wrote a whole recording.
+        / `equal_to` is the log of an undisturbed run; with `replays` a replay has to write the same messages.
         """
         if code is not None:
             assert run.wait() == code, run.text
@@ -59,7 +58,7 @@ class Aftermath:
         return recording
 
     def _left(self) -> list[str]:
-        """What still holds the run's shared memory, or belongs to one of its sessions."""
+        """Returns the processes that still hold the run's shared memory or belong to one of its sessions."""
         found = []
         for process in psutil.process_iter():
             with contextlib.suppress(OSError, psutil.Error):
@@ -73,7 +72,7 @@ class Aftermath:
 
 
 def _shared_memory(pid: int) -> Iterator[tuple[tuple[int, int], str]]:
-    """Device and inode of everything that a process holds of shared memory, with its name."""
+    """Returns device and inode of each shared-memory object that a process holds, with its name."""
     for descriptor in Path(f"/proc/{pid}/fd").iterdir():
         with contextlib.suppress(OSError):
             name = os.readlink(descriptor)

@@ -1,4 +1,4 @@
-"""What the tests of faults share: the orchestra, a launcher that cleans up, and the log of an undisturbed run."""
+"""Fixtures of the fault tests: the orchestra, a launcher that cleans up, and the log of an undisturbed run."""
 
 from pathlib import Path
 
@@ -23,14 +23,14 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def traced(folder: Path) -> Path:
-    """The orchestra's folder; players leave their numbers of process and tick in it."""
+    """The orchestra's folder, in which players write their process ids and ticks."""
     (folder / "traces").mkdir()
     return folder
 
 
 @pytest.fixture
 def wall(traced: Path) -> Path:
-    """The orchestra by the clock on the wall, without a conductor."""
+    """The orchestra in real time, without a conductor."""
     file = traced / "launch/orchestra.yaml"
     lines = [line for line in file.read_text().splitlines() if "conductor" not in line and "speed" not in line]
     file.write_text("\n".join([*lines, "clock: wall", "period_s: 0.05", "stage_time_s: 0.3", ""]))
@@ -39,5 +39,5 @@ def wall(traced: Path) -> Path:
 
 @pytest.fixture
 def after() -> Aftermath:
-    """Notes what runs hold of the machine; asked at the end, it says what is wrong."""
+    """Notes what runs hold of the machine; checks after the test that all of it was released."""
     return Aftermath()

@@ -1,6 +1,5 @@
-"""Many short runs to which everything happens at random, each replayed: prints what differs and keeps its folder.
-
-python -m tests.faults.stress --seed 1 --runs 10 --load 2 --clock wall
+"""Runs many short systems with random faults and replays each; prints differences and keeps their folders.
+/ python -m tests.faults.stress --seed 1 --runs 10 --load 2 --clock wall
 """
 
 import argparse
@@ -22,7 +21,7 @@ from tests.programs.together import FILE
 
 
 def stressed(folder: Path, seed: int, *, real_time: bool, groups: bool, strikes: int, env: dict[str, str]) -> str:
-    """One run with its replay; what was wrong, or nothing."""
+    """Performs one run with its replay; returns a description of the failure, or nothing."""
     luck, ports = random.Random(seed), PortBlock()
     write_files(folder, everything(ports.public_url, real_time=real_time, groups=groups))
     use_types_of(folder)
@@ -48,7 +47,7 @@ def stressed(folder: Path, seed: int, *, real_time: bool, groups: bool, strikes:
 
 @contextlib.contextmanager
 def busy(processes: int) -> Iterator[None]:
-    """Processes that take all the time they can get."""
+    """Processes that use all processor time they can get."""
     spinning = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(processes)]
     try:
         yield
@@ -59,7 +58,7 @@ def busy(processes: int) -> Iterator[None]:
 
 
 def main() -> int:
-    """Runs them; 1 if any was wrong."""
+    """Performs all runs; returns 1 if any of them failed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--runs", type=int, default=10)

@@ -1,4 +1,4 @@
-"""The clock is set back an hour under a running system: only the wall times of the log show it."""
+"""The system clock is set back an hour during a run: only the wall times in the log show it."""
 
 import json
 import signal
@@ -60,7 +60,7 @@ time_t time(time_t *out) {
 
 @pytest.fixture
 def clock(wall: Path, needs: Callable[..., None]) -> dict[str, str]:
-    """Surroundings in which the file `set-back` sets the clock back."""
+    """An environment in which the file `set-back` sets the clock back."""
     needs("cc")
     source, library = wall / "clock.c", wall / "clock.so"
     source.write_text(CLOCK)
@@ -83,7 +83,7 @@ def test_setting_the_clock_back_changes_no_logical_time(
     times = [record.time_us for record in recording.records]
     assert len(times) >= before + 20
     assert all(later - earlier > 0 for earlier, later in pairwise(times))
-    assert times[-1] < 60 * 60 * 1_000_000  # nor did it jump ahead
+    assert times[-1] < 60 * 60 * 1_000_000  # nor did the clock jump ahead
     lines = (run.run_dir / "fwk.log.jsonl").read_text().splitlines()
     walls = [json.loads(line)["wall_us"] for line in lines]
     assert any(later < earlier - 3_000_000_000 for earlier, later in pairwise(walls)), "it was set back, as people see"

@@ -1,4 +1,4 @@
-"""A run that ends badly, or whose end goes wrong: nothing is left of it, and it says what happened."""
+"""Runs that end badly: nothing is left of them, and the reason is reported."""
 
 import contextlib
 import os
@@ -36,7 +36,7 @@ def test_a_process_that_dies_during_shutdown_is_named(launch: Launch, traced: Pa
 
 
 def test_sigterm_to_all_processes_ends_the_run_cleanly(launch: Launch, traced: Path, after: Aftermath) -> None:
-    """As systemd does when it stops a service."""
+    """systemd stops a service this way."""
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)

@@ -1,4 +1,4 @@
-"""A component floods log, bus and commands at once: it is held back, and all other components get their messages."""
+"""A component floods log, bus and commands: it is throttled, and all other components get their messages."""
 
 import signal
 from pathlib import Path
@@ -40,7 +40,7 @@ def test_a_flooding_component_delays_no_other(
     assert "lost 0" in run.text
     ticks = len(recording.messages["x/heard"])
     assert recording.decoded("x/heard")[-1].heading_rad == AT_ONCE * ticks
-    assert run.text.count("much too much") < AT_ONCE * ticks / 2  # the log is cut off where it is written
+    assert run.text.count("much too much") < AT_ONCE * ticks / 2  # the log is cut at the place of the writer
     assert "lines dropped" in run.text
     tally = recording.decoded("one/tally")[-1]
     assert tally.done > 0

@@ -1,4 +1,4 @@
-"""A run hears its own datagrams again, cut and garbled, and rubbish on its control sockets: nothing changes."""
+"""A run survives garbled copies of its own datagrams and garbage on its control sockets unchanged."""
 
 import contextlib
 import random
@@ -20,11 +20,11 @@ from tests.harness.runs import PortBlock, pause
 pytestmark = pytest.mark.system
 
 HOSTS, CHANNELS = 9, 14  # of the orchestra
-AT_ONCE = 300  # datagrams between two looks
+AT_ONCE = 300  # datagrams between two checks
 
 
 class Echo:
-    """Hears all that a run sends to many, and sends it back cut and garbled, to any port, from a port of its own."""
+    """Receives all multicast of a run and sends it back, cut and garbled, to any port, from a port of its own."""
 
     def __init__(self, ports: Ports, luck: random.Random) -> None:
         shared = [ports.sync, ports.record, ports.log, ports.status]
@@ -45,7 +45,7 @@ class Echo:
             each.close()
 
     def disturb(self) -> None:
-        """Listens to what is there, and answers with worse."""
+        """Reads the waiting datagrams and sends garbled ones."""
         own = self._socket.getsockname()[1]
         for ears in self._ears:
             with contextlib.suppress(BlockingIOError):
@@ -61,7 +61,7 @@ class Echo:
     def _worse(self, datagram: bytes) -> bytes:
         kind, at = self._luck.randrange(4), self._luck.randrange(len(datagram) + 1)
         if kind == 0:
-            return datagram  # as it was: only its source is wrong
+            return datagram  # unchanged: only its source is wrong
         if kind == 1:
             return datagram[:at]
         if kind == 2:
@@ -70,7 +70,7 @@ class Echo:
 
 
 class Caller:
-    """Says rubbish to control sockets, holds some connections open, and never listens."""
+    """Sends garbage to control sockets, keeps some connections open, and never reads."""
 
     def __init__(self, addresses: list[str], luck: random.Random) -> None:
         self._addresses = addresses
@@ -91,7 +91,7 @@ class Caller:
         ]
         for address in self._addresses:
             made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-            with contextlib.suppress(OSError):  # not there yet, or enough of us
+            with contextlib.suppress(OSError):  # not there yet, or enough connections
                 made.setblocking(False)
                 made.connect(address)
                 made.send(self._luck.choice(words) + self._luck.randbytes(20) + self._luck.choice([b"", b"\n"]))

@@ -1,4 +1,4 @@
-"""Components are killed again and again while a match is played; settings that were acknowledged stay."""
+"""Components are killed repeatedly during a match; acknowledged settings survive."""
 
 import os
 import random
@@ -53,7 +53,7 @@ def test_a_match_goes_on_when_components_are_killed(
         assert run.wait() == 0, run.text
     recording = after.check(run)
     assert killed >= 5
-    assert run.text.count("ended: killed by signal 9") >= killed - 1  # the last one may have come with the end
+    assert run.text.count("ended: killed by signal 9") >= killed - 1  # the last death may coincide with the end
     assert "lost 0" in run.text
     assert recording.gaps() == {}
     assert recording.records[-1].time_us >= MATCH_S * 1_000_000
@@ -63,7 +63,7 @@ def test_a_match_goes_on_when_components_are_killed(
 def test_an_acknowledged_setting_survives_a_crash(
     launch: Launch, tmp_path: Path, ports: PortBlock, moment: str
 ) -> None:
-    """The component dies after, before, or while it takes the setting over."""
+    """The component dies before, while or after it takes the setting over."""
     write_system(tmp_path, ports)
     steered = Steered(launch("small.yaml"), ports)
     counter, run = steered.component("r/counter")["pid"], steered.launched

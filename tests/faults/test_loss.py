@@ -1,4 +1,4 @@
-"""Datagrams get lost, and buffers are far too small: lockstep shows nothing of it."""
+"""Lost datagrams and tiny buffers leave no trace in lockstep."""
 
 import shutil
 import subprocess
@@ -19,7 +19,7 @@ SMALL = {"FWK_TEST_BUFFER_BYTES": "8192"}
 
 
 def lossy(share: str) -> tuple[tuple[str, ...], dict[str, str]]:
-    """What makes datagrams get lost: a network of its own in the kernel, or the senders where that is not allowed."""
+    """Environment that loses datagrams: in the kernel (network namespace), else at the senders."""
     drop = f"iptables -A INPUT -i lo -p udp -m statistic --mode random --probability {share} -j DROP"
     shell = ("unshare", "-rn", "sh", "-c", f'ip link set lo up && {drop} && exec "$0" "$@"')
     if shutil.which("unshare") and not subprocess.run([*shell, "true"], capture_output=True, check=False).returncode:

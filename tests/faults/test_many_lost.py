@@ -1,4 +1,4 @@
-"""Thousands of messages are lost at once and their writer dies: a replay keeps them from the same reader."""
+"""Thousands of messages are lost at once and their writer dies: a replay withholds them from the same reader."""
 
 from pathlib import Path
 

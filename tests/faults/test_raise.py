@@ -1,4 +1,4 @@
-"""Components that do what they should not: named, started again or given up, and nothing is left of them."""
+"""Components with faults are named, restarted or given up, and leave nothing behind."""
 
 import select
 import signal
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.system
 
 @pytest.fixture
 def faulty(traced: Path) -> Path:
-    """The orchestra's folder; its players know more faults."""
+    """The orchestra's folder; its players have further faults."""
     trouble = traced / "trouble.py"
     write_files(traced, sources("more_faults.py"))
     trouble.write_text(trouble.read_text() + "\nfrom more_faults import MORE  # noqa: E402\nMAKE |= MORE\n")

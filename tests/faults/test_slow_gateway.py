@@ -1,4 +1,4 @@
-"""A gateway that takes its time to start: nothing is sent before it hears."""
+"""No message is sent before a slow gateway has its sockets."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Processes that stand still for three seconds (SIGSTOP): lockstep waits for them, real time goes on without them."""
+"""Processes stopped for three seconds (SIGSTOP): lockstep waits for them, real time goes on without them."""
 
 import contextlib
 import os
@@ -40,7 +40,7 @@ def test_a_stopped_process_in_lockstep_leaves_no_trace(
     still = WHO[who](run)
     os.kill(still, signal.SIGSTOP)
     pause(STILL_S)
-    with contextlib.suppress(ProcessLookupError):  # a run that needed no new process has ended, and woken the zygote
+    with contextlib.suppress(ProcessLookupError):  # a run without restarts ends and wakes the zygote
         os.kill(still, signal.SIGCONT)
     recording = after.check(run, equal_to=undisturbed)
     assert recording.gaps() == {}
@@ -107,7 +107,7 @@ def test_a_stopped_process_is_woken_to_end_cleanly(launch: Launch, traced: Path,
 
 @pytest.fixture
 def losing(traced: Path) -> list[str]:
-    """Settings with which `d/player` loses its messages of tick 5 and stands still."""
+    """Settings with which `d/player` loses its messages of tick 5 and stops."""
     trouble = traced / "trouble.py"
     write_files(traced, sources("losing.py"))
     trouble.write_text(trouble.read_text() + "\nfrom losing import MORE  # noqa: E402\nMAKE |= MORE\n")
@@ -116,7 +116,7 @@ def losing(traced: Path) -> list[str]:
 
 
 def until_still(run: Launched) -> int:
-    """Waits until `d/player` stands still; its process."""
+    """Waits until `d/player` has stopped; returns its process."""
     run.until_ticks("d/player", 5)
     process = psutil.Process(run.host("d/player"))
     run.until_true(lambda: process.status() == psutil.STATUS_STOPPED, "d/player stands still")
@@ -143,7 +143,7 @@ def test_messages_lost_in_real_time_are_reported_and_replayed(
     run = launch(*RUN, *losing)
     still = until_still(run)
     after.note(run)
-    run.until_ticks("f/player", 120)  # more than the loop may be ahead of the gateway
+    run.until_ticks("f/player", 120)  # more than the main loop's lead over the gateway
     assert psutil.Process(still).status() == psutil.STATUS_STOPPED
     os.kill(still, signal.SIGCONT)
     run.until_ticks("d/player", 5)

@@ -1,4 +1,4 @@
-"""The time source: what it cannot say is refused where it is said."""
+"""Time sources refuse impossible times where they are set."""
 
 from typing import Any
 
@@ -15,7 +15,7 @@ class Sun(Component):
 
 
 @pytest.mark.parametrize("value", [-1, 2**63, 2.5e6, float("nan"), "soon", None])
-def test_a_time_that_cannot_be_is_refused(value: Any) -> None:
+def test_an_impossible_time_is_refused(value: Any) -> None:
     source = Bench(Sun).component.time_source
     with pytest.raises(ValueError, match=r"next_us is .*; it should be whole microseconds, from 0 to 10{18}"):
         source.next_us = value

@@ -1,4 +1,4 @@
-"""What `import fwk` costs, what it gives, and what the framework does not know."""
+"""Cost and contents of `import fwk`, and its independence of the application."""
 
 import re
 import subprocess
@@ -47,7 +47,7 @@ def test_every_exported_name_exists() -> None:
     assert set(fwk.__all__) <= set(dir(fwk))
 
 
-def test_an_unknown_name_is_named() -> None:
+def test_an_unknown_name_is_reported() -> None:
     program = "import fwk\ntry: fwk.Reader\nexcept AttributeError as error: print(error)"
     assert in_fresh_interpreter(program) == "module 'fwk' has no attribute 'Reader'"
 

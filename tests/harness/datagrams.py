@@ -1,4 +1,4 @@
-"""Messages that a test receives in place of a process of a run."""
+"""Receives messages in place of a process of a run."""
 
 from fwk.bus.receiver import Complain, Receiver
 from fwk.bus.sender import Sender
@@ -10,6 +10,6 @@ def _refuse(_channel: str, text: str) -> None:
 
 
 def received(end: Sender, ports: Ports, complain: Complain = _refuse) -> tuple[bytes, bytes] | None:
-    """Returns the next message of the run that was sent to `end` as (channel, data); None when none waits."""
+    """Returns the next message of the run that was sent to `end` as (channel, data); None if none waits."""
     message = Receiver(end.socket, ports.members, "of this run", "fwk/fetch", complain).receive()
     return message[:2] if message else None

@@ -1,6 +1,5 @@
 """Replays each component of the recording `log.lcm` of the current folder alone.
-
-Prints for each component how many messages were compared, and which differed, as JSON.
+/ Prints as JSON how many messages of each component were compared, and which of them differed.
 """
 
 import json

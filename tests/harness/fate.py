@@ -1,4 +1,4 @@
-"""What people, other programs and fate do to a run."""
+"""Random actions of people, other programs and the machine on a run."""
 
 import contextlib
 import os
@@ -18,7 +18,7 @@ from tests.programs.orchestra import PLAYERS
 
 
 class Fate:
-    """Does things to a run by chance."""
+    """Performs random actions on a run."""
 
     def __init__(self, run: Steered, ports: PortBlock, luck: random.Random) -> None:
         self.done: list[str] = []
@@ -29,7 +29,7 @@ class Fate:
         self._real_time = run.ask("run")["clock"] == "wall"
 
     def strike(self, what: str = "", name: str = "") -> None:
-        """Lets one thing happen, to a component of that name, or both by chance."""
+        """Performs one action on a component, both given or drawn at random."""
         kinds = ("kill", "kill", "stop and start", "restart", "set", "set", "still", "call", "wish")
         what = what or self._luck.choice(kinds)
         components = self._run.ask("status")["components"]

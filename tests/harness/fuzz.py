@@ -1,4 +1,4 @@
-"""What the fuzz tests share: hostile values, and messages with a few bytes changed."""
+"""Shared parts of the fuzz tests: hostile values, and messages with a few changed bytes."""
 
 import struct
 from typing import Any
@@ -62,12 +62,12 @@ COUNTS = some.one_of(some.sampled_from([0, 1, -1, 2**31 - 1, -(2**31), 2**16]), 
 
 
 def all_types() -> list[type[messages.Message]]:
-    """Every generated type."""
+    """Returns every generated type."""
     return [made for found in by_fingerprint().values() for made in found]
 
 
 def sync_messages() -> dict[type[messages.Message], bytes]:
-    """A tick, a done and a record with something in every list."""
+    """Returns a tick, a done and a record with an element in every list."""
     void, settings = void_t(), settings_change_t()
     settings.values = value_messages({"gain": 1.0, "names": ["a", None, True]})
     opening = Opening(0, 1, 2, "r/note", "robot.imu_t", "00" * 8)
@@ -92,7 +92,7 @@ DECODERS = {tick_t: sync.decode_tick, done_t: sync.decode_done, tick_record_t: s
 
 @some.composite
 def damaged(draw: some.DrawFn, data: bytes) -> bytes:
-    """The bytes with a few of them overwritten, left out or added."""
+    """Draws the bytes with a few of them overwritten, removed or added."""
     made = bytearray(data)
     for _ in range(draw(some.integers(1, 3))):
         at = draw(some.integers(0, max(0, len(made) - 1)))

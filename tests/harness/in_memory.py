@@ -16,7 +16,7 @@ LOG = "memory.lcm"
 
 
 def played_in_memory(folder: Path, file: str, ticks: int, seed: int) -> Path:
-    """Runs a launch file of a user's folder in memory, in a process of its own; returns the log of its messages."""
+    """Runs a launch file of a user's folder in memory, in a separate process; returns the log of its messages."""
     command = [sys.executable, "-m", "tests.harness.in_memory", file, str(ticks), str(seed)]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -1,4 +1,4 @@
-"""Looks into recordings of system tests."""
+"""Reads recordings of system tests."""
 
 from collections import defaultdict
 from pathlib import Path
@@ -13,7 +13,7 @@ from lcmtypes.core import tick_record_t
 
 
 class Recording:
-    """A log, taken apart."""
+    """The messages and tick records of a log."""
 
     def __init__(self, path: Path) -> None:
         self.messages: dict[str, list[bytes]] = defaultdict(list)
@@ -30,21 +30,21 @@ class Recording:
                 self.messages[event.channel].append(event.data)
 
     def headers(self, channel: str) -> list[Header]:
-        """The headers of a channel's messages."""
+        """Returns the headers of a channel's messages."""
         return [Header.of(data) for data in self.messages[channel]]
 
     def decoded(self, channel: str) -> list[Any]:
-        """The messages of a channel."""
+        """Returns the messages of a channel, decoded."""
         found: list[Any] = [types.types_of(data)[0].decode(data) for data in self.messages[channel]]
         return found
 
     def gaps(self) -> dict[str, list[int]]:
-        """Channels whose sequence numbers are not 1, 2, 3, ..."""
+        """Returns the channels whose sequence numbers are not 1, 2, 3, ..."""
         numbers = {channel: [header.sequence for header in self.headers(channel)] for channel in self.messages}
         return {channel: found for channel, found in numbers.items() if found != list(range(1, len(found) + 1))}
 
 
 def difference(a: Path, b: Path) -> str:
-    """The first difference of two logs; empty if they are equal."""
+    """Returns the first difference of two logs; empty if they are equal."""
     found = Comparison(a, b).difference
     return str(found) if found else ""

@@ -1,8 +1,7 @@
-"""Says from the contract's words alone what every iteration of the orchestra must have seen, and finds who did not.
-
-Visible to an iteration (tick, stage) is every message of an earlier (tick, stage), and no other. An iteration sees what
-became visible since the last one of its process; the first one of a player that was started again sees what was newest
-when its process joined the loop, and all since.
+"""Derives from the contract alone what every iteration of the orchestra must have seen, and finds violations.
+/ Visible to an iteration (tick, stage) is every message of an earlier (tick, stage), and no other. An iteration sees
+the messages that became visible since the last iteration of its process; the first iteration of a restarted player
+sees the newest messages as of the tick in which its process joined the loop, and all later ones.
 """
 
 import zlib
@@ -17,7 +16,7 @@ _CHANNELS = [f"{player}/{kind}" for kind in ("note", "burst") for player in PLAY
 
 
 def contradictions(recording: Recording) -> list[str]:
-    """Every note that says something else than the contract does, in words."""
+    """Returns every note that contradicts the contract, in words."""
     found: list[str] = []
     for player in PLAYERS:
         found += _of_player(recording, player)

@@ -1,4 +1,4 @@
-"""Pages of the documentation that readers follow word for word: their files, their commands, what these print."""
+"""Pages of the documentation that readers follow word for word: files, commands, outputs."""
 
 import re
 from pathlib import Path
@@ -25,6 +25,6 @@ class Page:
 
 
 def shows(output: str, line: str) -> bool:
-    """Whether a line of a page stands in the output."""
+    """Returns whether a line of a page occurs in the output."""
     wanted = ".*".join(map(re.escape, line.split("...")))
     return any(re.fullmatch(wanted, each) for each in output.splitlines())

@@ -1,4 +1,4 @@
-"""Runs `fwk-launch` as a user would, on ports of its own, and leaves no process behind whatever happens."""
+"""Runs `fwk-launch` as a user would, on free ports, and leaves no process behind."""
 
 import contextlib
 import os
@@ -20,16 +20,16 @@ from fwk.host.process import die_with_parent
 from fwk.model.ports import Ports
 
 BIN = Path(sys.executable).parent
-TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
+TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
 _MARK = "FWK_TEST_RUN"
 _BLOCK = 128
-_BASES = range(21_120, 32_000, _BLOCK)  # where lock blocks of ports begin
+_BASES = range(21_120, 32_000, _BLOCK)  # first lock block of ports
 
 
 class PortBlock:
     """Ports that no other test on this machine uses at the same time: consecutive blocks of 128 ports.
-
-    The lock of a block is a name in the network namespace, as far as ports reach; it ends with its process.
+    / The lock of a block is a name in the network namespace, which is also the scope of ports; it ends with its
+    process.
     """
 
     def __init__(self, blocks: int = 1) -> None:
@@ -43,7 +43,7 @@ class PortBlock:
         raise AssertionError("no free ports")
 
     def release(self) -> None:
-        """Gives the ports to the next test."""
+        """Releases the ports for the next test."""
         for lock in self._locks:
             if lock:
                 lock.close()
@@ -56,7 +56,7 @@ class PortBlock:
 
 
 def _locked(base: int) -> socket.socket | None:
-    """Returns the lock of a block of ports; None if another test has it, or a run that a killed test left behind."""
+    """Returns the lock of a block of ports; None if a test, or a run left behind by a killed test, has it."""
     lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     try:
         lock.bind(f"\0fwk-system-test-{base}")
@@ -69,7 +69,7 @@ def _locked(base: int) -> socket.socket | None:
 
 
 class Launched:
-    """One `fwk-launch` process and all that come from it; `wrapper` is a command before it."""
+    """One `fwk-launch` process with all its descendants; `wrapper` is a command that runs it."""
 
     def __init__(
         self,
@@ -97,12 +97,12 @@ class Launched:
 
     @property
     def text(self) -> str:
-        """What it has printed so far."""
+        """Returns the output so far."""
         return self._output.read_text(errors="replace")
 
     @property
     def run_dir(self) -> Path:
-        """The newest run directory."""
+        """Returns the newest run directory."""
         return max((self.folder / ".cache" / "fwk" / "runs").iterdir(), key=lambda path: path.stat().st_mtime_ns)
 
     def wait(self, timeout_s: float = TIMEOUT_S) -> int:
@@ -110,15 +110,15 @@ class Launched:
         return self.process.wait(timeout_s)
 
     def until(self, text: str) -> None:
-        """Waits until it has printed something."""
+        """Waits until the output contains `text`."""
         self.until_true(lambda: text in self.text, f"{text!r} in the output")
 
     def until_count(self, text: str, count: int) -> None:
-        """Waits until it has printed something so often."""
+        """Waits until the output contains `text` that number of times."""
         self.until_true(lambda: self.text.count(text) >= count, f"{text!r} {count} times in the output")
 
     def until_true(self, condition: Callable[[], bool], what: str) -> None:
-        """Waits until something has come true while it runs."""
+        """Waits until a condition holds while the run goes on."""
         deadline = time.monotonic() + TIMEOUT_S  # noqa: TID251
         while not condition():
             assert time.monotonic() < deadline, f"{what}: not in {TIMEOUT_S} s\n{self.text}"  # noqa: TID251
@@ -128,11 +128,11 @@ class Launched:
             pause()
 
     def signal(self, number: int) -> None:
-        """Signals the process that was typed."""
+        """Signals the process of the command."""
         self.process.send_signal(number)
 
     def processes(self) -> list[psutil.Process]:
-        """All that came from it and still live, wherever in the tree: found by a mark in their environment."""
+        """Returns all living descendants, wherever in the tree: they carry a mark in their environment."""
         found = []
         for process in psutil.process_iter():
             try:
@@ -143,7 +143,7 @@ class Launched:
         return found
 
     def gone_within(self, seconds: float) -> bool:
-        """Whether nothing of it is left after so long at the most."""
+        """Returns whether all processes end within that time."""
         deadline = time.monotonic() + seconds  # noqa: TID251
         while self.processes():
             if time.monotonic() > deadline:  # noqa: TID251
@@ -152,25 +152,25 @@ class Launched:
         return True
 
     def zygote(self) -> int:
-        """The process that forks the hosts."""
+        """Returns the process that forks the hosts."""
         return next(child.pid for child in self._children() if child.children())
 
     def gateway(self) -> int:
-        """The process that records: leader of a session, as the zygote, but childless."""
+        """Returns the gateway: leader of a session like the zygote, but without children."""
         return next(
             child.pid for child in self._children() if os.getsid(child.pid) == child.pid and not child.children()
         )
 
     def host(self, player: str) -> int:
-        """The process of a player, which leaves its number in `traces/`, if there is such a folder."""
+        """Returns the process of a player, which writes its number to `traces/`, if that folder exists."""
         return self._trace(player, "pid")
 
     def tick(self, player: str) -> int:
-        """The newest tick of a player; 0 before its first."""
+        """Returns the newest tick of a player; 0 before its first."""
         return self._trace(player, "tick")
 
     def until_ticks(self, player: str, number: int) -> None:
-        """Waits until a player has gone through so many more ticks."""
+        """Waits for that number of further ticks of a player."""
         before = self.tick(player)
         self.until_true(lambda: self.tick(player) >= before + number, f"{number} more ticks of {player}")
 
@@ -182,7 +182,7 @@ class Launched:
         return psutil.Process(self.process.pid).children()
 
     def end(self) -> None:
-        """Kills what is left."""
+        """Kills the remaining processes."""
         for process in self.processes():
             try:
                 os.kill(process.pid, signal.SIGKILL)
@@ -192,12 +192,12 @@ class Launched:
 
 
 def pause(seconds: float = 0.02) -> None:
-    """A moment between two looks."""
+    """Waits a moment between two checks."""
     time.sleep(seconds)  # noqa: TID251
 
 
 def fwk(folder: Path, *words: str | Path, code: int = 0) -> str:
-    """What a command prints in a folder; it has to end with that exit code."""
+    """Returns the output of a command in a folder; it has to end with that exit code."""
     done = subprocess.run(
         [BIN / "fwk", *words],
         cwd=folder,
@@ -212,14 +212,14 @@ def fwk(folder: Path, *words: str | Path, code: int = 0) -> str:
 
 
 def replayed(folder: Path, *words: str, log: str | Path = "log.lcm", code: int = 0) -> str:
-    """What `fwk replay LOG --verify` prints; it has to find no difference, unless another exit code is expected."""
+    """Returns the output of `fwk replay LOG --verify`, which has to find no difference unless `code` says otherwise."""
     said = fwk(folder, "replay", log, "--verify", *words, code=code)
     assert code or "equal: " in said, said
     return said
 
 
 def fill(disk: Path) -> Path:
-    """A file that takes all that is free."""
+    """Creates a file that takes all free space."""
     big = disk / "big"
     with open(big, "wb", buffering=0) as file, contextlib.suppress(OSError):
         while file.write(bytes(4096)):

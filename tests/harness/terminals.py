@@ -32,13 +32,13 @@ class Terminal:
 
     @classmethod
     def launch(cls, folder: Path, ports: PortBlock, *arguments: str) -> "Terminal":
-        """`fwk-launch parts.yaml`."""
+        """Runs `fwk-launch parts.yaml`."""
         where = ["--bus-port", str(ports.bus), "--set", f"public_url={ports.public_url}"]
         return cls(folder, *COMMAND, *where, *arguments)
 
     @classmethod
     def debug(cls, folder: Path, ports: PortBlock, *arguments: str) -> "Terminal":
-        """`fwk debug ...` of that run."""
+        """Runs `fwk debug ...` on that run."""
         return cls(folder, sys.executable, "-m", "fwk.cli.main", "debug", *arguments, "--bus-port", str(ports.bus))
 
     def kill(self) -> None:
@@ -48,7 +48,7 @@ class Terminal:
         self.child.sendline(line)
 
     def ask(self, line: str) -> str:
-        """Types a line at the prompt; what comes before the next."""
+        """Types a line at the prompt; returns the output before the next prompt."""
         self.type(line)
         return self.prompt()
 
@@ -63,6 +63,6 @@ class Terminal:
 
     @property
     def turns(self) -> int:
-        """Ticks that the sensor has run."""
+        """Returns the ticks in which the sensor has run."""
         file = self._folder / "turns.txt"
         return int(file.read_text()) if file.exists() else 0

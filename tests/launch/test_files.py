@@ -1,4 +1,4 @@
-"""The systems in launch/: each is without a mistake and is what its name says."""
+"""The systems in launch/: each has no mistakes and contains what its name says."""
 
 from pathlib import Path
 

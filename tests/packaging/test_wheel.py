@@ -1,4 +1,4 @@
-"""The wheel, in an empty environment far from any checkout: complete, and enough to run systems of one's own."""
+"""The wheel in an empty environment far from any checkout: complete, and sufficient to run a user's systems."""
 
 import os
 import shlex
@@ -21,12 +21,12 @@ INSTALL_TIMEOUT_S = 280.0
 LEFTOVER = "procs/left_over.py"
 Run = Callable[..., "subprocess.CompletedProcess[str]"]
 
-pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]  # a busy machine installs libraries slowly
+pytestmark = [pytest.mark.slow, pytest.mark.timeout(900)]  # generous for a busy machine
 
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The wheel of a clean copy, without generated types, but with what an earlier build left behind."""
+    """The wheel of a clean copy, without generated types, but with leftovers of an earlier build."""
     folder = tmp_path_factory.mktemp("wheel")
     copy = folder / "source"
     for name in ("fwk", "procs", "launch"):
@@ -42,7 +42,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs commands of a fresh environment with the wheel, what it asks for, pytest and mypy, in a user's folder."""
+    """Runs commands of a fresh environment with the wheel, its dependencies, pytest and mypy, in a user's folder."""
     folder = tmp_path_factory.mktemp("installed")
     environment = folder / "env"
     venv.create(environment, with_pip=True)
@@ -85,7 +85,7 @@ def test_the_wheel_holds_code_types_and_launch_files(wheel: Path) -> None:
     assert wanted <= names
     assert LEFTOVER not in names
     assert not [name for name in names if name.startswith(("tests/", "tools/", "docs/", "build/"))]
-    assert not {"lcmtypes/__init__.py", "procs/__init__.py"} & names  # namespace packages, so that a user's joins them
+    assert not {"lcmtypes/__init__.py", "procs/__init__.py"} & names  # namespace packages: users' packages join them
 
 
 @pytest.mark.parametrize("command", ["fwk", "fwk-launch"])
@@ -125,7 +125,7 @@ def test_the_tutorial_works_word_for_word(installed: Run, ports: PortBlock, tmp_
     write_files(tmp_path, page.files)
     for command, lines in page.steps:
         words = shlex.split(command)
-        if words[0] == "fwk-launch":  # the one word added: beside other runs of this machine
+        if words[0] == "fwk-launch":  # the only word added, because other runs use this machine
             words += ["--bus-port", str(ports.bus)]
         result = installed(*words, cwd=tmp_path)
         assert result.returncode == 0, f"{command}\n{result.stdout}"

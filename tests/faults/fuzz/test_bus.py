@@ -1,4 +1,4 @@
-"""Whatever bytes arrive, every decoder gives a message or says that it is none."""
+"""Decoders turn any bytes into a message or refuse them."""
 
 import struct
 from contextlib import suppress
@@ -25,7 +25,7 @@ def test_the_codec_decodes_like_lcm_gen(kind: type[Any], data: some.DataObject) 
     except MessageError:
         return  # stricter than lcm-gen, which pads a cut string
     theirs = to_dict(kind.decode(bytes_))
-    for events in ("events", "n_events"):  # left to replay
+    for events in ("events", "n_events"):  # replay decides about it
         ours.pop(events, None)
         theirs.pop(events, None)
     assert ours == theirs

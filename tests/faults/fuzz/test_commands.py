@@ -1,4 +1,4 @@
-"""Whatever is typed behind a command, it ends with an answer or a sentence, never with a traceback."""
+"""Commands answer any arguments with a result or a sentence, never with a traceback."""
 
 import json
 from collections.abc import Iterator
@@ -37,7 +37,7 @@ class _WouldRun(Exception):  # noqa: N818 - what happens
 
 @pytest.fixture
 def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a launch file whose run is not started."""
+    """A folder with a launch file whose run is never started."""
 
     def run(*_: object) -> None:
         raise _WouldRun
@@ -106,7 +106,7 @@ COMMANDS = {" ".join(path): command for path, command in commands((), get_comman
 
 
 def places(command: Any) -> Iterator[tuple[str, ...]]:
-    """Words behind which each text is typed: as an argument, behind other arguments, and behind each option."""
+    """Command lines to extend by any text: as an argument, after other arguments, and after each option."""
     arguments = [each for each in command.params if each.param_type_name == "argument"]
     for count in range(len(arguments)):
         yield ("x",) * count
@@ -119,7 +119,7 @@ def places(command: Any) -> Iterator[tuple[str, ...]]:
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_argument_of_every_command_is_answered(tiny: Path, ports: PortBlock, command: str) -> None:
     made = COMMANDS[command]
-    nobody = ("--bus-port", str(ports.bus))  # and not somebody else's run on this machine
+    nobody = ("--bus-port", str(ports.bus))  # not another user's run on this machine
     has_port = any("--bus-port" in each.opts for each in made.params)
     for before in places(made):
         port = nobody if has_port and before[-1:] != ("--bus-port",) else ()

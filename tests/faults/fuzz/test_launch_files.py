@@ -1,4 +1,4 @@
-"""Whatever stands in a launch file, the answer is a plan or mistakes with their places, and it comes soon."""
+"""Any launch file gives a plan, or mistakes with their places, within a short time."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ GARBLED = settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 
 
 def aliases(levels: int) -> str:
-    """Few words that would be many values."""
+    """A few words that expand to many values."""
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
     lines += [f"a{level}: &a{level} [{', '.join([f'*a{level - 1}'] * 9)}]" for level in range(1, levels)]
     return "\n".join(lines)

@@ -1,4 +1,4 @@
-"""Whatever stands where a picture should, `fwk cam` shows a picture or says that it is damaged."""
+"""`fwk cam` shows any bytes as a picture or reports that the picture is damaged."""
 
 from pathlib import Path
 from zlib import crc32

@@ -1,4 +1,4 @@
-"""Whatever stands in a log, the commands on recordings end with what is in it, or with a sentence."""
+"""Commands on recordings show what a damaged log holds, or end with a sentence."""
 
 import json
 from collections.abc import Callable
@@ -54,7 +54,7 @@ PARTS: dict[str, type[Component]] = {"r/sensor": Sensor, "r/thinker": Thinker}
 
 
 def recorded() -> list[tuple[str, bytes]]:
-    """What a run of both records."""
+    """A recording of a run with all that the commands show."""
     plan, system = plan_of(PARTS), MemorySystem(PARTS)
     system.tick(TICKS)
     said = plan_t()
@@ -132,7 +132,7 @@ def test_a_log_of_damaged_messages_is_read_as_far_as_it_goes(log: Path, data: so
 
 @FIXTURE
 @given(some.binary(max_size=60), some.sampled_from(["fwk/plan", "fwk/record", "r/imu", "fwk/log", "fwk/status"]))
-def test_any_bytes_may_stand_on_any_channel_of_a_log(log: Path, junk: bytes, channel: str) -> None:
+def test_any_bytes_are_allowed_on_any_channel_of_a_log(log: Path, junk: bytes, channel: str) -> None:
     entries = recorded()
     use(write(log.with_name("broken.lcm"), [*entries[:3], (channel, junk), *entries[3:]]), log)
 
@@ -160,11 +160,11 @@ def test_a_malformed_plan_is_named(tmp_path: Path, text: str) -> None:
 
 def test_a_record_of_an_unknown_host_is_refused_with_its_place(log: Path) -> None:
     change = settings_change_t()
-    unknown, blind = record(9, [1, 5], HostLost(77)), record(9, [1, 5], FrameLost(0, 0, 1))  # channel 0 is no camera's
+    unknown, blind = record(9, [1, 5], HostLost(77)), record(9, [1, 5], FrameLost(0, 0, 1))  # not a camera
     strange, broken, short = (record(9, [1, 5]) for _ in range(3))
     strange.n_marks, strange.channel, strange.sequence = 1, [65_536], [1]
     broken.settings, broken.n_settings = [change], 1  # without values
-    short.events.kind[0] = tick_events_t.FINAL_DONE  # of which there is none in its list
+    short.events.kind[0] = tick_events_t.FINAL_DONE  # an index beyond its list
     entries = [(each.channel, each.data) for each in LogReader(log)]
     for wrong in (unknown, blind, strange, broken, short):
         write(log, [*entries, ("fwk/record", wrong.encode())])

@@ -1,4 +1,4 @@
-"""Whatever stands in a text log, the lines that are whole are shown."""
+"""`fwk log` shows the whole lines of any text log."""
 
 import json
 from pathlib import Path
@@ -28,13 +28,13 @@ def check(folder: Path, before: bytes) -> None:
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(some.binary(max_size=40) | some.text(alphabet='[]{}",:0a', max_size=40).map(str.encode))
 @example(b"[" * 100_000)
-def test_any_bytes_may_stand_in_a_text_log(tmp_path: Path, junk: bytes) -> None:
+def test_any_bytes_are_allowed_in_a_text_log(tmp_path: Path, junk: bytes) -> None:
     check(tmp_path, junk)
 
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(some.dictionaries(some.sampled_from(list(GOOD)), VALUES, max_size=3), some.sampled_from([*GOOD, ""]))
 @example({"wall_us": 10**19}, "")
-def test_any_object_may_stand_in_a_text_log(tmp_path: Path, changed: dict[str, Any], left_out: str) -> None:
+def test_any_object_is_allowed_in_a_text_log(tmp_path: Path, changed: dict[str, Any], left_out: str) -> None:
     line = {key: value for key, value in {**GOOD, **changed}.items() if key != left_out}
     check(tmp_path, json.dumps(line).encode())

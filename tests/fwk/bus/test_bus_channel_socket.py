@@ -1,4 +1,4 @@
-"""A channel's inbox: order, loss, repetition, restart of the writer, and strangers."""
+"""Sockets of a channel: order, loss, repetition, restart of the writer, and foreign datagrams."""
 
 from collections.abc import Iterator
 
@@ -57,7 +57,7 @@ def wired(ports: PortBlock) -> Iterator[Wired]:
     made.sender.socket.close()
 
 
-def test_what_is_beyond_the_mark_waits(wired: Wired) -> None:
+def test_messages_beyond_the_mark_wait(wired: Wired) -> None:
     wired.send(1, 2, 3)
     wired.inbox.mark = 2
     assert wired.inbox.collect()
@@ -67,7 +67,7 @@ def test_what_is_beyond_the_mark_waits(wired: Wired) -> None:
     assert wired.taken() == [3]
 
 
-def test_a_gap_is_noticed_and_filled_by_what_is_sent_again(wired: Wired) -> None:
+def test_a_gap_is_noticed_and_filled_by_retransmission(wired: Wired) -> None:
     wired.send(1, 3)
     wired.inbox.mark = 3
     assert not wired.inbox.collect()
@@ -84,7 +84,7 @@ def test_repeated_messages_count_once(wired: Wired) -> None:
     assert wired.taken() == [1, 2]
 
 
-def test_what_cannot_be_had_is_given_up(wired: Wired) -> None:
+def test_unobtainable_messages_are_given_up(wired: Wired) -> None:
     wired.send(3)
     wired.inbox.mark = 3
     assert not wired.inbox.collect()
@@ -93,7 +93,7 @@ def test_what_cannot_be_had_is_given_up(wired: Wired) -> None:
     assert wired.taken() == [3]
 
 
-def test_when_the_newest_cannot_be_had_nothing_waits_for_it(wired: Wired) -> None:
+def test_an_unobtainable_newest_message_delays_nothing(wired: Wired) -> None:
     wired.send(1)
     wired.inbox.mark = 2
     assert not wired.inbox.collect()
@@ -102,7 +102,7 @@ def test_when_the_newest_cannot_be_had_nothing_waits_for_it(wired: Wired) -> Non
     assert wired.taken() == [1]
 
 
-def test_a_late_joiner_takes_the_newest_only(wired: Wired) -> None:
+def test_a_late_joiner_takes_only_the_newest(wired: Wired) -> None:
     wired.send(56, 57)
     wired.inbox.mark = 57
     wired.inbox.keep_newest()
@@ -111,7 +111,7 @@ def test_a_late_joiner_takes_the_newest_only(wired: Wired) -> None:
 
 
 @pytest.mark.parametrize("new_first", [False, True])
-def test_what_a_dead_writer_sent_beyond_the_marks_is_void(wired: Wired, new_first: bool) -> None:
+def test_messages_of_a_dead_writer_beyond_the_marks_are_void(wired: Wired, new_first: bool) -> None:
     wired.send(1)
     writers = ["cyan1/localization", "cyan1/localization#2"]
     for writer in reversed(writers) if new_first else writers:
@@ -123,7 +123,7 @@ def test_what_a_dead_writer_sent_beyond_the_marks_is_void(wired: Wired, new_firs
 
 
 @pytest.mark.parametrize("void_first", [False, True])
-def test_what_another_component_writes_after_a_death_is_not_void(wired: Wired, void_first: bool) -> None:
+def test_messages_of_other_writers_after_a_death_are_not_void(wired: Wired, void_first: bool) -> None:
     wired.send(1, tick=4)
     wired.send(2, writer="cyan1/dead", tick=5)
     if void_first:
@@ -157,7 +157,7 @@ def stranger(data: bytes, channel: bytes = b"cyan1/pose") -> bytes:
         (WRITER, stranger(pose(2), b"cyan1/other"), "channel 'cyan1/other'"),
     ],
 )
-def test_what_does_not_belong_here_is_refused_and_named(wired: Wired, port: int, datagram: bytes, says: str) -> None:
+def test_foreign_datagrams_are_refused_and_named(wired: Wired, port: int, datagram: bytes, says: str) -> None:
     wired.send(1)
     other = wired.sender if port == WRITER else Sender(wired.port + port, wired.network)
     other.socket.sendto(datagram, ("239.255.76.67", wired.port))

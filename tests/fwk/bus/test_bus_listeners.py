@@ -1,4 +1,4 @@
-"""Which programs listen on a port, and whether they still work on what they got."""
+"""Which programs listen on a port, and whether they still process what they received."""
 
 import os
 import socket
@@ -27,7 +27,7 @@ while True:
 
 @contextmanager
 def listening() -> Iterator[tuple[subprocess.Popen[str], int]]:
-    """A program that waits for a datagram at a port, and works from then on."""
+    """A program that waits for a datagram at a port, and is busy from then on."""
     command = [sys.executable, "-c", LISTENER]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as program:
         assert program.stdout

@@ -1,4 +1,4 @@
-"""Senders on one port, one after the other, as those of a host that was started again."""
+"""Consecutive senders on one port, as those of a restarted host."""
 
 from fwk.bus.network import UdpNetwork
 from fwk.bus.sender import Sender
@@ -7,9 +7,9 @@ from fwk.lcm import wire
 from tests.harness.runs import PortBlock
 
 
-def test_halves_of_two_lives_are_no_message(ports: PortBlock) -> None:
+def test_halves_of_two_incarnations_are_not_joined(ports: PortBlock) -> None:
     ears, assembler = multicast_receiver(ports.bus), wire.Assembler()
-    for life, kept in ((b"1", 0), (b"2", 1)):  # of the first only the beginning arrives, of the second only the end
+    for life, kept in ((b"1", 0), (b"2", 1)):  # the beginning of the first and the end of the second
         sender = Sender(ports.bus + 1, UdpNetwork())
         sender.publish(b"a/large", life * 100_000, ports.bus)
         sender.socket.close()

@@ -1,4 +1,4 @@
-"""Our own codec of ticks and dones makes and reads the very bytes of lcm-gen's."""
+"""The project's codec of ticks and dones writes and reads the same bytes as lcm-gen's code."""
 
 from typing import Any
 
@@ -59,7 +59,7 @@ EVENTS: list[TickEvent] = [
 
 @some.composite
 def facts(draw: some.DrawFn) -> Fact:
-    """Any channel fact."""
+    """Draws any channel fact."""
     component, handle = draw(INT32), draw(INT32)
     kinds: list[FactKind] = ["read", "write", "close", "refuse", "come", "go"]
     kind = draw(some.sampled_from(kinds))

@@ -5,7 +5,7 @@ import socket
 from fwk.bus.waiting import Waiting
 
 
-def test_no_time_is_too_long_to_wait_for() -> None:
+def test_a_wait_of_any_length_is_accepted() -> None:
     waiting, (here, there) = Waiting(), socket.socketpair()
     waiting.add(here)
     there.send(b"x")

@@ -1,4 +1,4 @@
-"""Runs the real commands as a user would: in a folder and with a home of their own, on ports that nobody uses."""
+"""Runs the real commands as a user does: in a folder and a home directory of the test, on free ports."""
 
 import os
 import subprocess
@@ -8,7 +8,7 @@ from pathlib import Path
 from tests.harness.runs import PortBlock
 
 BIN = Path(sys.executable).parent
-TIMEOUT_S = 60.0  # a busy machine is slow; nothing takes that long when it works
+TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
 
 PROCS = {
     "procs/counter.py": '''
@@ -54,7 +54,7 @@ def write_files(folder: Path, files: dict[str, str]) -> None:
 
 
 def environment(home: Path) -> dict[str, str]:
-    """The commands of this environment first on the path, and a home that the test may fill."""
+    """An environment with these commands first on the path, and a home directory that the test may fill."""
     return {**os.environ, "HOME": str(home), "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
 
 
@@ -73,6 +73,6 @@ def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
 
 
 def launch(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """`fwk-launch` on free ports."""
+    """Runs `fwk-launch` on free ports."""
     with PortBlock() as ports:
         return run(folder, "fwk-launch", *arguments, "--bus-port", str(ports.bus))

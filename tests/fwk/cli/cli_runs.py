@@ -1,4 +1,4 @@
-"""Plans, statuses and log lines as a run would send them."""
+"""Plans, statuses and log lines like those of a run."""
 
 from collections.abc import Sequence
 
@@ -43,14 +43,14 @@ def headline(newest: object) -> str:
 
 
 def game_state(cyan: int, magenta: int) -> game_state_t:
-    """A score."""
+    """Returns a game state with a score."""
     state = game_state_t()
     state.score_cyan, state.score_magenta = cyan, magenta
     return state
 
 
 def status(names: Sequence[str], tick: int, busy_us: int = 1000, **changes: object) -> status_t:
-    """All components running, a process each, every iteration `busy_us` long; `changes` are fields of the status."""
+    """A status: all components running, a process each, every iteration `busy_us` long; `changes` are fields of it."""
     made = status_t()
     made.tick, made.time_us, made.speed, made.ticks_per_s = tick, tick * 50_000, 1.0, 20.0
     for index, name in enumerate(names):
@@ -67,17 +67,17 @@ def status(names: Sequence[str], tick: int, busy_us: int = 1000, **changes: obje
 
 
 def component(of: status_t, name: str) -> component_state_t:
-    """One component of a status, to be changed."""
+    """Returns one component of a status, to be changed."""
     return next(each for host in of.hosts for each in host.components if each.name == name)
 
 
 def host_of(of: status_t, name: str) -> host_status_t:
-    """The host of a component of a status, to be changed."""
+    """Returns the host of a component of a status, to be changed."""
     return next(host for host in of.hosts if any(each.name == name for each in host.components))
 
 
 def log(text: str, level: int = log_t.INFO) -> log_t:
-    """A line of cyan1/tracker."""
+    """Returns a log line of cyan1/tracker."""
     line = log_t()
     line.level, line.component, line.text = level, "cyan1/tracker", text
     line.tick, line.time_us, line.file, line.line = 40, 2_000_000, "tracker.py", 12
@@ -85,5 +85,5 @@ def log(text: str, level: int = log_t.INFO) -> log_t:
 
 
 def packet(channel: str, message: status_t | log_t | game_state_t) -> bytes:
-    """What the supervisor sends to the display."""
+    """Returns a packet of the supervisor for the display."""
     return channel.encode() + b"\0" + message.encode()

@@ -1,4 +1,4 @@
-"""Values of the command line that are more than a number or a name."""
+"""Values on the command line that are more than a number or a name."""
 
 import pytest
 import typer
@@ -17,7 +17,7 @@ from fwk.cli.arguments import seconds, speed, spread
         ("f.yaml --set a=1 --seed 2", "f.yaml --set a=1 --seed 2"),
     ],
 )
-def test_names_in_a_row_belong_to_the_option_before_them(typed: str, meant: str) -> None:
+def test_names_in_a_row_follow_the_option_before_them(typed: str, meant: str) -> None:
     assert spread(typed.split()) == meant.split()
 
 
@@ -28,6 +28,6 @@ def test_a_speed_is_a_factor_or_max(typed: str, meant: float) -> None:
 
 @pytest.mark.parametrize("typed", ["0", "-1", "fast", "nan", "inf", "1e-9", "1e30", ""])
 @pytest.mark.parametrize("read", [speed, seconds])
-def test_neither_pace_nor_duration_is_what_no_clock_can_wait_for(read: type, typed: str) -> None:
+def test_speeds_and_durations_that_no_clock_can_wait_for(read: type, typed: str) -> None:
     with pytest.raises(typer.BadParameter, match=f"'{typed}' is not a .*; say "):
         read(typed)

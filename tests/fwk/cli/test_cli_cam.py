@@ -1,4 +1,4 @@
-"""`fwk cam` on recordings, and how a picture looks in a terminal."""
+"""`fwk cam` on recordings, and pictures in a terminal."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ NOISE = np.random.default_rng(1).integers(0, 256, (60, 80, 3), np.uint8)
 
 @pytest.fixture
 def log(tmp_path: Path) -> Path:
-    """Three pictures of one camera, one of another; and something else."""
+    """A log with three pictures of one camera, one of another, and other messages."""
     with LogWriter(tmp_path / "log.lcm", print) as writer:
         for tick, camera in enumerate(("cyan1/image", "cyan1/image", "cyan2/front", "cyan1/image"), 1):
             picture = picture_t()
@@ -37,7 +37,7 @@ def cam(*arguments: str | Path, code: int = 0) -> str:
     return done.output
 
 
-def test_it_lists_the_cameras_of_a_recording(log: Path) -> None:
+def test_cameras_of_a_recording_are_listed(log: Path) -> None:
     assert cam("--log", log).splitlines() == [
         "cyan1/image          3 pictures (png), the last of tick 4",
         "cyan2/front          1 pictures (png), the last of tick 3",
@@ -51,7 +51,7 @@ def test_it_lists_the_cameras_of_a_recording(log: Path) -> None:
 
 
 @pytest.mark.parametrize(("arguments", "tick"), [((), 4), (("--tick", "3"), 2)])
-def test_it_saves_the_newest_as_of_a_tick(log: Path, arguments: tuple[str, ...], tick: int) -> None:
+def test_the_newest_picture_as_of_a_tick_is_saved(log: Path, arguments: tuple[str, ...], tick: int) -> None:
     file = log.parent / "new" / "one.png"
     said = cam("cyan1/image", "--log", log, "--save", file, *arguments)
     assert f"cyan1/image, frame {tick}, tick {tick}, {0.05 * tick:.3f} s, 60 x 80 x 3" in said
@@ -84,7 +84,7 @@ def test_raw_bytes_are_those_of_the_frame(log: Path) -> None:
         (("--tick", "3"), "--tick is for recordings"),
     ],
 )
-def test_what_cannot_be_done_is_said(log: Path, arguments: tuple[str, ...], error: str) -> None:
+def test_impossible_requests_are_explained(log: Path, arguments: tuple[str, ...], error: str) -> None:
     said = cam(*(each.format(log=log) for each in arguments), code=2)
     assert error in " ".join(said.replace("│", " ").split())
 

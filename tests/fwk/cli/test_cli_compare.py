@@ -1,4 +1,4 @@
-"""`fwk compare` as scripts see it: text and exit codes."""
+"""Text and exit codes of `fwk compare`, as scripts see them."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def log(path: Path, *messages: bytes) -> str:
     return str(path)
 
 
-def test_exit_codes_tell_equal_different_and_unusable(tmp_path: Path, fwk: typer.Typer) -> None:
+def test_exit_codes_for_equal_different_and_unusable_logs(tmp_path: Path, fwk: typer.Typer) -> None:
     a, same = log(tmp_path / "a", b"abc", b"d"), log(tmp_path / "same", b"abc", b"d")
     other = log(tmp_path / "other", b"abc", b"D")
     run = CliRunner().invoke
@@ -38,7 +38,7 @@ def test_exit_codes_tell_equal_different_and_unusable(tmp_path: Path, fwk: typer
     assert unusable.stderr == f"error: {tmp_path}/none: cannot read: No such file or directory\n"
 
 
-def test_a_run_directory_stands_for_its_log(tmp_path: Path, fwk: typer.Typer) -> None:
+def test_a_run_directory_is_accepted_for_its_log(tmp_path: Path, fwk: typer.Typer) -> None:
     for run in ("one", "two"):
         (tmp_path / run).mkdir()
         log(tmp_path / run / "any_name", b"abc")

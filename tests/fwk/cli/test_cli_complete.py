@@ -1,4 +1,4 @@
-"""Completion: commands, options and values, from a run that answers and from none."""
+"""Completion of commands, options and values, with and without a running system."""
 
 import subprocess
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Completion in real shells: what the tab key makes of a command that has begun, without a run and beside one."""
+"""Completion in real shells: the tab key completes a command line, with and without a run."""
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -50,7 +50,7 @@ class Shell:
         self._child.expect("ready\r")
 
     def completed(self, typed: str, wanted: str) -> str:
-        """Types words with tab keys, waits after each until it has added what is wanted, and runs the command."""
+        """Types words with tab keys, waits after each until the expected text appears, and runs the command."""
         first, *others = typed.split("\t")
         self._child.send(first)
         begun = f"{first} "
@@ -84,7 +84,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def beside(folder: Path, ports: PortBlock) -> Iterator[str]:
-    """The name of a run in the background."""
+    """Name of a run in the background."""
     name = f"cards{ports.bus}-beside"
     command = ["fwk-launch", "cards.yaml", "--run", name, "--bus-port", str(ports.bus), "--detach", "--time", "300"]
     assert run(folder, *command).returncode == 0

@@ -1,4 +1,4 @@
-"""Conditions on the command line: what is meant, and what is refused."""
+"""Conditions on the command line: their meaning, and the ones that are refused."""
 
 import re
 import sys
@@ -35,7 +35,7 @@ def test_times(text: str, meant: tuple[int, int]) -> None:
 def test_moments() -> None:
     assert abs(wall_us() - 90 * US_PER_S - moment_us("90", "--since")) < 10 * US_PER_S
     earlier = moment_us("00:00", "--since")
-    assert datetime.fromtimestamp(earlier / US_PER_S).strftime("%H:%M:%S") == "00:00:00"  # noqa: DTZ006 - as people say it
+    assert datetime.fromtimestamp(earlier / US_PER_S).strftime("%H:%M:%S") == "00:00:00"  # noqa: DTZ006 - local time
     assert 0 <= wall_us() - earlier <= 25 * 3600 * US_PER_S
     to_come = moment_us("23:59:59", "--since")
     assert to_come <= wall_us()
@@ -59,14 +59,14 @@ def test_moments() -> None:
         (lambda text: pattern(text, "--text"), "a(b", r"--text: 'a(b' is not a regular expression: "),
     ],
 )
-def test_what_is_none_is_refused_with_what_would_be_right(read: object, text: str, error: str) -> None:
+def test_invalid_conditions_are_refused_with_a_correct_example(read: object, text: str, error: str) -> None:
     with pytest.raises(typer.BadParameter, match=re.escape(error)):
         read(text)  # type: ignore[operator]
 
 
-def test_a_pattern_that_python_wonders_about_is_one() -> None:
+def test_a_pattern_that_python_warns_about_is_accepted() -> None:
     assert pattern("[[a]", "--text").search("[")
 
 
-def test_a_pattern_minds_no_capitals() -> None:
+def test_a_pattern_ignores_case() -> None:
     assert pattern("TURN.*left", "--text").search("it turned left")

@@ -1,4 +1,4 @@
-"""`fwk doctor` finds what is wrong with a machine, and its advice helps."""
+"""`fwk doctor` finds problems of a machine, and its advice helps."""
 
 import os
 import resource
@@ -75,7 +75,7 @@ def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize(("level", "code"), [(Level.OK, 0), (Level.WARNING, 0), (Level.BAD, 1)])
-def test_only_what_stops_runs_is_a_failure(monkeypatch: pytest.MonkeyPatch, level: Level, code: int) -> None:
+def test_only_problems_that_stop_runs_are_failures(monkeypatch: pytest.MonkeyPatch, level: Level, code: int) -> None:
     found = [lambda: Finding(level, "gears", "turning", "oil them" if code else "")]
     monkeypatch.setattr("fwk.cli.check.doctor.all_checks", lambda wanted: found)
     app = typer.Typer()

@@ -1,4 +1,4 @@
-"""`fwk-launch`: what is typed is checked, what is run is reported, and the exit code tells."""
+"""`fwk-launch` checks its arguments, reports on the run, and returns an exit code."""
 
 import json
 import os
@@ -48,7 +48,7 @@ def folder(tmp_path: Path) -> Path:
         ("", "FILE"),
     ],
 )
-def test_bad_input_is_refused_with_what_would_be_right(typed: str, answer: str) -> None:
+def test_bad_input_is_refused_with_a_correct_example(typed: str, answer: str) -> None:
     result = CliRunner().invoke(app, typed.split())
     assert result.exit_code == 2
     assert answer in " ".join(result.output.replace("│", " ").split())
@@ -57,7 +57,7 @@ def test_bad_input_is_refused_with_what_would_be_right(typed: str, answer: str) 
 
 @pytest.mark.system
 @pytest.mark.core
-def test_a_run_ends_by_itself_and_says_what_came_of_it(folder: Path) -> None:
+def test_a_run_ends_by_itself_and_reports_its_result(folder: Path) -> None:
     result = launch(folder, *FAST, "--ticks", "30", "--record", "mine.log")
     assert result.returncode == 0, result.stdout
     assert "cards: 30 ticks done" in result.stdout
@@ -68,7 +68,7 @@ def test_a_run_ends_by_itself_and_says_what_came_of_it(folder: Path) -> None:
 
 
 @pytest.mark.system
-def test_the_run_directory_keeps_what_belongs_to_the_run(folder: Path) -> None:
+def test_the_run_directory_holds_the_files_of_the_run(folder: Path) -> None:
     launch(folder, *FAST, "--time", "0.5", "--set", "left/counter.last=700")
     (run_dir,) = (folder / ".cache" / "fwk" / "runs").iterdir()
     assert "-cards-" in run_dir.name
@@ -82,7 +82,7 @@ def test_the_run_directory_keeps_what_belongs_to_the_run(folder: Path) -> None:
 
 
 @pytest.mark.system
-def test_without_recording_there_is_none(folder: Path) -> None:
+def test_without_the_option_there_is_no_recording(folder: Path) -> None:
     result = launch(folder, *FAST, "--ticks", "5", "--no-record")
     assert "recording: " not in result.stdout
     assert not list(folder.rglob("log.lcm"))
@@ -106,7 +106,7 @@ def test_permanent_failure_is_named_and_exits_with_1(folder: Path) -> None:
 
 
 @pytest.mark.system
-def test_all_mistakes_of_a_launch_file_are_told_with_their_lines(folder: Path) -> None:
+def test_all_mistakes_of_a_launch_file_are_listed_with_lines(folder: Path) -> None:
     (folder / CARDS).write_text(
         "components:\n  a/counter: { use: procs.counter, config: { lost: 3 } }\n  b/counter: { use: procs.countess }\n"
     )
@@ -149,7 +149,7 @@ def test_debugging_a_component_that_is_not_there_is_refused(folder: Path) -> Non
 
 
 @pytest.mark.system
-def test_a_run_that_would_collide_says_so(folder: Path, ports: PortBlock) -> None:
+def test_a_run_with_a_port_conflict_is_refused(folder: Path, ports: PortBlock) -> None:
     lock = PortLock(Ports(ports.bus, 1, 1), "test")
     arguments = ["fwk-launch", *FAST, "--ticks", "1", "--bus-port", str(ports.bus)]
     result = subprocess.run(arguments, cwd=folder, env=environment(folder), capture_output=True, text=True, check=False)
@@ -172,7 +172,7 @@ def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path, ports: PortB
     while chunk := _read(screen):
         shown += chunk
         if "tick " in shown and not interrupted:
-            os.killpg(process.pid, signal.SIGINT)  # as the terminal does: to everybody in the foreground
+            os.killpg(process.pid, signal.SIGINT)  # as the terminal does: to all processes in the foreground
             interrupted = True
     os.close(screen)
     assert process.wait(TIMEOUT_S) == 0
@@ -183,5 +183,5 @@ def test_ctrl_c_on_a_terminal_stops_everything_tidily(folder: Path, ports: PortB
 def _read(screen: int) -> str:
     try:
         return os.read(screen, 65536).decode(errors="replace")
-    except OSError:  # nobody holds the terminal's other side any more
+    except OSError:  # the other side of the terminal is closed
         return ""

@@ -1,4 +1,4 @@
-"""Programs end with a sentence when the machine fails them: closed and full outputs, no folder, no descriptors."""
+"""Commands end with a sentence when the machine fails them: closed or full outputs, no folder, no descriptors."""
 
 import errno
 import os
@@ -44,7 +44,7 @@ def test_a_run_needs_no_standard_stream(tmp_path: Path, ports: PortBlock) -> Non
     assert done.stdout == "ended with 0\n"
 
 
-def test_a_reader_that_leaves_early_ends_it_quietly() -> None:
+def test_a_reader_that_closes_early_ends_it_quietly() -> None:
     read, write = os.pipe()
     os.close(read)
     done = run([*FWK, "--help"], stdout=write)

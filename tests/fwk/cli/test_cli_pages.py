@@ -1,4 +1,4 @@
-"""The pages for newcomers point to things that exist."""
+"""The pages for newcomers refer to things that exist."""
 
 import re
 from pathlib import Path
@@ -23,21 +23,21 @@ def test_every_link_leads_to_a_file(page: Path) -> None:
     assert not broken
 
 
-def test_what_the_readme_says_to_make_can_be_made() -> None:
+def test_make_targets_of_the_readme_exist() -> None:
     targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), re.M))
     named = set(re.findall(r"make ([a-z-]+)", (ROOT / "README.md").read_text()))
     assert {"soccer", "test"} <= named
     assert named <= targets
 
 
-def test_what_the_readme_launches_is_there() -> None:
+def test_launch_files_of_the_readme_exist() -> None:
     named = set(re.findall(r"[\w-]+\.yaml", (ROOT / "README.md").read_text()))
     assert named
     assert all((ROOT / "launch" / name).is_file() for name in named)
 
 
 def command_of(words: list[str]) -> Any:
-    """The command that the words begin with, or one of its groups."""
+    """Returns the command that the words begin with, or one of its groups."""
     found: Any = get_command(launch_command.app if words[0] == "fwk-launch" else commands.app)
     for word in words[1:]:
         below = getattr(found, "commands", {})
@@ -48,7 +48,7 @@ def command_of(words: list[str]) -> Any:
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-def test_every_command_that_is_printed_exists_with_its_options(page: Path) -> None:
+def test_every_printed_command_exists_with_its_options(page: Path) -> None:
     for typed in ("".join(groups) for groups in _TYPED.findall(page.read_text())):
         found = command_of(typed.split())
         assert not getattr(found, "commands", {}) or len(typed.split()) == 2, f"there is no '{typed}'"

@@ -1,4 +1,4 @@
-"""docs/commands.md says what the commands say."""
+"""docs/commands.md agrees with the help of the commands."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from fwk.cli.reference import reference
 PAGE = Path(__file__).parents[3] / "docs" / "commands.md"
 
 
-def test_the_page_is_what_the_commands_say() -> None:
+def test_the_page_agrees_with_the_commands() -> None:
     assert PAGE.read_text() == reference(), "run: make docs"
 
 

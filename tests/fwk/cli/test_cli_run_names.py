@@ -28,7 +28,7 @@ def listed(folder: Path, *command: str) -> list[dict[str, object]]:
 @pytest.fixture
 def detached(folder: Path, ports: PortBlock) -> Iterator[subprocess.CompletedProcess[str]]:
     command = ["fwk-launch", "cards.yaml", "--run", "garden", "--bus-port", str(ports.bus), "--seed", "7"]
-    started = run(folder, *command, "--detach", "--time", "300")  # it ends by itself if the test is killed
+    started = run(folder, *command, "--detach", "--time", "300")  # ends by itself if the test is killed
     yield started
     run(folder, "fwk", "stop", "--all", "--run", "garden")
 
@@ -57,7 +57,7 @@ def test_a_run_in_the_background_is_found_and_ended(
 
 
 @pytest.mark.system
-def test_a_run_that_fails_at_once_is_told_when_detached(folder: Path) -> None:
+def test_an_immediate_failure_of_a_detached_run_is_reported(folder: Path) -> None:
     (folder / "procs" / "counter.py").write_text(
         PROCS["procs/counter.py"] + "\n    def init(self) -> None:\n        1 / 0\n"
     )
@@ -92,7 +92,7 @@ def test_stop_needs_either_names_or_all(folder: Path, typed: list[str]) -> None:
 
 
 @pytest.mark.parametrize("content", ["", "[]", "{", "null", '{"seed": "x", "duration_s": -1, "result": 7}', "[" * 5000])
-def test_a_damaged_record_says_nothing(tmp_path: Path, content: str) -> None:
+def test_a_damaged_record_is_ignored(tmp_path: Path, content: str) -> None:
     (tmp_path / RUN_FILE).write_text(content)
     (tmp_path / RESULT_FILE).write_text(content)
     read = read_record(tmp_path)

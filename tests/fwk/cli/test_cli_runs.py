@@ -1,4 +1,4 @@
-"""Old run directories go, never the newest, one in use, one that is kept, or what is no run directory."""
+"""Old run directories are removed, except the newest, those in use, those kept, and other folders."""
 
 import json
 import os
@@ -28,14 +28,14 @@ def there(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir())
 
 
-def test_the_oldest_go_until_few_are_left(tmp_path: Path) -> None:
+def test_the_oldest_are_removed_until_few_are_left(tmp_path: Path) -> None:
     names = make(tmp_path, 3, 1, 2, 4)
     assert [each.path.name[8:10] for each in prune(tmp_path, 2, 0)] == ["01", "02"]
     assert there(tmp_path) == sorted(names)[2:]
     assert prune(tmp_path, 2, 0) == []
 
 
-def test_the_oldest_go_until_they_are_small(tmp_path: Path) -> None:
+def test_the_oldest_are_removed_until_the_rest_is_small(tmp_path: Path) -> None:
     names = make(tmp_path, 1, 2, 3, 4)
     prune(tmp_path, 0, 2500)
     assert there(tmp_path) == names[2:]
@@ -43,12 +43,12 @@ def test_the_oldest_go_until_they_are_small(tmp_path: Path) -> None:
     assert there(tmp_path) == names[3:]
 
 
-def test_any_number_of_any_size_may_stay(tmp_path: Path) -> None:
+def test_no_limit_removes_nothing(tmp_path: Path) -> None:
     make(tmp_path, 1, 2, 3)
     assert prune(tmp_path, 0, 0) == []
 
 
-def test_what_is_kept_or_no_run_directory_stays(tmp_path: Path) -> None:
+def test_kept_directories_and_other_folders_stay(tmp_path: Path) -> None:
     names = make(tmp_path, 1, 2, 3)
     (tmp_path / names[0] / "keep").touch()
     (tmp_path / "my notes").mkdir()
@@ -69,7 +69,7 @@ os._exit(0)
 """
 
 
-def test_what_is_in_use_by_any_process_of_the_run_stays(tmp_path: Path) -> None:
+def test_directories_in_use_by_any_process_of_the_run_stay(tmp_path: Path) -> None:
     (tmp_path / "2026-01-01T10-00-00-first-1").mkdir()
     with subprocess.Popen(
         [sys.executable, "-c", MAKER, str(tmp_path)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
@@ -79,7 +79,7 @@ def test_what_is_in_use_by_any_process_of_the_run_stays(tmp_path: Path) -> None:
         used = maker.stdout.readline().strip()
         newest = "9999-01-01T10-00-00-last-1"
         (tmp_path / newest).mkdir()
-        assert maker.wait() == 0  # its child lives on
+        assert maker.wait() == 0  # its child is still running
         assert [each.in_use for each in run_dirs(tmp_path)] == [False, True, False]
         prune(tmp_path, 1, 0)
         assert there(tmp_path) == [used, newest]
@@ -91,7 +91,7 @@ def test_what_is_in_use_by_any_process_of_the_run_stays(tmp_path: Path) -> None:
     assert there(tmp_path) == [newest]
 
 
-def test_one_is_found_by_the_name_that_is_listed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_directory_is_found_by_its_listed_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.chdir(tmp_path)
     made = make_run_dir("garden")
@@ -101,7 +101,7 @@ def test_one_is_found_by_the_name_that_is_listed(tmp_path: Path, monkeypatch: py
     assert named(Path(made.name)) == Path(made.name)
 
 
-def test_a_new_one_is_in_use(tmp_path: Path) -> None:
+def test_a_new_directory_is_in_use(tmp_path: Path) -> None:
     made = make_run_dir("match", tmp_path / "runs")
     (found,) = run_dirs(tmp_path / "runs")
     assert (found.path, found.in_use, found.kept) == (made, True, False)
@@ -141,7 +141,7 @@ def test_the_commands(home: Path) -> None:
     assert f"did you mean '{names[2]}'?" in said("keep", names[2] + "1", code=2)
 
 
-def test_a_result_of_several_lines_stands_in_one_row(home: Path) -> None:
+def test_a_result_of_several_lines_is_shown_in_one_row(home: Path) -> None:
     (name,) = make(home, 1)
     (home / name / RUN_FILE).write_text('{"started_us": 1}')
     write_result(home / name, 1, "not started: a/b: no port\nc/d: no file", 0, 0.0)
@@ -149,7 +149,7 @@ def test_a_result_of_several_lines_stands_in_one_row(home: Path) -> None:
 
 
 @pytest.mark.system
-def test_a_run_removes_what_is_too_much_and_says_so(tmp_path: Path) -> None:
+def test_a_run_removes_excess_directories_and_reports_it(tmp_path: Path) -> None:
     folder = tmp_path
     write_files(folder, PROCS)
     names = make(folder / RUNS, 1, 2, 3)

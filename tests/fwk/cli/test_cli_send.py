@@ -1,4 +1,4 @@
-"""Messages from outside are made of what is typed."""
+"""`fwk send` builds messages from its arguments."""
 
 import re
 
@@ -27,6 +27,6 @@ def test_fields_are_set_by_name_and_others_are_zero() -> None:
         (["a.b=1"], "has no field 'a.b'"),
     ],
 )
-def test_what_does_not_fit_is_named(fields: list[str], error: str) -> None:
+def test_values_that_do_not_fit_are_named(fields: list[str], error: str) -> None:
     with pytest.raises(MessageError, match=re.escape(error)):
         made("robot.motor_command_t", fields)

@@ -1,4 +1,4 @@
-"""Thin commands: help, version, status, ps and completion import no heavy library."""
+"""Thin commands (help, version, status, ps and completion) import no heavy library."""
 
 import json
 import os
@@ -35,7 +35,7 @@ def test_no_heavy_module_is_imported(typed: str, tmp_path: Path) -> None:
     assert "fwk.cli.commands" not in imported
 
 
-def test_the_index_is_what_the_commands_say() -> None:
+def test_the_index_agrees_with_the_commands() -> None:
     assert Path(index.FILE).read_text() == reference.index(), "run: make docs"
 
 
@@ -62,7 +62,7 @@ def test_every_thin_command_is_a_command() -> None:
     assert set(FUNCTIONS) <= set(commands.MODULES)
 
 
-def test_a_named_run_that_is_not_there_is_bad_input(tmp_path: Path) -> None:
+def test_a_named_run_that_does_not_exist_is_bad_input(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "fwk.cli.main", "status", "--run", "no-such-run"]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 2

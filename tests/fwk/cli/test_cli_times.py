@@ -1,4 +1,4 @@
-"""Histograms in figures."""
+"""Histograms as figures."""
 
 from fwk.cli.look.times import Stopwatch
 from fwk.model.histogram import Histogram
@@ -16,7 +16,7 @@ def answer(*durations_us: int) -> dict[str, object]:
     }
 
 
-def test_figures_come_with_the_histogram_that_they_are_of() -> None:
+def test_figures_come_with_their_histogram() -> None:
     stopwatch = Stopwatch("picture")
     stopwatch.measure(answer(3, 3, 1000))
     figures = stopwatch.measure(answer(3, 3, 1000, 3, 5))["components"]["r/it"]

@@ -1,4 +1,4 @@
-"""Aspects that components provide: what their classes may say, and what those who ask get."""
+"""Aspects that components provide: valid classes, and what users of the aspects get."""
 
 import pytest
 
@@ -51,7 +51,7 @@ class Helm(Component):
         self.odometry.write()
 
 
-def test_asker_gets_the_providers_messages_and_behaviour() -> None:
+def test_user_gets_the_providers_messages_and_behaviour() -> None:
     system = MemorySystem({"r/helm": Helm, "r/gyro": Gyro})
     system.tick(3)
     told = system.newest("r/odometry")
@@ -60,7 +60,7 @@ def test_asker_gets_the_providers_messages_and_behaviour() -> None:
     assert system.logged[0].component == "r/helm"
 
 
-def test_the_channel_is_the_providers_wherever_that_writes_it() -> None:
+def test_the_channel_is_the_providers_even_if_renamed() -> None:
     system = MemorySystem({"r/helm": Helm, "s/gyro": Gyro}, channels={"s/gyro": {"imu": "far/heading"}})
     system.tick()
     assert set(system.sent) == {"far/heading", "r/odometry"}
@@ -87,7 +87,7 @@ def test_an_aspect_that_fails_fails_its_component() -> None:
         Bench(Sailor).iterate()
 
 
-def test_who_asks_for_nothing_has_nothing_to_begin() -> None:
+def test_a_component_without_aspects_has_no_begin() -> None:
     runner: Runner = Bench(Gyro).runner
     assert runner._provided == []
 
@@ -143,10 +143,10 @@ class Photographer(Painter):
         (Painter, r"Painter: it provides Pictures, which reads 'image' of it; add image: VisionMaster"),
     ],
 )
-def test_classes_that_cannot_be(component: type[Component], says: str) -> None:
+def test_impossible_classes_are_refused(component: type[Component], says: str) -> None:
     with pytest.raises(DeclarationError, match=says):
         declaration(component)
 
 
-def test_a_component_may_provide_several() -> None:
+def test_a_component_may_provide_several_aspects() -> None:
     assert declaration(Photographer).provides == (Compass, Pictures)

@@ -40,7 +40,7 @@ def bench() -> Bench:
     return Bench(Opener, "a/opener")
 
 
-def test_what_is_asked_is_open_from_the_next_tick_on() -> None:
+def test_requested_channels_are_open_from_the_next_tick_on() -> None:
     made = bench()
     spot = made.component.blackboard.open_for_writing(imu_t, "spot")
     with pytest.raises(NotOpenError, match="a/spot is not open for writing; check 'is_open' first"):
@@ -53,7 +53,7 @@ def test_what_is_asked_is_open_from_the_next_tick_on() -> None:
     assert [message.heading_rad for message in made.opened("spot").sent] == [3.0]
 
 
-def test_a_reader_opened_at_run_time_shows_what_comes_and_closes() -> None:
+def test_a_reader_opened_at_run_time_shows_messages_and_closes() -> None:
     made = bench()
     reader = made.component.blackboard.open_for_reading(imu_t, "b/imu")
     assert made.component.blackboard.open_for_reading(imu_t, "b/imu") is reader
@@ -70,7 +70,7 @@ def test_a_reader_opened_at_run_time_shows_what_comes_and_closes() -> None:
         made.component.blackboard.close(reader)
 
 
-def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
+def test_declared_channels_are_given_and_cannot_be_closed() -> None:
     made = Bench(Reader, "a/reader")
     board = made.component.blackboard
     assert board.open_for_reading(imu_t, "imu") is made.component.imu
@@ -87,12 +87,12 @@ def test_what_is_declared_is_given_as_it_is_and_cannot_be_closed() -> None:
         (header_t, "a/ball", "core.header_t is the framework's own and does not begin with 'core.header_t header;'"),
     ],
 )
-def test_what_can_never_be_opened_is_refused_at_once(kind: type, name: str, what: str) -> None:
+def test_channels_that_can_never_open_are_refused_at_once(kind: type, name: str, what: str) -> None:
     with pytest.raises(ValueError, match=f"a/opener: .*{what}"):
         bench().component.blackboard.open_for_reading(kind, name)
 
 
-def test_an_iteration_that_asks_for_too_much_is_refused() -> None:
+def test_an_iteration_with_too_many_requests_is_refused() -> None:
     board = bench().component.blackboard
     for number in range(64):
         board.open_for_reading(imu_t, f"a/imu{number}")
@@ -122,7 +122,7 @@ def test_closed_channel_is_not_written_before_the_grant() -> None:
     assert [(imu.header.tick, imu.header.stage) for imu in map(imu_t.decode, system.sent["a/spot"])] == [(2, 5)]
 
 
-def test_what_was_closed_before_it_was_open_never_opens() -> None:
+def test_a_channel_closed_before_it_was_open_never_opens() -> None:
     made = bench()
     board = made.component.blackboard
     spot = board.open_for_writing(imu_t, "spot")
@@ -138,7 +138,7 @@ def test_channel_reopened_with_another_type_suits_each_reader() -> None:
     system = MemorySystem({"a/opener": Opener, "b/opener": Opener})
     system.tick()
     a, b = (system.runners[f"{name}/opener"].component.blackboard for name in "ab")  # type: ignore[attr-defined]
-    for kind in (imu_t, obstacle_t, imu_t):  # the second has no header of ours
+    for kind in (imu_t, obstacle_t, imu_t):  # the type of the second channel has no header
         writer, reader = a.open_for_writing(kind, "/SPOT"), b.open_for_reading(kind, "/SPOT")
         system.tick(2)
         writer.write()
@@ -217,7 +217,7 @@ def test_late_opener_has_the_newest_value_at_once() -> None:
     assert "b/opener wants it as robot.odometry_t" in refused.refused
 
 
-def test_what_was_closed_or_refused_takes_no_memory() -> None:
+def test_closed_and_refused_channels_take_no_memory() -> None:
     class Restless(Component):
         stage = "think"
         blackboard: Blackboard
@@ -234,7 +234,7 @@ def test_what_was_closed_or_refused_takes_no_memory() -> None:
                 self.blackboard.open_for_reading(imu_t, "r/other"),
                 self.blackboard.open_for_writing(imu_t, "own"),
                 self.blackboard.open_for_writing(odometry_t, "own"),  # of another type: refused
-                self.blackboard.open_for_writing(imu_t, f"own{len(self.kept)}"),  # soon there is no channel left
+                self.blackboard.open_for_writing(imu_t, f"own{len(self.kept)}"),  # soon no spare channel is left
                 self.blackboard.open_multiple_for_reading(imu_t, "*/own"),
                 self.blackboard.open_multiple_for_reading(odometry_t, "*/nothing"),
             ]

@@ -1,4 +1,4 @@
-"""Commands and requests: their order, their answers, and that none is carried out twice."""
+"""Commands and requests: their order, their answers, and execution at most once."""
 
 import sys
 from collections.abc import Iterator
@@ -34,13 +34,13 @@ def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def lifting(parts: Any, **settings: Any) -> MemorySystem:
-    """The whole system; settings of the lifter."""
+    """The whole system; the arguments are settings of the lifter."""
     names = {"r/lifter": parts.Lifter, "r/adder": parts.Adder, "one/worker": parts.Worker, "two/worker": parts.Worker}
     return MemorySystem(names, settings={"r/lifter": settings})
 
 
 def answers(bench: Bench, attribute: str = "lift") -> list[tuple[int, int, str]]:
-    """What a component has answered: sequence number, state, reason."""
+    """Returns a component's answers: sequence number, state, reason."""
     return [(sent.answer.sequence, sent.answer.state, sent.answer.reason) for sent in bench.port(attribute).sent]
 
 
@@ -55,7 +55,7 @@ def test_a_command_is_accepted_and_done(parts: Any) -> None:
     assert bench.component.lift.open == []
 
 
-def test_what_cannot_be_is_rejected_or_failed_with_its_reason(parts: Any) -> None:
+def test_impossible_commands_are_rejected_or_fail_with_a_reason(parts: Any) -> None:
     bench = Bench(parts.Lifter)
     bench.port("lift").put(height_m=101.0)
     bench.port("lift").put(height_m=-1.0)
@@ -63,10 +63,10 @@ def test_what_cannot_be_is_rejected_or_failed_with_its_reason(parts: Any) -> Non
     assert answers(bench) == [(1, answer_t.REJECTED, "too high"), (2, answer_t.FAILED, "there is a floor")]
 
 
-def test_what_is_not_taken_out_waits_and_expires(parts: Any) -> None:
+def test_a_command_that_is_not_taken_waits_and_expires(parts: Any) -> None:
     bench = Bench(parts.Lifter, at_once=1, ticks=3)
     bench.port("lift").put(height_m=1.0)
-    bench.port("lift").put(height_m=2.0, expires_s=0.15)  # until tick 3; there is room for it in tick 4
+    bench.port("lift").put(height_m=2.0, expires_s=0.15)  # until tick 3; tick 4 has room for it
     bench.port("lift").put(height_m=3.0, expires_s=0.2)
     bench.iterate(3)
     assert len(bench.component.lift) == 2
@@ -115,7 +115,7 @@ def test_receiver_started_later_ignores_earlier_commands(parts: Any) -> None:
     assert [sent.height_m for sent in bench.port("lifted").sent] == [2.0]
 
 
-def test_the_sender_of_what_did_not_come_is_told(parts: Any) -> None:
+def test_the_sender_of_a_lost_command_is_informed(parts: Any) -> None:
     bench = Bench(parts.Lifter)
     lift = bench.port("lift")
     lift.put(height_m=1.0)
@@ -133,7 +133,7 @@ def test_the_sender_of_what_did_not_come_is_told(parts: Any) -> None:
     ]
 
 
-def test_one_that_is_stopped_fails_what_it_has_not_finished(parts: Any) -> None:
+def test_a_stopped_component_fails_its_unfinished_commands(parts: Any) -> None:
     bench = Bench(parts.Lifter, at_once=1)
     bench.port("lift").put(height_m=1.0)
     bench.port("lift").put(height_m=2.0)
@@ -145,7 +145,7 @@ def test_one_that_is_stopped_fails_what_it_has_not_finished(parts: Any) -> None:
 
 
 def sender(parts: Any, **settings: Any) -> tuple[Bench, Any]:
-    """A worker that has sent one command, and its future."""
+    """Returns a worker that has sent one command, and the future of that command."""
     bench = Bench(parts.Worker, name="s/worker", flood=1, **settings)
     bench.iterate()
     future = next(each for each in bench.component.futures if isinstance(each.reply, acknowledgement_t))
@@ -164,12 +164,12 @@ def test_a_future_follows_its_command(parts: Any) -> None:
     assert (future.state, future.reason, future.finished, future.done) == ("failed", "stuck", True, False)
     bench.owner_of("lift").answer(answer_t.DONE, sequence=1)
     bench.iterate()
-    assert future.state == "failed"  # the last answer was the last
+    assert future.state == "failed"  # no answer follows the last one
 
 
 @pytest.mark.parametrize("seconds", [float("nan"), float("inf"), -1.0, 1e300])
 @pytest.mark.parametrize("name", ["timeout_s", "expires_s"])
-def test_a_time_that_cannot_be_is_refused(parts: Any, name: str, seconds: float) -> None:
+def test_an_impossible_time_is_refused(parts: Any, name: str, seconds: float) -> None:
     bench = Bench(parts.Worker, flood=1)
     bench.iterate()
     before = len(bench.port("lift").sent)
@@ -179,7 +179,7 @@ def test_a_time_that_cannot_be_is_refused(parts: Any, name: str, seconds: float)
     assert len(bench.port("lift").sent) == before + 1
 
 
-def test_nothing_is_sent_in_init(parts: Any) -> None:
+def test_no_command_is_sent_in_init(parts: Any) -> None:
     class Eager(parts.Worker):  # type: ignore[misc]
         def init(self) -> None:
             self.lift.call()
@@ -199,7 +199,7 @@ def test_answers_to_others_are_not_heard(parts: Any) -> None:
 
 def test_a_future_ends_in_time(parts: Any) -> None:
     bench, future = sender(parts, timeout_s=0.1)
-    assert bench.port("lift").sent[0].command.expires_us == bench.time_us + 100_000  # nor is it begun any more
+    assert bench.port("lift").sent[0].command.expires_us == bench.time_us + 100_000  # nor does it begin any more
     bench.iterate(2)
     assert future.state == "sent"
     bench.iterate()
@@ -222,7 +222,7 @@ def test_restart_of_the_owner_fails_all_earlier_commands(parts: Any) -> None:
     assert second.reason == "r/lifter was started"
 
 
-def test_a_sender_in_flood_is_held_back(parts: Any) -> None:
+def test_a_flooding_sender_is_held_back(parts: Any) -> None:
     bench = Bench(parts.Worker, flood=QUEUE_MAX + 10)
     bench.iterate(2)
     assert len(bench.port("lift").sent) == QUEUE_MAX
@@ -252,7 +252,7 @@ def test_a_call_has_its_reply(parts: Any) -> None:
     assert call.reply.sum == 12
 
 
-def test_one_carries_out_for_many_and_answers_each(parts: Any) -> None:
+def test_one_component_serves_many_and_answers_each(parts: Any) -> None:
     class Crane(Component):
         stage = "act"
         lifts: Each[Serves[parts.lift_t]] = channel("*/lift")
@@ -276,7 +276,7 @@ def test_one_carries_out_for_many_and_answers_each(parts: Any) -> None:
     assert [sent.sum for sent in bench.port("sums", "two").sent] == [1]
 
 
-def test_all_is_carried_out_once_and_in_order(parts: Any) -> None:
+def test_all_commands_run_once_and_in_order(parts: Any) -> None:
     system = lifting(parts, at_once=3, ticks=1)
     system.tick(200)
     begun, wanted = [], {}

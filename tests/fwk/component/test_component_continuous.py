@@ -27,7 +27,7 @@ class Slow(Component):
         self.slow.write()
 
 
-def test_on_the_bench_it_iterates_as_others_do() -> None:
+def test_on_the_bench_a_continuous_component_iterates() -> None:
     bench = Bench(Slow)
     bench.port("imu").put()
     bench.port("imu").put()

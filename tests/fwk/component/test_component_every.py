@@ -1,4 +1,4 @@
-"""Components that iterate in every k-th tick: when they do, what they see, and the same bytes in every driver."""
+"""Components that iterate in every k-th tick: their ticks, their inputs, and equal bytes in every driver."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ class Ticker(Component):
 
 
 class Third(Component):
-    """Sums up what came since its last iteration."""
+    """Sums up the messages since its last iteration."""
 
     stage = "think"
     every = 3
@@ -49,26 +49,26 @@ class Often(Third):
 
 
 def written(system: MemorySystem, name: str = "r/odometry") -> list[tuple[int, float]]:
-    """Tick and sum of each message."""
+    """Returns tick and sum of each message."""
     decoded = [odometry_t.decode(data) for data in system.sent[name]]
     return [(message.header.tick, message.x_m) for message in decoded]
 
 
-def test_it_iterates_when_tick_and_offset_agree() -> None:
+def test_an_iteration_needs_matching_tick_and_offset() -> None:
     system = MemorySystem({"r/ticker": Ticker, "r/third": Third})
     system.tick(9)
     assert written(system) == [(2, 1.0 + 2.0), (5, 3.0 + 4.0 + 5.0), (8, 6.0 + 7.0 + 8.0)]
 
 
 def test_ticks_between_are_not_an_absence() -> None:
-    """A component that takes part sees everything, also after more ticks than an absent one would."""
+    """A component sees all messages between two of its iterations, even of more than 16 ticks."""
     system = MemorySystem({"r/ticker": Ticker, "r/often": Often})
     system.tick(80)
     assert written(system) == [(40, sum(range(1, 41))), (80, sum(range(41, 81)))]
 
 
 @pytest.mark.parametrize(("turns", "ticks"), [((1, 0), [1, 2, 3, 4]), ((2, 0), [2, 4]), ((2, 7), [1, 3])])
-def test_turns_of_a_plan_replace_those_of_the_class(turns: tuple[int, int], ticks: list[int]) -> None:
+def test_every_of_a_plan_replaces_that_of_the_class(turns: tuple[int, int], ticks: list[int]) -> None:
     system = MemorySystem({"r/ticker": Ticker, "r/third": Third}, turns={"r/third": turns})
     system.tick(4)
     assert [tick for tick, _ in written(system)] == ticks
@@ -85,7 +85,7 @@ def test_on_the_bench_messages_wait_for_the_iteration() -> None:
     assert bench.odometry.sent[-1].header.tick == 6
 
 
-def test_the_bench_takes_turns_as_arguments() -> None:
+def test_the_bench_takes_every_and_offset_as_arguments() -> None:
     bench = Bench(Third, namespaces=("r",), every=2, offset=1)
     bench.iterate(4)
     assert [sent.header.tick for sent in bench.odometry.sent] == [1, 3]

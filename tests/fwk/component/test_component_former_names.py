@@ -1,4 +1,4 @@
-"""Components with the former names of annotations run as they are."""
+"""Components that use the former names of annotations run unchanged."""
 
 from typing import Any
 

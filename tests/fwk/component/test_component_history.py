@@ -52,7 +52,7 @@ def test_the_newest_are_kept_oldest_first(bench: Bench) -> None:
         reader.history[3]
 
 
-def test_each_message_is_decoded_once_and_when_it_is_looked_at(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_each_message_is_decoded_once_and_on_first_access(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     decoded: list[bytes] = []
     history = bench.component.imu.history
     decode = history._decode
@@ -114,7 +114,7 @@ def test_ports_of_one_channel_share_the_longest() -> None:
         (2, Writes[imu_t], "Wrong.imu: history=2: only Reads keeps a history"),
     ],
 )
-def test_a_history_that_cannot_be_is_refused(length: int, kind: Any, error: str) -> None:
+def test_an_impossible_history_is_refused(length: int, kind: Any, error: str) -> None:
     made = type("Wrong", (Component,), {"stage": "think", "imu": channel(history=length)})
     made.__annotations__ = {"imu": kind}
     with pytest.raises(DeclarationError, match=error):

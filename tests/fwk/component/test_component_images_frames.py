@@ -1,4 +1,4 @@
-"""What is no frame is refused where it is given out."""
+"""Invalid frames are refused where they are published."""
 
 from typing import Any
 
@@ -24,7 +24,7 @@ class Camera(Component):
         (np.broadcast_to(np.uint8(0), (3000, 3000)), r"uint8 \(3000, 3000\)"),
     ],
 )
-def test_what_is_no_frame_is_refused(pixels: Any, shape: str) -> None:
+def test_invalid_frames_are_refused(pixels: Any, shape: str) -> None:
     bench = Bench(Camera)
     with pytest.raises(
         FrameError, match=f"robot/image: a frame is a uint8 array, .* of at most 8388608 bytes, not {shape}"

@@ -1,4 +1,4 @@
-"""A camera that was started again: its frames are new ones, not those that it gave out before."""
+"""A restarted camera publishes new frames, not those of its previous incarnation."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ def test_first_frame_of_a_restarted_camera_is_new() -> None:
     announcements = Reads("r/image", frame_t)
     image = Image(announcements, ring, Logger("r/finder", Clock(), print))
     sequence = 0
-    for shade in (10, 20):  # each time a new process, which goes on where the marks are
+    for shade in (10, 20):  # each time a new process, which continues from the marks
         writer = Writes("r/image", frame_t)
         writer.sequence = sequence
         VisionMaster(writer, ring).publish(np.full((4, 4), shade, np.uint8))

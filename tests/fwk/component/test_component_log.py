@@ -1,4 +1,4 @@
-"""A component's lines: cheap when off, bounded when too many, never too long to travel, with their place."""
+"""Log lines of a component: cheap when off, limited in number and length, with their place in the source."""
 
 import os
 
@@ -36,7 +36,7 @@ def test_a_line_says_where_it_was_written() -> None:
     assert line.line == test_a_line_says_where_it_was_written.__code__.co_firstlineno + 3
 
 
-def test_what_is_off_is_not_even_made() -> None:
+def test_a_line_that_is_off_is_not_formatted() -> None:
     lines: list[log_t] = []
     log = logger(lines, Wall(), level=log_t.ERROR)
     for write in (log.debug, log.info, log.warning):
@@ -45,7 +45,7 @@ def test_what_is_off_is_not_even_made() -> None:
     assert [line.text for line in lines] == ["made"]
 
 
-def test_a_flood_is_cut_off_and_counted_when_its_second_is_over() -> None:
+def test_a_flood_is_cut_off_and_counted_after_its_second() -> None:
     lines, wall = list[log_t](), Wall()
     log = logger(lines, wall)
     for number in range(10):
@@ -85,7 +85,7 @@ def test_errors_are_never_dropped() -> None:
 
 
 @pytest.mark.parametrize("letter", ["x", "é", "\N{ROBOT FACE}"])
-def test_what_is_too_long_for_one_datagram_loses_its_middle(letter: str) -> None:
+def test_a_line_too_long_for_one_datagram_loses_its_middle(letter: str) -> None:
     lines: list[log_t] = []
     logger(lines, Wall()).error(f"begins {letter * 200_000} ends")
     (line,) = lines
@@ -96,7 +96,7 @@ def test_what_is_too_long_for_one_datagram_loses_its_middle(letter: str) -> None
 
 
 @pytest.mark.parametrize("text", ["\ud800 half a letter", "zero \0 inside", 17, None, b"bytes"])
-def test_whatever_is_logged_can_travel(text: str) -> None:
+def test_any_logged_object_can_be_sent(text: str) -> None:
     lines: list[log_t] = []
     logger(lines, Wall()).info(text)
     assert log_t.decode(lines[0].encode()).text == lines[0].text
@@ -164,7 +164,7 @@ def test_changed_log_level_counts_from_the_next_iteration() -> None:
     assert bench.component.told == [{"gain", "other"}, {"other"}]
 
 
-def test_the_name_of_the_level_is_taken() -> None:
+def test_the_name_of_the_level_setting_is_reserved() -> None:
     class Own(Config):
         log_level: int = 1
 

@@ -14,7 +14,7 @@ from lcmtypes.robot import imu_t
 
 
 class Alarm(Component):
-    """Says how many warnings and errors it has heard of, and logs each itself."""
+    """Counts the warnings and errors it hears, and logs each itself."""
 
     stage = "post_loop"
     lines: LogLines
@@ -66,7 +66,7 @@ def test_a_level_that_does_not_exist_is_refused() -> None:
 def test_memory_system_delivers_log_lines_from_the_next_tick() -> None:
     system = MemorySystem({"a/worrier": Worrier, "a/alarm": Alarm})
     system.tick(5)
-    assert system.newest("a/heard").heading_rad == 4.0  # an alarm at each alarm would never end
+    assert system.newest("a/heard").heading_rad == 4.0  # an alarm for each alarm would never end
 
 
 def test_a_launch_file_cannot_connect_them_elsewhere(tmp_path: Path) -> None:
@@ -78,7 +78,7 @@ def test_a_launch_file_cannot_connect_them_elsewhere(tmp_path: Path) -> None:
         load_plan(str(tmp_path / "it.yaml"))
 
 
-def test_who_misspells_it_is_told_of_it() -> None:
+def test_a_misspelt_log_port_is_named() -> None:
     class Wrong(Component):
         stage = "think"
         lines: int

@@ -1,4 +1,4 @@
-"""Who has the main loop, and what components see of it, without processes."""
+"""Holders of the main loop, and what components see of it, without processes."""
 
 import pytest
 
@@ -18,14 +18,14 @@ STAGES = {"r/a": ["think"], "r/b": ["think", "act"]}
         (["think", "thikn"], "r/driver: no stage 'thikn'; the stages are think, act"),
     ],
 )
-def test_an_order_that_cannot_be_is_refused_at_once(order: list[str], error: str) -> None:
+def test_an_impossible_order_is_refused_at_once(order: list[str], error: str) -> None:
     main_loop = MainLoop("r/driver", ("think", "act"))
     with pytest.raises(ValueError, match=error):
         main_loop.take_over(order)
     assert main_loop._take() is None
 
 
-def test_the_first_gets_it_and_the_second_is_told_who_has_it() -> None:
+def test_the_first_gets_it_and_the_second_learns_the_holder() -> None:
     holding = Holding(STAGES)
     holding.ask(3, 5, "r/b", ["act", "act"])
     holding.ask(3, 5, "r/a", ["think"])
@@ -34,7 +34,7 @@ def test_the_first_gets_it_and_the_second_is_told_who_has_it() -> None:
     assert holding.refused == ["r/b wants the main loop, but r/a has it; refused until that gives it back"]
 
 
-def test_the_earlier_place_in_a_tick_wins_whoever_answers_first() -> None:
+def test_the_earlier_step_wins_in_any_order_of_answers() -> None:
     holding = Holding(STAGES)
     holding.ask(3, 5, "r/a", ["think"])
     holding.ask(3, 1, "r/b", ["act"])
@@ -49,7 +49,7 @@ def test_main_loop_holder_changes_order_and_hands_over() -> None:
     holding.ask(2, 0, "r/a", ["think", "act"])
     assert holding.decide()
     assert list(holding.order) == ["think", "act"]
-    holding.ask(3, 0, "r/b", [])  # it is not b's to give
+    holding.ask(3, 0, "r/b", [])  # b does not hold it
     assert not holding.decide()
     holding.ask(4, 0, "r/a", [])
     holding.ask(4, 1, "r/b", ["act"])
@@ -57,7 +57,7 @@ def test_main_loop_holder_changes_order_and_hands_over() -> None:
     assert (holding.holder, list(holding.order), holding.refused) == ("r/b", ["act"], [])
 
 
-def test_an_order_without_a_stage_of_its_own_is_refused() -> None:
+def test_an_order_without_the_holders_stage_is_refused() -> None:
     holding = Holding(STAGES)
     holding.ask(1, 5, "r/a", ["act"])
     assert not holding.decide()
@@ -66,7 +66,7 @@ def test_an_order_without_a_stage_of_its_own_is_refused() -> None:
     ]
 
 
-def test_whose_process_ends_has_given_it_back() -> None:
+def test_the_end_of_the_holders_process_gives_it_back() -> None:
     holding = Holding(STAGES)
     holding.ask(1, 5, "r/a", ["think"])
     holding.decide()
@@ -80,7 +80,7 @@ def test_whose_process_ends_has_given_it_back() -> None:
     assert not holding.decide()
 
 
-def test_an_order_of_unknown_stages_or_of_none_is_a_mistake() -> None:
+def test_an_order_of_unknown_or_no_stages_is_a_mistake() -> None:
     loop = MainLoop("r/a", ["think", "act"])
     with pytest.raises(ValueError, match="r/a: no stage 'thnk'; the stages are think, act"):
         loop.take_over(["act", "thnk"])
@@ -90,7 +90,7 @@ def test_an_order_of_unknown_stages_or_of_none_is_a_mistake() -> None:
 
 
 class Conducts(Component):
-    """Has three ticks played otherwise."""
+    """Sets another order for three ticks."""
 
     stage = "think"
     clock: Clock
@@ -116,7 +116,7 @@ class Plays(Component):
         self.heard.write()
 
 
-def test_a_system_in_memory_runs_the_stages_that_are_asked_for() -> None:
+def test_a_system_in_memory_runs_the_requested_stages() -> None:
     system = MemorySystem({"r/conducts": Conducts, "r/plays": Plays})
     system.tick(7)
     played = [imu_t.decode(data) for data in system.sent["r/heard"]]

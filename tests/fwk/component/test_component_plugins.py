@@ -1,4 +1,4 @@
-"""What a component may ask of others: names are checked at once, the rest between two ticks."""
+"""Plugin requests: names are checked at once, everything else between two ticks."""
 
 import pytest
 
@@ -16,7 +16,7 @@ class Director(Component):
         self.plugins.load("r/three")
 
 
-def test_what_was_asked_in_an_iteration_is_taken_once() -> None:
+def test_requests_of_an_iteration_are_taken_once() -> None:
     bench = Bench(Director)
     bench.iterate()
     assert bench.runner.requests() == {"plugins": [("stop", ("r/one", "r/two")), ("load", ("r/three",))]}
@@ -34,7 +34,7 @@ def test_names_that_do_not_exist_are_refused_at_once() -> None:
     assert plugins._take() == [("unload", ("r/*",)), ("restart", ("r",))]
 
 
-def test_an_iteration_that_wishes_too_much_is_refused() -> None:
+def test_an_iteration_with_too_many_requests_is_refused() -> None:
     plugins = PluginControl("r/director", ["r/director", "r/one"])
     for _ in range(64):
         plugins.restart("r/one")

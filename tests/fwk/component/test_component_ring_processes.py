@@ -1,4 +1,4 @@
-"""The ring between real processes: no torn or wrong frame under load, and nobody's death hurts the others."""
+"""The ring between real processes: no torn or wrong frame under load, and no process suffers from another's death."""
 
 import signal
 import subprocess
@@ -68,7 +68,7 @@ Start = Callable[[str], subprocess.Popen[str]]
 
 @pytest.fixture
 def start(tmp_path: Path) -> Iterator[Start]:
-    """Starts a process that has the ring, and a file with the number of the newest frame."""
+    """Starts a process that maps the ring; returns it with a file that holds the number of the newest frame."""
     ring = Ring.create("stress")
     started: list[subprocess.Popen[str]] = []
     with open(tmp_path / "newest", "w+b") as newest:
@@ -89,7 +89,7 @@ def start(tmp_path: Path) -> Iterator[Start]:
 
 
 def result(reader: subprocess.Popen[str]) -> tuple[int, int]:
-    """How many frames a reader saw whole, and how many were overwritten before or while it read them."""
+    """Returns how many frames a reader saw whole, and how many were overwritten before or during the read."""
     out, errors = reader.communicate(timeout=TIMEOUT_S)
     assert reader.returncode == 0, errors
     whole, lost = map(int, out.split())
@@ -103,13 +103,13 @@ def test_readers_see_whole_frames_under_fast_overwriting(start: Start) -> None:
         assert lost >= 20
 
 
-def test_a_reader_killed_while_it_reads_stops_nobody(start: Start) -> None:
+def test_a_reader_killed_during_a_read_stops_no_process(start: Start) -> None:
     writer, *victims, survivor = start(WRITER), start(READER), start(READER), start(READER)
     for victim in victims:
         victim.send_signal(signal.SIGKILL)
         victim.wait(TIMEOUT_S)
     assert result(survivor)[0] >= 300
-    assert result(start(READER))[0] >= 300  # one that comes later
+    assert result(start(READER))[0] >= 300  # a reader that comes later
     assert writer.poll() is None
 
 
@@ -142,7 +142,7 @@ def test_outside_viewer_finds_the_ring_and_its_newest_frame(start: Start) -> Non
 
 
 @pytest.mark.parametrize("shape", [(6, 4, 3), (6, 4)])
-def test_the_newest_frame_is_there_with_its_shape(shape: tuple[int, ...]) -> None:
+def test_the_newest_frame_is_available_with_its_shape(shape: tuple[int, ...]) -> None:
     ring = Ring.create("newest")
     assert ring.newest() is None
     for number in range(1, 8):

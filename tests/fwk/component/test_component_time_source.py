@@ -1,4 +1,4 @@
-"""A time source that sets a wrong time, or none, is named in the log."""
+"""A time source that sets a wrong time, or no time, is named in the log."""
 
 from typing import Any
 
@@ -7,7 +7,7 @@ from fwk.testing import Bench
 
 
 class SunConfig(Config):
-    """Steps of the time that it sets."""
+    """Increments of the time that the component sets."""
 
     step_us: int = 10_000
     """From the time of the tick; 0 or less: not after it."""
@@ -31,11 +31,11 @@ def logged(ticks: int, **settings: Any) -> list[str]:
     return [line.text for line in bench.logged]
 
 
-def test_time_that_moves_on_is_not_reported() -> None:
+def test_time_that_advances_is_not_reported() -> None:
     assert logged(30) == []
 
 
-def test_time_set_backwards_is_reported_now_and_then() -> None:
+def test_time_set_backwards_is_reported_repeatedly() -> None:
     lines = logged(12, step_us=-1)
     assert lines[0] == (
         "time source: next_us = 49999 is not after this tick's time, 50000 us; "

@@ -1,4 +1,4 @@
-"""Lookups in a tree of frames: through parents and siblings, in between, and what cannot be answered."""
+"""Lookups in a tree of frames: through parents and siblings, between two times, and lookups without an answer."""
 
 import math
 import re
@@ -28,7 +28,7 @@ transforms = some.builds(
 
 
 def robot() -> TransformTree:
-    """A robot that stands at (1, 0) and looks left at 1 s, and at (3, 0) straight ahead at 2 s."""
+    """A robot that stands at (1, 0) and faces left at 1 s, and at (3, 0) facing ahead at 2 s."""
     tree = TransformTree()
     tree.put("world", "base", 1_000_000, Transform.of((1.0, 0.0, 0.0), QUARTER))
     tree.put("world", "base", 2_000_000, Transform.of((3.0, 0.0, 0.0), 0.0))
@@ -49,19 +49,19 @@ def robot() -> TransformTree:
         ("world", "world", 5, (1.0, 2.0, 3.0), (1.0, 2.0, 3.0)),
     ],
 )
-def test_a_point_is_taken_from_frame_to_frame(
+def test_a_point_is_transformed_from_frame_to_frame(
     target: str, source: str, time_us: int | None, point: tuple[float, ...], expected: tuple[float, ...]
 ) -> None:
     assert robot().lookup(target, source, time_us).apply(np.array(point)) == pytest.approx(expected)
 
 
-def test_in_between_the_way_is_straight_and_the_turn_even() -> None:
+def test_poses_between_two_times_are_interpolated() -> None:
     quarter = robot().lookup("world", "base", 1_250_000)
     assert quarter.translation_m == pytest.approx((1.5, 0.0, 0.0))
     assert quarter.yaw_rad == pytest.approx(0.75 * QUARTER)
 
 
-def test_what_is_older_than_the_history_is_forgotten() -> None:
+def test_poses_older_than_the_history_are_forgotten() -> None:
     tree = TransformTree()
     for time_us in range(0, 2 * HISTORY_US, 500_000):
         tree.put("world", "base", time_us, Transform.of((time_us / 1e6, 0.0, 0.0)))
@@ -98,7 +98,7 @@ def test_what_is_older_than_the_history_is_forgotten() -> None:
         ),
     ],
 )
-def test_what_cannot_be_answered(
+def test_lookups_without_an_answer_are_refused(
     kind: type[TransformError], target: str, source: str, time_us: int | None, text: str
 ) -> None:
     tree = robot()
@@ -116,13 +116,13 @@ def test_what_cannot_be_answered(
         ("world", "base", 1_000_000, "frame 'base' is known at 2.000 s and cannot be told of 1.000 s"),
     ],
 )
-def test_what_does_not_fit_into_the_tree(parent: str, child: str, time_us: int, text: str) -> None:
+def test_transforms_that_do_not_fit_the_tree_are_refused(parent: str, child: str, time_us: int, text: str) -> None:
     with pytest.raises(TransformError, match=re.escape(text)):
         robot().put(parent, child, time_us, Transform.of((0.0, 0.0, 0.0)))
 
 
 @given(transforms, transforms, some.tuples(numbers, numbers, numbers))
-def test_there_and_back_is_where_one_was(one: Transform, other: Transform, point: tuple[float, ...]) -> None:
+def test_there_and_back_is_the_identity(one: Transform, other: Transform, point: tuple[float, ...]) -> None:
     both = one @ other
     there = both.apply(np.array(point))
     assert there == pytest.approx(one.apply(other.apply(np.array(point))), abs=1e-6)
@@ -136,7 +136,7 @@ class Looks(Component):
     tf: Transforms
 
 
-def test_the_aspect_leaves_out_what_does_not_fit() -> None:
+def test_the_aspect_leaves_out_poses_that_do_not_fit() -> None:
     bench = Bench(Looks)
     port = bench.port("tf.transforms")
     fits = transform_message("world", "base", 10, Transform.of((1.0, 0.0, 0.0)))

@@ -1,4 +1,4 @@
-"""Which run a command means: the named one, the one in FWK_RUN, or the only one."""
+"""Choice of the run for a command: the named one, the one in FWK_RUN, or the only one."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""Whatever stands in configuration files, is typed or asked for: an answer or a sentence, and nothing is spoiled."""
+"""Any settings files and requests get an answer or a sentence, and no file is damaged."""
 
 import json
 from contextlib import suppress
@@ -114,7 +114,7 @@ some_config = some.dictionaries(
 @FEW
 @given(some_config, some.sampled_from(["a/tiny", "*/tiny", "b"]), some.lists(some_key, min_size=1), json_value)
 @example({"config": {"a/tiny": {"gain": 1}}}, "a/tiny", ["gain"], 0.5)
-def test_what_is_kept_is_there_and_the_rest_stays(
+def test_kept_settings_are_there_and_the_rest_stays(
     tmp_path: Path, data: dict[str, Any], component: str, path: list[str], value: Any
 ) -> None:
     file = tmp_path / "it.host.yaml"
@@ -139,7 +139,7 @@ def test_what_is_kept_is_there_and_the_rest_stays(
 
 @FEW
 @given(some_yaml, some_key, some_value)
-def test_no_file_is_spoiled(tmp_path: Path, text: str, setting: str, value: Any) -> None:
+def test_no_file_is_damaged(tmp_path: Path, text: str, setting: str, value: Any) -> None:
     file = tmp_path / "it.host.yaml"
     file.write_text(text)
     with suppress(KeepError):
@@ -152,7 +152,7 @@ def test_no_file_is_spoiled(tmp_path: Path, text: str, setting: str, value: Any)
 
 
 def bare(data: Any) -> Any:
-    """Without mappings that hold nothing."""
+    """Returns the value without empty mappings."""
     if not isinstance(data, dict):
         return data
     below = {key: bare(each) for key, each in data.items()}
@@ -161,13 +161,13 @@ def bare(data: Any) -> Any:
 
 @FEW
 @given(some_config, some.sampled_from(["a/tiny", "*/tiny", "b"]), some.lists(some_key, min_size=1), json_value)
-def test_what_is_kept_and_forgotten_leaves_the_rest(
+def test_kept_and_forgotten_settings_leave_the_rest(
     tmp_path: Path, data: dict[str, Any], component: str, path: list[str], value: Any
 ) -> None:
     file, setting = tmp_path / "it.host.yaml", ".".join(path)
     file.write_text(commented(data))
     with suppress(KeepError):
-        forget(file, [f"{component}.{setting}"])  # perhaps it was there
+        forget(file, [f"{component}.{setting}"])  # it may have existed before
     before = read(file.read_text())
     try:
         keep(file, [Kept(component, setting, value)])

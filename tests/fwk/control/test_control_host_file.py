@@ -34,7 +34,7 @@ def test_comments_mode_and_links_stay(tmp_path: Path) -> None:
     assert file.is_symlink()
 
 
-def test_what_was_kept_is_forgotten_all_or_nothing(tmp_path: Path) -> None:
+def test_kept_settings_are_forgotten_all_or_nothing(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text(OLD)
     keep(file, [Kept.of("a/b.other=2"), Kept.of("*/c.inner.deep=3")])
@@ -55,7 +55,7 @@ def test_a_file_whose_last_setting_is_forgotten_is_removed(tmp_path: Path) -> No
     assert file.read_text() == "# mine\n"
 
 
-def test_a_file_of_nothing_but_a_tab_is_as_good_as_empty(tmp_path: Path) -> None:
+def test_a_file_of_one_tab_counts_as_empty(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text("\t")
     keep(file, [Kept.of("a/b.gain=1")])
@@ -76,12 +76,12 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_folder_that_is_not_there_is_named(tmp_path: Path) -> None:
+def test_a_missing_folder_is_named(tmp_path: Path) -> None:
     with pytest.raises(KeepError, match="No such file or directory"):
         keep(tmp_path / "gone" / "soccer.host.yaml", [Kept.of("a/b.gain=1")])
 
 
-def test_what_stands_further_down_wins_and_is_named(tmp_path: Path) -> None:
+def test_the_later_of_two_equal_keys_wins_and_is_named(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text('config:\n  a/b: {gain: 1}\n  "*/b": {gain: 3}\n')
     with pytest.raises(KeepError, match=r"'\*/b' further down says 3 of 'gain' and wins"):

@@ -1,4 +1,4 @@
-"""Whoever asks what: the server answers, refuses, and never waits."""
+"""The control server answers or refuses every request, and never waits for a client."""
 
 import json
 import os
@@ -52,7 +52,7 @@ def connect(listening: Server) -> Iterator[Connect]:
 
 
 def answers(listening: Server, connection: socket.socket) -> list[dict[str, Any]]:
-    """Lets the server work until nothing more comes."""
+    """Lets the server work until no more answers arrive."""
     data = b""
     while True:
         for _ in range(4):
@@ -91,7 +91,7 @@ def test_a_request_in_pieces_is_answered_once(listening: Server, connect: Connec
         (b"[" * 60_000, "not a request"),
     ],
 )
-def test_what_is_no_request_is_refused_and_the_next_one_answered(
+def test_an_invalid_request_is_refused_and_the_next_is_answered(
     listening: Server, connect: Connect, line: bytes, error: str
 ) -> None:
     connection = connect()
@@ -138,7 +138,7 @@ def test_too_many_requests_at_once_end_the_connection(listening: Server, connect
     assert "may come at once" in answer["error"]
 
 
-def test_one_who_does_not_read_is_left_and_others_are_answered(listening: Server, connect: Connect) -> None:
+def test_a_client_that_does_not_read_delays_no_other(listening: Server, connect: Connect) -> None:
     held: list[Connection] = []
     listening._answer = lambda _, connection: held.append(connection)
     silent = connect()
@@ -154,7 +154,7 @@ def test_one_who_does_not_read_is_left_and_others_are_answered(listening: Server
     assert answers(listening, other) == [{"ok": True, "verb": "run"}]
 
 
-def test_a_stream_leaves_out_what_is_not_read_and_counts_it(listening: Server, connect: Connect) -> None:
+def test_a_stream_drops_and_counts_what_is_not_read(listening: Server, connect: Connect) -> None:
     held: list[Connection] = []
     listening._answer = lambda _, connection: held.append(connection)
     slow = connect()
@@ -173,7 +173,7 @@ def test_a_stream_leaves_out_what_is_not_read_and_counts_it(listening: Server, c
 
 
 def test_connections_in_use_are_limited(listening: Server, connect: Connect) -> None:
-    listening._answer = lambda *_: None  # answered later, as a pause is
+    listening._answer = lambda *_: None  # answered later, like a pause
     for _ in range(server.CONNECTIONS_MAX):
         connect().sendall(b"x\n")
     for _ in range(2 * server.CONNECTIONS_MAX):
@@ -191,7 +191,7 @@ def test_idle_connections_give_way(listening: Server, connect: Connect) -> None:
     newest = connect()
     newest.sendall(b'{"verb":"run"}\n')
     assert answers(listening, newest) == [{"ok": True, "verb": "run"}]
-    assert "disconnected: idle" in answers(listening, idle[1])[0]["error"]  # the oldest that never asked
+    assert "disconnected: idle" in answers(listening, idle[1])[0]["error"]  # the oldest that never sent a request
     idle[0].sendall(b'{"verb":"run"}\n')
     assert answers(listening, idle[0]) == [{"ok": True, "verb": "run"}]
 
@@ -208,7 +208,7 @@ def test_a_deeply_nested_value_is_refused_at_once(brackets: str) -> None:
         parsed(to_supervisor, json.dumps(request).encode())
 
 
-def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_another_user_is_refused(listening: Server, connect: Connect, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(server, "peer_of", lambda _: (os.getpid(), os.geteuid() + 1))
     connection = connect()
     connection.sendall(b'{"verb":"run"}\n')
@@ -217,7 +217,7 @@ def test_a_stranger_is_refused(listening: Server, connect: Connect, monkeypatch:
     assert "only its own user and root are obeyed" in answer["error"]
 
 
-def test_the_kernel_says_who_asks() -> None:
+def test_the_kernel_names_the_user_of_a_client() -> None:
     one, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_STREAM)
     assert address.peer_of(one) == (os.getpid(), os.geteuid())
     one.close()
@@ -227,12 +227,12 @@ def test_the_kernel_says_who_asks() -> None:
     assert not address.obeys(os.geteuid() + 1)
 
 
-def test_a_client_gives_up_after_its_time(listening: Server) -> None:
+def test_a_client_gives_up_after_its_timeout(listening: Server) -> None:
     with Client(ADDRESS, 0.05) as client, pytest.raises(ControlError, match=r"not answered within 0\.05 s"):
         client.ask("run")
 
 
-def test_a_client_says_what_was_refused(listening: Server) -> None:
+def test_a_client_names_the_refused_request(listening: Server) -> None:
     done = threading.Event()
 
     def work() -> None:

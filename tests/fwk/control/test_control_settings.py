@@ -64,7 +64,7 @@ def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
     assert [new.said for new in settings.check(["a/turner.fixed.deep=1"])] == [{"fixed.deep": 1}]
 
 
-def test_a_row_says_everything(settings: RunSettings) -> None:
+def test_a_row_has_all_columns(settings: RunSettings) -> None:
     assert settings.rows(["a/turner.gain"]) == [
         {
             "component": "a/turner",
@@ -80,7 +80,7 @@ def test_a_row_says_everything(settings: RunSettings) -> None:
     assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "How deep.")
 
 
-def test_new_values_are_shown_with_their_origin_once_taken(settings: RunSettings) -> None:
+def test_new_values_show_their_origin_once_in_force(settings: RunSettings) -> None:
     found = settings.check(["*/turner.gain=1", "b/turner.inner.deep=7"])
     assert [new.said for new in found] == [{"gain": 1.0}, {"gain": 1.0, "inner.deep": 7}]
     assert values(settings, "*.gain") == {"a/turner.gain": 0.3, "b/turner.gain": 0.3}
@@ -97,7 +97,7 @@ def test_new_values_are_shown_with_their_origin_once_taken(settings: RunSettings
     assert origins["a/turner.inner.deep"] == "default"
 
 
-def test_what_is_asked_for_before_the_boundary_adds_up(settings: RunSettings) -> None:
+def test_requests_before_the_boundary_add_up(settings: RunSettings) -> None:
     (first,) = settings.check(["a/turner.gain=1"])
     settings.ask(first)
     (second,) = settings.check(["a/turner.inner.deep=2"])
@@ -105,7 +105,7 @@ def test_what_is_asked_for_before_the_boundary_adds_up(settings: RunSettings) ->
     assert second.said == {"inner.deep": 2}
 
 
-def test_a_restarted_process_is_told_what_differs_from_the_plan(settings: RunSettings) -> None:
+def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings) -> None:
     assert settings.changed([0, 1]) == {}
     apply(settings, "b/turner.gain=2")
     assert list(settings.changed([0, 1])) == ["b/turner"]
@@ -149,7 +149,7 @@ def test_an_unknown_setting_is_named_with_the_nearest(settings: RunSettings, pat
         settings.rows([pattern])
 
 
-def test_a_config_takes_over_in_place() -> None:
+def test_a_config_is_updated_in_place() -> None:
     config = TurnerConfig()
     inner = config.inner
     config._take_over(TurnerConfig(gain=2, inner=Inner(deep=5), names=["x"]))

@@ -1,4 +1,4 @@
-"""Wishes for components become wishes for processes, or are refused with who stands against them."""
+"""Requests for components become requests for processes, or are refused with the components that prevent them."""
 
 import re
 from dataclasses import replace
@@ -85,7 +85,7 @@ def names(entries: list[HostProcess]) -> list[str]:
         ("restart", ["s/base"], "the process 'r/base+s/base' holds r/base as well; restart all of them"),
     ],
 )
-def test_what_cannot_be_is_refused(steering: Lifecycle, action: Action, patterns: list[str], error: str) -> None:
+def test_impossible_requests_are_refused(steering: Lifecycle, action: Action, patterns: list[str], error: str) -> None:
     with pytest.raises(RequestError, match=re.escape(error)):
         steering.hosts(action, patterns)
 
@@ -99,13 +99,13 @@ def test_a_user_does_not_start_without_its_vision_master(steering: Lifecycle, ta
     assert names(steering.hosts("start", ["r/finder", "r/camera"])) == ["r/camera", "r/finder"]
 
 
-def test_load_brings_what_is_needed_and_does_not_run(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_load_includes_needs_and_does_not_run(steering: Lifecycle, table: list[HostProcess]) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
     assert names(steering.hosts("load", ["r/finder"])) == ["r/camera", "r/finder"]
 
 
-def test_a_master_is_unloaded_once_nobody_uses_it(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_a_master_is_unloaded_once_it_has_no_users(steering: Lifecycle, table: list[HostProcess]) -> None:
     state(table, "r/finder", running=False)
     assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
     state(table, "r/finder", running=True)
@@ -124,7 +124,7 @@ def test_a_namespace_means_all_in_it(steering: Lifecycle) -> None:
     assert names(steering.hosts("restart", ["r", "s"])) == ["r/camera", "r/finder", "r/base+s/base"]
 
 
-def test_reload_looks_at_the_code_first(steering: Lifecycle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reload_checks_the_code_first(steering: Lifecycle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     broken = tmp_path / "broken.py"
     broken.write_text("x = 1\ndef (:\n")
     monkeypatch.setattr(Sources, "files", lambda *_: {broken})

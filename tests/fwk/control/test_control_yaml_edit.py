@@ -1,4 +1,4 @@
-"""One value in a YAML text changes, everything else stays as people wrote it."""
+"""One value in a YAML text changes, all other text stays as written."""
 
 import pytest
 
@@ -36,7 +36,7 @@ GAIN = ("config", "a/b", "gain")
         ("config:\n  a/b:\n    gain:\n    x: 1\n", "config:\n  a/b:\n    gain: 0.5\n    x: 1\n"),
     ],
 )
-def test_the_value_goes_where_a_person_would_put_it(before: str, after: str) -> None:
+def test_the_value_is_inserted_where_a_person_would_put_it(before: str, after: str) -> None:
     assert with_value(before, GAIN, 0.5) == after
 
 
@@ -75,7 +75,7 @@ def test_a_pattern_is_quoted() -> None:
         ("a: 1\na: 2\n", "the text is not YAML; correct it first: fwk check says where"),
     ],
 )
-def test_what_would_be_spoiled_is_refused(text: str, error: str) -> None:
+def test_a_change_that_would_damage_the_file_is_refused(text: str, error: str) -> None:
     with pytest.raises(EditError, match=error):
         with_value(text, GAIN, 0.5)
 
@@ -95,7 +95,7 @@ def test_what_would_be_spoiled_is_refused(text: str, error: str) -> None:
         ("config: {c/d: {x: 1}, 'a/b': {gain: 0.5}}", "config: {c/d: {x: 1}}"),
     ],
 )
-def test_a_value_goes_with_what_holds_nothing_else(before: str, after: str) -> None:
+def test_removal_includes_mappings_that_become_empty(before: str, after: str) -> None:
     assert without(before, GAIN) == after
 
 
@@ -110,12 +110,12 @@ def test_a_value_goes_with_what_holds_nothing_else(before: str, after: str) -> N
         ("config:\n  a/b: {gain: 1}\n  c/d: {<<: *x}\n", "the text is not YAML"),
     ],
 )
-def test_what_is_not_there_or_would_be_spoiled_is_not_taken_out(text: str, error: str) -> None:
+def test_a_missing_value_is_not_removed(text: str, error: str) -> None:
     with pytest.raises(EditError, match=error):
         without(text, GAIN)
 
 
-def test_letters_beyond_16_bits_stay_what_they_are() -> None:
+def test_letters_beyond_16_bits_stay_unchanged() -> None:
     text = with_value("", ("config", "a/b", "\U0001f916"), "\U0001f916")
     assert read(text) == {"config": {"a/b": {"\U0001f916": "\U0001f916"}}}
     assert read('{"\\ud83e\\udd16": "\\ud83e\\udd16"}') == {"\U0001f916": "\U0001f916"}

@@ -33,7 +33,7 @@ run_display(plan("tests.fwk.cli.cli_runs:headline"), socket.socket(fileno=int(sy
 
 
 class Display:
-    """A display process; `send` what the supervisor would, `read` what it shows."""
+    """A display process; `send` plays the supervisor, `read` returns what the display shows."""
 
     def __init__(self, style: str, terminal: bool, keys: bool = False) -> None:
         self._supervisor, end = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
@@ -67,7 +67,7 @@ class Display:
             self.shown += chunk
 
     def close(self) -> int:
-        """Ends the run; returns the display's exit code, with all that it showed in `shown`."""
+        """Ends the run; returns the display's exit code and sets `shown` to all of its output."""
         self._supervisor.close()
         while chunk := self._read():
             self.shown += chunk
@@ -155,7 +155,7 @@ def test_ctrl_c_is_left_to_the_supervisor(start: Callable[..., Display]) -> None
     assert display.close() == 0
 
 
-def test_ended_by_force_it_still_gives_the_cursor_back(start: Callable[..., Display]) -> None:
+def test_ended_by_force_it_still_restores_the_cursor(start: Callable[..., Display]) -> None:
     display = start()
     display.send("fwk/status", status(TRACKER, 1))
     display.read_until("tick 1 ")
@@ -174,7 +174,7 @@ def test_a_packet_that_does_not_decode_is_passed_over(start: Callable[..., Displ
 
 
 class Answers(Steering):
-    """Answers as a run would, and notes what was asked."""
+    """Answers like a run, and notes the requests."""
 
     def __init__(self) -> None:
         super().__init__(1)
@@ -193,7 +193,7 @@ class Answers(Steering):
         self.asked.append((verb, *fields.values()))
 
 
-def test_a_run_that_stands_still_names_whom_it_waits_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -> None:
     now_us = [1_000_000]
     for module in ("fwk.display.view", "fwk.display.display"):
         monkeypatch.setattr(f"{module}.monotonic_us", lambda: now_us[0])
@@ -260,7 +260,7 @@ KEYS = {
 
 
 @pytest.mark.parametrize("typed", KEYS)
-def test_keys_steer_the_run(typed: str) -> None:
+def test_keys_control_the_run(typed: str) -> None:
     view, steering = View(plan()), Answers()
     view.take(packet("fwk/status", status(TRACKER, 5)))
     display_module.press("space" if typed == " " else typed, view, steering)
@@ -290,7 +290,7 @@ def test_keys_choose_a_component_and_a_level() -> None:
     assert len(view.shown_lines()) == 1
 
 
-def test_a_terminal_is_given_back_as_it_was() -> None:
+def test_the_terminal_is_restored() -> None:
     screen, terminal = pty.openpty()
     before = termios.tcgetattr(terminal)
     with Keyboard(terminal) as keyboard:

@@ -1,4 +1,4 @@
-"""The live picture: everything that matters fits the terminal."""
+"""The live picture: all important figures fit the terminal."""
 
 from io import StringIO
 
@@ -85,7 +85,7 @@ def test_losses_are_counted_in_the_sum_and_in_the_row() -> None:
     assert row(picture, "magenta4").split()[-2:] == ["7", "0"]
 
 
-def test_before_the_first_status_it_says_that_it_starts() -> None:
+def test_before_the_first_status_it_shows_the_start() -> None:
     assert "starting ..." in drawn()
 
 
@@ -118,7 +118,7 @@ def test_long_log_lines_wrap_and_lose_nothing() -> None:
     assert shown == [f"word{number}" for number in range(60)]
 
 
-def test_a_run_that_stands_still_names_the_component(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -> None:
     now_us = [0]
     monkeypatch.setattr("fwk.display.view.monotonic_us", lambda: now_us[0])
     view = View(plan())
@@ -132,7 +132,7 @@ def test_a_run_that_stands_still_names_the_component(monkeypatch: pytest.MonkeyP
 
 
 @pytest.mark.parametrize("columns", [80, 120])
-def test_a_run_slower_than_asked_names_the_flag(columns: int) -> None:
+def test_a_run_below_the_desired_speed_names_the_flag(columns: int) -> None:
     def shown(statuses: int) -> list[str]:
         return drawn(*[status(TRACKER, 1, speed=0.3)] * statuses, columns=columns)
 

@@ -22,13 +22,13 @@ def lines(**changes: object) -> list[str]:
     return summary(plan("tests.fwk.cli.cli_runs:headline"), RunOptions(RUN_DIR, **changes), outcome)  # type: ignore[arg-type]
 
 
-def test_a_run_begins_by_saying_what_it_is_and_how_to_look_at_it() -> None:
+def test_the_first_lines_name_the_run_and_useful_commands() -> None:
     first, second = introduction(plan())
     assert first == "match: 0 components, 1 channel, 0 processes, 1 stage, 20 ticks/s"
     assert "fwk spy;" in second
 
 
-def test_a_public_bus_elsewhere_is_named_and_none_is_not() -> None:
+def test_only_an_unusual_public_bus_is_named() -> None:
     elsewhere = "udpm://239.255.76.67:7777?ttl=0"
     assert f"fwk spy --url '{elsewhere}';" in introduction(replace(plan(), public_url=elsewhere))[1]
     assert len(introduction(replace(plan(), public_url=""))) == 1
@@ -58,7 +58,7 @@ def test_the_recording_is_named_only_if_there_is_one() -> None:
     assert not any(line.startswith("recording") for line in lines())
 
 
-def test_what_the_recording_lacks_is_said() -> None:
+def test_gaps_of_the_recording_are_reported() -> None:
     outcome = Outcome(0, 1200, 60.0, 30.0, "1200 ticks done", unrecorded=7)
     said = summary(plan(), RunOptions(RUN_DIR, record=RUN_DIR / "log.lcm"), outcome)
     assert "recording: runs/1/log.lcm; 7 messages were lost on their way there" in said

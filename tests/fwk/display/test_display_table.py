@@ -22,7 +22,7 @@ def test_a_wide_terminal_shows_all_columns() -> None:
 
 
 @pytest.mark.parametrize(("width", "missing"), [(76, "pid"), (70, "ms, pid"), (20, "ms, pid")])
-def test_columns_go_before_names(width: int, missing: str) -> None:
+def test_columns_are_dropped_before_names_are_cut(width: int, missing: str) -> None:
     *rows, note = table().lines(width)
     assert f"{NAME}  running" in rows[1]
     assert sorted(note.removeprefix("(not shown, for want of room: ").rstrip(")").split(", ")) == missing.split(", ")

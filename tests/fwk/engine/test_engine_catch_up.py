@@ -1,4 +1,4 @@
-"""Who joins a run that goes on, or was away, sees of each channel the newest message only."""
+"""A component that joins a running system, or was absent, sees only the newest message of each channel."""
 
 import pytest
 
@@ -53,7 +53,7 @@ def test_view_shows_newest_message_of_joined_channel() -> None:
     assert view.take(2) == {"r/spot": [b"6", b"7"]}
 
 
-def test_view_shows_nothing_of_channel_that_was_left() -> None:
+def test_view_shows_nothing_of_a_channel_that_was_closed() -> None:
     view = InputView(CatchUp())
     view.join("r/spot", [])
     assert view.take(1) == {}
@@ -62,7 +62,7 @@ def test_view_shows_nothing_of_channel_that_was_left() -> None:
     assert view.take(2) == {}
 
 
-def test_view_does_not_change_what_other_views_got() -> None:
+def test_view_does_not_change_other_views() -> None:
     arrived = [b"1"]
     for _ in range(2):
         view = InputView(CatchUp())

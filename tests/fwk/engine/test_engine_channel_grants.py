@@ -1,4 +1,4 @@
-"""What is asked of the blackboard and what is granted, without processes."""
+"""Requests to the blackboard and the grants, without processes."""
 
 from typing import Any
 
@@ -49,7 +49,7 @@ def begun(spare_channels: int = 8) -> ChannelGrants:
 
 
 def decided(openings: ChannelGrants) -> list[tuple[str, int, str]]:
-    """Kind, component, and channel or reason."""
+    """Returns kind, component, and channel or reason."""
     facts, _ = openings.decide()
     return [(fact.kind, fact.component, fact.opening.name if fact.opening else fact.reason) for fact in facts]
 
@@ -59,7 +59,7 @@ def happened(openings: ChannelGrants) -> list[tuple[str, str, str]]:
     return [(event.kind, event.channel, event.component) for event in events]
 
 
-def test_who_comes_is_the_writer_and_reader_of_what_it_declares() -> None:
+def test_a_starting_component_writes_and_reads_what_it_declares() -> None:
     openings = ChannelGrants(plan())
     openings.came(READER, 1)
     openings.came(A, 1)
@@ -74,7 +74,7 @@ def test_who_comes_is_the_writer_and_reader_of_what_it_declares() -> None:
     assert openings.instances.writer(imu) == ""
 
 
-def test_first_open_creates_and_last_close_destroys_an_instance() -> None:
+def test_first_open_creates_and_last_close_destroys_a_channel() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["read", 1, "x/spot", *IMU]])
     assert happened(openings) == [
@@ -131,7 +131,7 @@ def test_requests_are_granted_by_tick_step_sender_and_number() -> None:
         ),
     ],
 )
-def test_what_is_refused_names_both_sides(wish: list[Any], reason: str) -> None:
+def test_a_refusal_names_both_sides(wish: list[Any], reason: str) -> None:
     components: dict[str, type[Component]] = {"a/opener": Opener, "b/opener": Opener, "c/camera": Camera}
     openings = ChannelGrants(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
     for component in range(len(components)):
@@ -155,7 +155,7 @@ def test_there_are_as_many_channels_as_the_plan_has_spare() -> None:
     assert facts[0].opening.channel == len(plan().channels)
 
 
-def test_pattern_follows_instances_of_its_type_without_owning() -> None:
+def test_pattern_follows_channels_of_its_type_without_owning() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["each", 1, "*/imu", *IMU], ["each", 2, "x/*", *IMU]])
     assert decided(openings) == [("read", A, "a/imu"), ("read", A, "b/imu")]
@@ -179,7 +179,7 @@ def test_leaving_component_closes_channels_and_voids_requests() -> None:
     assert A in openings.instances.present
 
 
-def test_who_is_busy_is_served_later() -> None:
+def test_a_busy_component_is_served_later() -> None:
     openings = begun()
     openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU]])
     openings.left(B)

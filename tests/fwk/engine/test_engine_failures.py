@@ -1,4 +1,4 @@
-"""Failures name the component, its own line and the moment."""
+"""Failures name the component, its source line and the moment."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ from fwk.lcm import messages
 from lcmtypes.core import header_t
 
 
-def test_value_that_fits_no_message_is_blamed_on_its_own_line() -> None:
+def test_value_that_fits_no_message_is_attributed_to_its_line() -> None:
     metrics = {"r/probe": ComponentMetrics("r/probe", lambda: 0)}
     failures = Failures(metrics, 0.0, lambda: None, Logger("r/probe", Clock(), lambda _: None))
     header = header_t()

@@ -1,4 +1,4 @@
-"""What a writer keeps for those who lost something."""
+"""Messages that a writer keeps for readers that lost some."""
 
 import pytest
 
@@ -9,7 +9,7 @@ def numbers(history: MessageHistory) -> list[int]:
     return [sequence for sequence, _ in history.between(0, 1_000_000)]
 
 
-def test_old_messages_go_the_newest_stay() -> None:
+def test_old_messages_are_dropped_and_the_newest_kept() -> None:
     history = MessageHistory()
     for sequence in range(1, MESSAGES_MAX + 11):
         history.add(sequence, sequence, b"x")
@@ -30,7 +30,7 @@ def test_large_messages_stay_until_the_tick_after_the_next() -> None:
     assert numbers(history) == [2, 3, 4, 5]
 
 
-def test_only_what_is_asked_for_is_given() -> None:
+def test_only_the_requested_messages_are_given() -> None:
     history = MessageHistory()
     for sequence in range(1, 6):
         history.add(1, sequence, b"%d" % sequence)

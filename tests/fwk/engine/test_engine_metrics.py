@@ -1,4 +1,4 @@
-"""What was refused: each kind named once, all counted."""
+"""Refused datagrams: each kind named once, all counted."""
 
 import pytest
 
@@ -71,11 +71,11 @@ class NoWordsError(Exception):
         (OSError("a\0b"), "OSError: a\\0b"),
     ],
 )
-def test_whatever_is_raised_can_be_told(error: BaseException, text: str) -> None:
+def test_any_exception_can_be_described(error: BaseException, text: str) -> None:
     assert told(error) == text
     assert told(error).encode()
 
 
-def test_what_is_told_is_not_endless() -> None:
+def test_descriptions_are_bounded() -> None:
     assert len(told(ValueError("x" * 100_000))) < 1100
     assert "characters more" in told(ValueError("x" * 100_000))

@@ -1,4 +1,4 @@
-"""The ledger of marks, played without processes."""
+"""The ledger of marks, without processes."""
 
 import pytest
 
@@ -65,7 +65,7 @@ def test_host_keeps_marks_for_its_components_of_later_stages() -> None:
     assert ledger.news(THINK, seen) == ([], [])
 
 
-def test_only_what_changed_since_the_last_time_is_told_again(ledger: Visibility) -> None:
+def test_only_changes_since_the_last_time_are_sent_again(ledger: Visibility) -> None:
     ledger.publish(IMU, 1)
     seen = ledger.begin()
     assert ledger.news(THINK, 0) == ([IMU], [1])
@@ -74,14 +74,14 @@ def test_only_what_changed_since_the_last_time_is_told_again(ledger: Visibility)
     assert ledger.news(THINK, seen) == ([POSE], [1])
 
 
-def test_stage_sees_its_own_messages_the_next_time(ledger: Visibility) -> None:
+def test_stage_sees_its_own_messages_in_its_next_run(ledger: Visibility) -> None:
     seen = ledger.begin()
     ledger.publish(IMU, 5)
     ledger.begin()
     assert ledger.news(WORLDSTATE, seen) == ([IMU], [5])
 
 
-def test_a_newcomer_is_told_everything(ledger: Visibility) -> None:
+def test_a_newcomer_gets_all_marks(ledger: Visibility) -> None:
     ledger.publish(IMU, 7)
     for _ in range(100):
         ledger.begin()
@@ -90,7 +90,7 @@ def test_a_newcomer_is_told_everything(ledger: Visibility) -> None:
     assert ledger.news(THINK, 0) == ([IMU, POSE], [7, 3])
 
 
-def test_an_old_mark_does_not_bring_a_newer_one_back(ledger: Visibility) -> None:
+def test_an_old_mark_does_not_lower_a_newer_one(ledger: Visibility) -> None:
     ledger.publish(IMU, 7)
     ledger.publish(IMU, 6)
     ledger.begin()

@@ -1,4 +1,4 @@
-"""The gateway's board and its log for programs, without a run."""
+"""The gateway's channel server and its log for programs, without a run."""
 
 import json
 import os
@@ -35,7 +35,7 @@ class Reader(Component):
     pose: Writes[pose_t]
 
 
-PORT = 100_000 + os.getpid()  # names a socket, is none
+PORT = 100_000 + os.getpid()  # names a socket that does not exist
 
 
 @pytest.fixture
@@ -72,7 +72,7 @@ def heard(connection: socket.socket) -> list[dict[str, Any]]:
     return [json.loads(line) for line in connection.recv(1 << 20).splitlines()]
 
 
-def test_channels_are_listed_with_what_came_last(board: ChannelServer, connection: socket.socket) -> None:
+def test_channels_are_listed_with_their_newest_messages(board: ChannelServer, connection: socket.socket) -> None:
     board.message("a/imu", imu(1.5, 7), 0)
     first, second = ask(board, connection, verb="channels")["channels"]
     assert (first["channel"], first["type"], first["writer"], first["readers"]) == (
@@ -93,7 +93,7 @@ def test_the_newest_message_is_shown_by_fields(board: ChannelServer, connection:
     assert (answer["value"]["heading_rad"], answer["sequence"]) == (2.5, 2)
 
 
-def test_who_watches_gets_each_new_message_of_that_channel(board: ChannelServer, connection: socket.socket) -> None:
+def test_a_watcher_gets_each_new_message_of_that_channel(board: ChannelServer, connection: socket.socket) -> None:
     ask(board, connection, verb="watch", channel="a/imu")
     for sequence in (1, 2):
         board.message("a/imu", imu(0.5 * sequence, sequence), 0)
@@ -106,7 +106,7 @@ def test_an_unknown_channel_is_refused_with_the_nearest(board: ChannelServer, co
     assert answer == {"ok": False, "error": "no channel 'a/imi'; did you mean 'a/imu'?"}
 
 
-def test_bytes_that_do_not_decode_are_an_answer_too(board: ChannelServer, connection: socket.socket) -> None:
+def test_bytes_that_do_not_decode_are_shown_too(board: ChannelServer, connection: socket.socket) -> None:
     board.message("a/imu", imu(1.0, 1)[:-3], 0)
     assert "do not decode" in ask(board, connection, verb="watch", channel="a/imu")["error"]
     board.message("a/imu", imu(1.0, 2), 0)
@@ -140,7 +140,7 @@ def test_the_log_for_programs_keeps_every_field(tmp_path: Path) -> None:
     assert messages.to_dict(from_plain(read)) == messages.to_dict(written)
 
 
-def test_what_is_written_later_is_read_too(tmp_path: Path) -> None:
+def test_messages_written_later_are_read_too(tmp_path: Path) -> None:
     log = JsonLog(RotatingFile(tmp_path / "log", 1000, 1, pytest.fail))
     log.message("fwk/log", line(tick=1).encode(), 0)
     looks = iter((True, True, False))

@@ -1,4 +1,4 @@
-"""The gateway follows tick records: what it records, in which order, what it asks for, and for whom it answers."""
+"""The gateway follows tick records: contents and order of the recording, its fetches, and the fetches it answers."""
 
 import socket
 from collections.abc import Iterator
@@ -46,7 +46,7 @@ class Kept:
 
 
 class Followed:
-    """A gateway with everybody around it played by the test: `publish` and `record`, then `serve`."""
+    """A gateway with its surroundings played by the test: `publish` and `record`, then `serve`."""
 
     def __init__(self, base: int) -> None:
         made = plan(base)
@@ -79,16 +79,16 @@ class Followed:
         self.supervisor.publish(b"fwk/record", made.encode(), self.ports.record)
 
     def serve(self) -> None:
-        """Lets it deal with what has been sent so far, and end."""
+        """Lets the gateway process everything sent so far, and end."""
         self._ours.close()
         self._network.run(self.gateway.serve())
 
     def receive(self) -> None:
-        """Lets it deal with the records that have been sent so far."""
+        """Lets the gateway process the records sent so far."""
         self._network.run(self.gateway._receive_records())
 
     def ask(self, host: int, first: int, last: int) -> None:
-        """A fetch passed on by the writer in whose place the gateway shall answer."""
+        """Sends a fetch that the writer passes on, in whose place the gateway answers."""
         fetch = fetch_t()
         fetch.run, fetch.host, fetch.channel, fetch.first_sequence, fetch.last_sequence = RUN, host, 0, first, last
         self.writer.send(b"fwk/fetch", fetch.encode(), self.ports.host(self.ports.gateway))
@@ -115,7 +115,7 @@ def gone_of(message: tuple[bytes, bytes] | None) -> tuple[int, int]:
     return gone.first_sequence, gone.last_sequence
 
 
-def test_recording_holds_exactly_what_the_marks_name(followed: Followed) -> None:
+def test_recording_holds_exactly_the_messages_of_the_marks(followed: Followed) -> None:
     followed.publish(1, 2, 3)
     followed.record(1, mark=2)
     followed.record(2)
@@ -125,7 +125,7 @@ def test_recording_holds_exactly_what_the_marks_name(followed: Followed) -> None
     assert followed.kept.closed
 
 
-def test_records_are_taken_in_order_and_once_whatever_comes_when(followed: Followed) -> None:
+def test_records_are_taken_in_order_and_once(followed: Followed) -> None:
     followed.publish(1, 2, 3)
     for tick, mark in ((3, 3), (1, 1), (3, 3), (2, 2), (1, 1)):
         followed.record(tick, mark)
@@ -134,7 +134,7 @@ def test_records_are_taken_in_order_and_once_whatever_comes_when(followed: Follo
     assert followed.kept.sequences == [1, 2, 3]
 
 
-def test_a_record_that_is_missing_is_asked_for(followed: Followed) -> None:
+def test_a_missing_record_is_fetched(followed: Followed) -> None:
     followed.record(1)
     followed.record(4)
     followed.serve()
@@ -145,7 +145,7 @@ def test_a_record_that_is_missing_is_asked_for(followed: Followed) -> None:
     assert (message[0], fetch.first_tick, fetch.last_tick) == (b"fwk/fetch_records", 2, 3)
 
 
-def test_another_runs_records_are_not_taken(followed: Followed) -> None:
+def test_records_of_another_run_are_refused(followed: Followed) -> None:
     followed.record(1, run=RUN + 1)
     followed.serve()
     assert followed.kept.ticks == []
@@ -161,7 +161,7 @@ def test_messages_beyond_a_dead_writers_marks_go_unrecorded(followed: Followed) 
 
 
 def test_gateway_answers_for_a_dead_writer_with_two_ticks(followed: Followed) -> None:
-    followed.publish(1, 2, 3, 4)  # in the ticks of these numbers
+    followed.publish(1, 2, 3, 4)  # in the ticks with these numbers
     for tick in range(1, 5):
         followed.record(tick, mark=tick)
     followed.receive()
@@ -177,7 +177,7 @@ def test_gateway_answers_for_a_dead_writer_with_two_ticks(followed: Followed) ->
     ears.close()
 
 
-def test_it_keeps_the_newest_of_who_has_not_written_for_long(followed: Followed) -> None:
+def test_the_newest_message_of_a_quiet_writer_is_kept(followed: Followed) -> None:
     followed.publish(1)
     for tick in range(1, 9):
         followed.record(tick, mark=1)
@@ -187,7 +187,7 @@ def test_it_keeps_the_newest_of_who_has_not_written_for_long(followed: Followed)
     assert received(followed.reader, followed.ports) is None
 
 
-def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) -> None:
+def test_an_unobtainable_message_is_given_up_and_logged(followed: Followed) -> None:
     followed.publish(2)
     followed.record(1, mark=2)
     followed.ask(host=followed.ports.gateway, first=1, last=1)
@@ -199,7 +199,7 @@ def test_what_nobody_has_is_given_up_and_named_in_the_log(followed: Followed) ->
 
 
 def test_a_record_that_the_plan_cannot_have_is_refused(followed: Followed) -> None:
-    """It comes from the supervisor's port; the gateway names it and works on."""
+    """The record comes from the supervisor's port; the gateway names it and continues."""
     for damage in (b"", b"x" * 40, tick_record_t().encode()[:30]):
         followed.supervisor.publish(b"fwk/record", damage, followed.ports.record)
     strange = tick_record_t()

@@ -1,4 +1,4 @@
-"""What other programs publish on channels that a plan opens to them: what is taken in, as what, and how much."""
+"""Messages of other programs on channels that a plan opens to them: acceptance, stamps, and limits."""
 
 import socket
 from collections.abc import Iterator
@@ -31,7 +31,7 @@ class Obeys(Component):
 
 
 class Opened:
-    """A gateway on a public bus of its own, another program there, and a main loop played by the test."""
+    """A gateway on a separate public bus, another program there, and a main loop played by the test."""
 
     def __init__(self, ports: PortBlock) -> None:
         outside = {WISH: "robot.motor_command_t", "r/shared": "robot.imu_t"}
@@ -154,7 +154,7 @@ def test_flood_is_bounded_and_reported_until_the_next_tick(opened: Opened) -> No
     assert opened.gateway._ingress.marks == {opened.channel: WAITING_MAX + 1}
 
 
-def test_one_look_at_the_public_bus_ends_however_much_comes(opened: Opened) -> None:
+def test_one_read_of_the_public_bus_ends_under_any_load(opened: Opened) -> None:
     for _ in range(600):
         opened.other.publish("somebody/else", b"12345678")
     assert opened.gateway._hear_outside()

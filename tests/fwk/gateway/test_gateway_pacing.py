@@ -1,4 +1,4 @@
-"""What the gateway publishes leaves in small groups, in order, within a tick, as listeners handle it."""
+"""The gateway publishes in small groups, in order, within a tick, at the rate that listeners handle."""
 
 from collections.abc import Callable
 
@@ -11,7 +11,7 @@ PATIENCE_US = 400_000
 
 
 class Paced:
-    """A publisher on a clock that the test moves; `groups` has the sizes of what left at once."""
+    """A publisher on a clock that the test moves; `groups` holds the number of datagrams sent at once."""
 
     def __init__(self) -> None:
         self.now_us = 1_000_000
@@ -21,12 +21,12 @@ class Paced:
         self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append, lambda: self.busy, PATIENCE_US)
 
     def tick(self, count: int, datagram: Callable[[int], bytes] = lambda number: b"%d" % number) -> None:
-        """A tick is over, in which so many datagrams were written."""
+        """Ends a tick in which so many datagrams were written."""
         self.publisher.put(datagram(number) for number in range(count))
         self.publisher.tick()
 
     def pass_time(self, duration_us: int) -> None:
-        """Lets time pass; the publisher is called when it asked to be."""
+        """Lets time pass; calls the publisher at the times that it requests."""
         end_us = self.now_us + duration_us
         while max(self.publisher.due_us, self.now_us) < end_us:
             self.now_us = max(self.publisher.due_us, self.now_us)
@@ -102,7 +102,7 @@ def test_large_datagrams_count_as_several() -> None:
     assert len(paced.sent) <= 2
 
 
-def test_what_exceeds_the_queue_leaves_at_once() -> None:
+def test_datagrams_beyond_the_queue_leave_at_once() -> None:
     paced = Paced()
     paced.tick(QUEUE_MAX + 1000)
     paced.publisher.send_due()

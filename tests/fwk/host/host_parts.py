@@ -1,4 +1,4 @@
-"""Two hosts' worth of plan: a writer, and readers beside it and elsewhere."""
+"""A plan of two hosts: a writer, with readers beside it and elsewhere."""
 
 from fwk import Component, Reads, Writes
 from fwk.model.plan import Plan
@@ -19,13 +19,13 @@ class Thinks(Component):
 
 
 def plan(bus_port: int, together: bool = False) -> Plan:
-    """Writer and reader in host 0 and 1, or both in host 0."""
+    """A plan with writer and reader in host 0 and 1, or both in host 0."""
     groups = [["r/senses", "r/thinks"]] if together else None
     return plan_of({"r/senses": Senses, "r/thinks": Thinks}, groups=groups, bus_port=bus_port)
 
 
 def imu(sequence: int, writer: str = "r/senses") -> bytes:
-    """A message with this number."""
+    """Returns a message with this number."""
     made = imu_t()
     made.header.sequence, made.header.writer, made.header.tick = sequence, writer, sequence
     return made.encode()

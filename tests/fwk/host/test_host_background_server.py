@@ -1,4 +1,4 @@
-"""The thread that serves other processes while an iteration runs, and only then."""
+"""The thread that serves other processes only while an iteration runs."""
 
 import os
 import threading

@@ -1,4 +1,4 @@
-"""Debuggers are looked for before anything starts."""
+"""Debuggers are looked for before any process starts."""
 
 import sys
 
@@ -15,7 +15,7 @@ class Senses(Component):
     imu: Writes[imu_t]
 
 
-def test_missing_debugger_is_named_with_what_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_debugger_is_named_with_the_command_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "debugpy", None)
     component = plan_of({"r/senses": Senses}).components[0]
     with pytest.raises(DebuggerMissingError, match="pip install debugpy"):

@@ -1,4 +1,4 @@
-"""What a host reads and sends, without its process: waiting, asking, answering, giving up."""
+"""Inputs and outputs of a host without its process: waits, fetches, answers, and losses."""
 
 import threading
 from collections.abc import Callable, Iterator, Sequence
@@ -25,7 +25,7 @@ RUN = 4711
 
 
 class Pair:
-    """A writer's and a reader's ends of one channel, in this process; `weather` decides what gets through."""
+    """Writer's and reader's ends of one channel in this process; `weather` decides which datagrams arrive."""
 
     def __init__(self, base: int, together: bool = False, before: int = 0, restarted: bool = False) -> None:
         made = plan(base, together)
@@ -60,7 +60,7 @@ class Pair:
             each.socket.close()
 
     def serve(self) -> bool:
-        """The writer answers, the reader takes the answer."""
+        """Lets the writer answer and the reader take the answer."""
         for end in (self.writer_socket, self.reader_socket):
             while message := received(end, self.ports):
                 if message[0] == b"fwk/fetch":
@@ -71,11 +71,11 @@ class Pair:
         return len(self.asked) < 20
 
     def wait(self, moved: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> bool:
-        """Waits until everything visible in `moved` is here, or `serve` returns False."""
+        """Waits until all visible messages of `moved` have arrived, or `serve` returns False."""
         return self.network.run(self.inputs.fetch(self.inputs.collect(moved), serve))
 
     def take(self, mark: int) -> list[int]:
-        """The sequence numbers that a reader gets when the mark has come to `mark`."""
+        """Returns the sequence numbers that a reader gets when the mark is `mark`."""
         moved = self.inputs.advance([0], [mark], [])
         assert self.wait(moved, self.serve)
         return [sequence_of(data) for box in moved for data in box.take()]
@@ -97,7 +97,7 @@ def make(ports: PortBlock) -> Iterator[Make]:
         each.close()
 
 
-def test_what_a_mark_names_is_waited_for_and_no_more_is_given(make: Make) -> None:
+def test_exactly_the_marked_messages_are_waited_for_and_given(make: Make) -> None:
     pair = make()
     assert pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2)), (IMU, imu(3))]) == {0: 3}
     assert pair.take(2) == [1, 2]
@@ -105,7 +105,7 @@ def test_what_a_mark_names_is_waited_for_and_no_more_is_given(make: Make) -> Non
     assert pair.asked == []
 
 
-def test_what_was_lost_is_asked_for_and_comes_again(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lost_messages_are_fetched(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     pair = make()
     with monkeypatch.context() as storm:
         storm.setattr(pair.writer_socket, "publish", lambda *_: None)
@@ -117,7 +117,7 @@ def test_what_was_lost_is_asked_for_and_comes_again(make: Make, monkeypatch: pyt
     assert pair.inputs.lost == 0
 
 
-def test_what_the_writer_no_longer_has_is_counted_as_lost(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_messages_that_are_gone_are_counted_as_lost(make: Make, monkeypatch: pytest.MonkeyPatch) -> None:
     pair = make()
     with monkeypatch.context() as storm:
         storm.setattr(pair.writer_socket, "publish", lambda *_: None)
@@ -146,7 +146,7 @@ def test_large_message_passes_a_buffer_of_one_fragment(make: Make, monkeypatch: 
     assert moved[0].take() == [large]
 
 
-def test_a_wait_ends_when_the_process_is_to_stop(make: Make) -> None:
+def test_a_stop_request_ends_a_wait(make: Make) -> None:
     pair = make()
     moved = pair.inputs.advance([0], [1], [])
     assert not pair.wait(moved, lambda: False)
@@ -160,7 +160,7 @@ def test_a_reader_in_the_same_process_needs_no_socket(make: Make, monkeypatch: p
     assert pair.take(1) == [1]
 
 
-def test_a_newcomer_takes_the_newest_of_what_is_visible(make: Make) -> None:
+def test_a_newcomer_takes_the_newest_visible_message(make: Make) -> None:
     pair = make()
     pair.outputs.publish([(IMU, imu(number)) for number in (1, 2, 3)])
     moved = pair.inputs.advance([0], [3], [])
@@ -196,7 +196,7 @@ def test_restarted_process_fetches_its_own_past_from_the_gateway(make: Make) -> 
 
 def test_unfinished_messages_of_a_dead_writer_are_dropped(make: Make) -> None:
     pair = make()
-    pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])  # of 2 the done never came
+    pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])  # the done for message 2 never came
     void = void_t()
     void.channel, void.above_sequence, void.up_to_tick, void.before_incarnation = 0, 1, 2, 2
     moved = pair.inputs.advance([0], [1], [void])
@@ -209,7 +209,7 @@ def test_unfinished_messages_of_a_dead_writer_are_dropped(make: Make) -> None:
     assert moved[0].take() == [successor]
 
 
-def test_news_that_something_is_gone_does_not_drop_what_is_here(make: Make) -> None:
+def test_a_gone_answer_does_not_drop_messages_that_are_here(make: Make) -> None:
     pair = make()
     pair.outputs.publish([(IMU, imu(1)), (IMU, imu(2))])
     moved = pair.inputs.advance([0], [2], [])
@@ -220,7 +220,7 @@ def test_news_that_something_is_gone_does_not_drop_what_is_here(make: Make) -> N
     assert [sequence_of(data) for data in moved[0].take()] == [1, 2]
 
 
-def test_a_stranger_cannot_ask_or_answer(make: Make) -> None:
+def test_a_foreign_process_cannot_fetch_or_answer(make: Make) -> None:
     pair = make()
     stranger = Sender(pair.ports.end + 1, pair.network)
     stranger.send(b"fwk/gone", gone_t().encode(), pair.ports.host(1))

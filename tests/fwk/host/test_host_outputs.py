@@ -1,4 +1,4 @@
-"""What a host sends, and sends again, on channels that were opened at run time."""
+"""Messages that a host sends, and sends again, on dynamic channels."""
 
 from collections.abc import Iterator
 
@@ -16,7 +16,7 @@ ASKS = 1  # host
 
 
 class Sent(Sender):
-    """Writes down instead of sending: what, and to which port."""
+    """Notes datagrams and their ports instead of sending them."""
 
     def __init__(self) -> None:
         self.messages: list[tuple[bytes, bytes, int]] = []
@@ -45,7 +45,7 @@ def fetch(first: int, last: int) -> fetch_t:
 
 
 def passed_on(sent: Sent, ports: Ports) -> list[tuple[int, int]]:
-    """Ranges that the gateway was asked for."""
+    """Returns the ranges that were requested from the gateway."""
     asked = [fetch_t.decode(data) for name, data, port in sent.messages if port == ports.host(ports.gateway)]
     return [(each.first_sequence, each.last_sequence) for each in asked]
 
@@ -55,7 +55,7 @@ def test_messages_of_other_writers_come_from_the_gateway(ports: Ports) -> None:
     outputs = Outputs({}, ports, sent, {}, {}, lambda: 0)
     outputs.open(INDEX, CHANNEL)
     outputs.publish([(CHANNEL, imu(3)), (CHANNEL, imu(4))])
-    outputs.open(INDEX, CHANNEL)  # closed, written by somebody else up to 6, and opened again
+    outputs.open(INDEX, CHANNEL)  # closed, written by another component up to 6, and opened again
     outputs.publish([(CHANNEL, imu(7))])
     sent.messages.clear()
     outputs.answer(fetch(1, 8))

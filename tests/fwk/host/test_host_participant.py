@@ -28,7 +28,7 @@ class Sensor(Component):
 
 
 class Counter(Component):
-    """Says how many messages it saw and which was the newest; fails when that is negative."""
+    """Reports how many messages it saw and the newest one; fails if that is negative."""
 
     imu: Reads[imu_t]
     pose: Writes[pose_t]
@@ -54,7 +54,7 @@ class SteadyReader(Counter):
 
 
 class Opener(Component):
-    """Opens the channel of the sensor, and again when it is told to close it."""
+    """Opens the channel of the sensor, and again when told to close it."""
 
     stage = "think"
     blackboard: Blackboard
@@ -116,7 +116,7 @@ def test_host_runs_iteration_on_visible_messages_alone() -> None:
     told.sense(1.0, 2.0)
     told.ledger.begin()
     tick = told.host.compose(1, 3, 50_000, -1)
-    told.sense(3.0)  # there, and not visible
+    told.sense(3.0)  # arrived, but not visible
     written, done = told.host.tick(tick, THINK)
     assert seen(written) == (2.0, 2.0)
     assert (done.kind, done.tick, done.step, done.host) == (done_t.STAGE, 1, 3, READER)
@@ -208,5 +208,5 @@ def test_channel_closed_and_read_again_begins_with_newest() -> None:
     assert told.tick(1) == (1.0, 1.0)
     told.host.runners["r/reader"].component.reopen()  # type: ignore[attr-defined]
     decide(told, 2, fact(told, "close", 1), fact(told, "read", 2))
-    told.sense(2.0, 3.0)  # between the decision and the tick that tells it
+    told.sense(2.0, 3.0)  # between the decision and the tick that carries it
     assert told.tick(2) == (1.0, 3.0)

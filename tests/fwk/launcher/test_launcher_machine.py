@@ -1,4 +1,4 @@
-"""What a run needs of the machine is checked before any process starts, and told with what would be right."""
+"""Requirements of a run on the machine are checked before any process starts, with advice."""
 
 import resource
 import socket
@@ -50,7 +50,7 @@ def test_a_control_name_of_another_process_is_named(plan: Plan, address: type) -
 
 
 def test_an_interface_that_is_down_is_named(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(machine, "LOOPBACK", "192.0.2.1")  # of no interface here
+    monkeypatch.setattr(machine, "LOOPBACK", "192.0.2.1")  # the address of no local interface
     with pytest.raises(MachineError, match=r"no IPv4 multicast on the interface lo: .*; type: sudo ip link set lo up"):
         check_machine(plan)
 
@@ -88,12 +88,12 @@ def crowd(plan: Plan, robots: int, processes: int) -> Plan:
         (2, 8, []),
     ],
 )
-def test_too_few_cores_are_told_with_the_flag_that_helps(
+def test_too_few_cores_are_reported_with_the_helpful_flag(
     plan: Plan, robots: int, processes: int, words: list[str]
 ) -> None:
     assert advice(crowd(plan, robots, processes), cores=2, free_bytes=64 << 30) == words
 
 
-def test_too_little_memory_is_told_with_the_flag_that_helps(plan: Plan) -> None:
+def test_too_little_memory_is_reported_with_the_helpful_flag(plan: Plan) -> None:
     (line,) = advice(crowd(plan, 10, 104), cores=64, free_bytes=500 << 20)
     assert "104 processes need some 1398 MB of memory, and 500 MB are free: start the run with --hosting robot" in line

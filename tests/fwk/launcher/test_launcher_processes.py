@@ -1,4 +1,4 @@
-"""Processes of a run as other programs see them: their names, and ports that nobody can take."""
+"""Processes of a run as other programs see them: their names, and ports that no other process can take."""
 
 import errno
 import json
@@ -30,7 +30,7 @@ def traced(folder: Path) -> Path:
 
 
 def titles(run: Launched) -> dict[str, str]:
-    """Full name to short name of all processes, as ps and top read them."""
+    """Returns full name to short name of all processes, as ps and top read them."""
     found = {}
     for process in run.processes():
         proc = Path("/proc", str(process.pid))
@@ -68,7 +68,7 @@ def test_port_of_a_killed_host_cannot_be_taken(launch: Launch, traced: Path, por
     assert run.wait() == 0, run.text
 
 
-def test_used_port_is_named_before_anything_starts(launch: Launch, traced: Path, ports: PortBlock) -> None:
+def test_a_used_port_is_named_before_any_process_starts(launch: Launch, traced: Path, ports: PortBlock) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         port = Ports(ports.bus, 1, 0).host(0)
         other.bind(("127.0.0.1", port))

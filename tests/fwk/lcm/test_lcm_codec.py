@@ -1,4 +1,4 @@
-"""The codec makes and reads the very bytes of lcm-gen's code, for every shape of member that LCM knows."""
+"""The codec writes and reads the same bytes as lcm-gen's code, for every kind of member that LCM has."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -48,12 +48,12 @@ def shapes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 def shape(name: str) -> Any:
-    """A type of `SHAPES`."""
+    """Returns a type of `SHAPES`."""
     return messages.type_named(f"shapes.{name}")
 
 
 def filled(draw: Draw, message_type: Any, depth: int = 0) -> Any:
-    """A message with any values."""
+    """Draws a message with any values."""
     made = message_type()
     counts: dict[str, int] = {}
     for name, kind, dimensions in zip(
@@ -97,7 +97,7 @@ def value(draw: Draw, kind: str, depth: int) -> Any:
 
 
 def shown(message: Any) -> str:
-    """Everything in a message; NaN equals NaN."""
+    """Returns all values of a message; NaN equals NaN."""
     return repr(to_dict(message))
 
 
@@ -130,7 +130,7 @@ def test_any_bytes_give_a_message_or_a_clear_error(name: str, rest: bytes) -> No
         messages.decode(message_type, messages.fingerprint(message_type) + rest, "channel")
 
 
-def test_usual_shapes_are_written_here_rare_ones_left_to_lcm_gen() -> None:
+def test_usual_shapes_use_this_codec_and_rare_ones_lcm_gen() -> None:
     for name in NAMES:
         rare = name in ("rare_t", "tree_t")
         message_type = shape(name)
@@ -154,7 +154,7 @@ def test_arrays_of_a_fixed_size_have_that_size() -> None:
         messages.encode(message, "channel")
 
 
-def test_the_projects_own_types_are_all_of_usual_shapes() -> None:
+def test_the_projects_types_are_all_of_usual_shapes() -> None:
     root = Path(messages.__file__).parents[2]
     names = [f"{file.parent.name}.{file.stem}" for file in sorted(root.glob("lcmtypes/*/*_t.py"))]
     assert len(names) > 40

@@ -1,4 +1,4 @@
-"""Types without our header inside a run: what readers see of them, and what stands outside in their place."""
+"""Types without a header: what readers inside a run see, and what is recorded and published outside."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ STICK, MOTORS = "STICK", "r/motor"
 
 
 class Driver(Component):
-    """`obstacle_t` stands for a device's type: it has no header."""
+    """A driver whose device type `obstacle_t` has no header."""
 
     stage = "think"
     stick: Reads[obstacle_t] = channel("/STICK", history=2)
@@ -73,7 +73,7 @@ def test_device_messages_pass_unchanged_in_both_directions(system: MemorySystem)
 
 
 @pytest.mark.parametrize(("sticks", "told"), [([0.0], 11), ([0.5], 11), ([0.5, 0.5], 10), ([0.5, 0.25], 11), ([], 0)])
-def test_all_bytes_of_it_count_as_change(sticks: list[float], told: float) -> None:
+def test_a_difference_in_any_byte_counts_as_a_change(sticks: list[float], told: float) -> None:
     bench = Bench(Driver)
     for x_m in sticks:
         bench.port("stick").put(x_m=x_m)
@@ -84,7 +84,7 @@ def test_all_bytes_of_it_count_as_change(sticks: list[float], told: float) -> No
     assert bench.port("total").sent[-1].heading_rad == sum(sticks)
 
 
-def test_the_bench_stamps_it() -> None:
+def test_the_bench_stamps_messages_without_a_header() -> None:
     bench, header = Bench(Driver), header_t()
     header.tick, header.time_us, header.writer = 7, 350_000, "outside"
     bench.port("stick").put(obstacle(1.0), header=header)
@@ -93,7 +93,7 @@ def test_the_bench_stamps_it() -> None:
     assert (seen.tick, seen.time_us, seen.writer, seen.sequence) == (7, 350_000, "outside", 1)
 
 
-def test_what_a_field_cannot_hold_is_named() -> None:
+def test_a_value_that_a_field_cannot_hold_is_named() -> None:
     bench = Bench(Driver)
     bench.component.motor.value.y_m = "left"
     with pytest.raises(MessageError, match=r"robot/motor: cannot encode soccer\.obstacle_t: y_m is 'left'"):
@@ -118,7 +118,7 @@ def stamped(x_m: float, sequence: int, tick: int = 3, writer: str = "r/drivér#2
     return envelope.wrapped(obstacle(x_m).encode(), tick, sequence, 50_000 * tick, 5, writer)
 
 
-def test_outside_a_stamp_goes_before_the_plain_message() -> None:
+def test_outside_a_stamp_precedes_the_plain_message() -> None:
     kept = Kept()
     sink = Unwrap(kept, {MOTORS})
     imu = imu_t().encode()
@@ -135,7 +135,7 @@ def test_outside_a_stamp_goes_before_the_plain_message() -> None:
 
 
 def written(path: Path, made: list[bytes], without: int = -1) -> Path:
-    """A log of messages on MOTORS, a stranger between stamp and message; one stamp may be left out."""
+    """Returns a log of messages on MOTORS, with a foreign message between stamp and message."""
     kept = Kept()
     sink = Unwrap(kept, {MOTORS})
     for data in made:
@@ -151,7 +151,7 @@ def written(path: Path, made: list[bytes], without: int = -1) -> Path:
 MADE = [stamped(0.5, 1), stamped(0.5, 2), stamped(0.75, 3)]
 
 
-def test_a_log_gives_back_what_stood_in_the_run(tmp_path: Path) -> None:
+def test_a_log_gives_back_the_messages_of_the_run(tmp_path: Path) -> None:
     log = written(tmp_path / "log", MADE)
     assert [event.data for event in StampedLog(log) if event.channel == MOTORS] == MADE
     assert [event.data for event in LogReader(log) if event.channel == MOTORS] == [envelope.content(m) for m in MADE]
@@ -178,13 +178,13 @@ def test_logs_are_compared_with_stamps_and_bytes(tmp_path: Path, other: list[byt
     assert found == "None" or found.startswith(f"{MOTORS}: tick 3, stage 5, ")
 
 
-def test_a_stamp_that_is_not_there_is_a_difference(tmp_path: Path) -> None:
+def test_a_missing_stamp_is_a_difference(tmp_path: Path) -> None:
     whole, lacking = written(tmp_path / "A", MADE), written(tmp_path / "B", MADE, without=1)
     assert "message 2 by r/drivér#2: its stamp is there in A, missing in B" in str(compare(whole, lacking))
     assert "message 2 by r/drivér#2: its stamp is missing in B, there in A" in str(compare(lacking, whole))
 
 
-def test_after_damage_no_stamp_is_given_to_another_message(tmp_path: Path) -> None:
+def test_after_damage_no_message_gets_the_stamp_of_another(tmp_path: Path) -> None:
     log = written(tmp_path / "log", MADE)
     whole = log.read_bytes()
     messages = [envelope.content(data) for data in MADE]

@@ -1,4 +1,4 @@
-"""The log writer and reader against LCM's own, and against torn, damaged and hostile files."""
+"""The log writer and reader against LCM's own, and with torn, damaged and hostile files."""
 
 import os
 import random
@@ -31,7 +31,7 @@ def write(path: Path, events: list[Event] = EVENTS) -> Path:
 
 
 def starts(path: Path) -> list[int]:
-    """Where each event begins."""
+    """Returns the offset of each event."""
     found, position = [], 0
     data = path.read_bytes()
     while position < len(data):
@@ -41,12 +41,12 @@ def starts(path: Path) -> list[int]:
     return found
 
 
-def test_lcm_reads_what_the_writer_wrote(tmp_path: Path) -> None:
+def test_lcm_reads_files_of_the_writer(tmp_path: Path) -> None:
     read = [Event(e.eventnum, e.timestamp, e.channel, e.data) for e in lcm.EventLog(str(write(tmp_path / "log")))]
     assert read == EVENTS
 
 
-def test_the_reader_reads_what_lcm_wrote(tmp_path: Path) -> None:
+def test_the_reader_reads_files_of_lcm(tmp_path: Path) -> None:
     log = lcm.EventLog(str(tmp_path / "log"), "w")
     for event in EVENTS:
         log.write_event(event.time_us, event.channel, event.data)
@@ -97,7 +97,7 @@ def test_a_damaged_sync_word_costs_that_event_and_the_one_before(tmp_path: Path)
 
 @pytest.mark.parametrize("end", [3000, *range((1 << 20) - 4, (1 << 20) + 2), 3 << 20])
 def test_reading_goes_on_behind_foreign_bytes(tmp_path: Path, end: int) -> None:
-    """The hole ends at byte `end`, also where the reader's buffer cuts the next sync word."""
+    """The damage ends at byte `end`, also where the reader's buffer cuts the next sync word."""
     path = write(tmp_path / "log")
     data, before, begin = path.read_bytes(), *starts(path)[9:11]
     path.write_bytes(data[:begin] + b"\xed" * (end - begin) + data[begin:])
@@ -115,7 +115,7 @@ def test_no_bytes_make_the_reader_crash(tmp_path_factory: pytest.TempPathFactory
     assert used + reader.skipped_bytes <= path.stat().st_size
 
 
-def test_a_file_of_nothing_but_sync_words_is_passed_over(tmp_path: Path) -> None:
+def test_a_file_of_sync_words_alone_is_skipped(tmp_path: Path) -> None:
     path = tmp_path / "log"
     path.write_bytes(b"\xed\xa1\xda\x01" * 50_000)
     reader = LogReader(path)
@@ -170,7 +170,7 @@ def test_full_disk_is_reported_once_and_writing_resumes(tmp_path: Path) -> None:
     assert "there is room again; 2 messages are missing" in said[1]
 
 
-def test_a_disk_that_is_full_from_the_beginning_stops_nobody() -> None:
+def test_a_disk_full_from_the_beginning_stops_no_process() -> None:
     said: list[str] = []
     writer = LogWriter(Path("/dev/full"), said.append, buffer_bytes=1)
     for number in range(5):
@@ -195,7 +195,7 @@ def test_refusals_name_the_file(tmp_path: Path) -> None:
         assert str(caught.value).startswith(text)
 
 
-def test_what_no_lcm_message_is_is_not_written(tmp_path: Path) -> None:
+def test_a_message_that_lcm_cannot_hold_is_not_written(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "log", refuse) as writer:
         for channel in ("", "x" * 1000):
             with pytest.raises(ValueError, match="no LCM event"):

@@ -1,4 +1,4 @@
-"""Messages that cannot be encoded are named with the member, its path and its shape; messages made of plain data."""
+"""Messages that cannot be encoded are named with the member, its path and its shape; messages from plain data."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""The jar of types for lcm-spy: what is in it, when it is built again, and what is said when it cannot be."""
+"""The jar of types for lcm-spy: its contents, its rebuilds, and the messages when it cannot be built."""
 
 import zipfile
 from collections.abc import Callable
@@ -32,14 +32,14 @@ def test_the_jar_is_built_once_for_each_content(tmp_path: Path, needs: Needs, mo
     assert spy.build_jar([types], cache) != built
 
 
-def test_of_two_definitions_the_first_folders_counts(tmp_path: Path, needs: Needs) -> None:
+def test_of_two_definitions_the_first_folders_is_used(tmp_path: Path, needs: Needs) -> None:
     needs("javac", "jar")
     first, second = folder(tmp_path / "a", "same", "double aaa"), folder(tmp_path / "b", "same", "double bbb")
     with zipfile.ZipFile(spy.build_jar([first, second], tmp_path / "cache")) as jar:
         assert b"aaa" in jar.read("same/thing_t.class")
 
 
-def test_what_java_refuses_is_shown_with_its_likely_cause(tmp_path: Path, needs: Needs) -> None:
+def test_errors_of_the_java_compiler_are_explained(tmp_path: Path, needs: Needs) -> None:
     needs("javac", "jar")
     with pytest.raises(spy.SpyError) as caught:
         spy.build_jar([folder(tmp_path / "types", "bad", "boolean final")], tmp_path / "cache")

@@ -1,4 +1,4 @@
-"""Classes made of .lcm files: what lcm-gen writes, completed, and kept in step with the files."""
+"""Classes made from .lcm files: the output of lcm-gen, completed, and kept up to date with the files."""
 
 import subprocess
 import sys
@@ -34,7 +34,7 @@ def files(folder: Path) -> list[str]:
 
 
 def run(folder: Path, program: str) -> str:
-    """What a program prints that has the types of the folder."""
+    """Returns the output of a program that has the types of the folder."""
     command = [sys.executable, "-c", program]
     done = subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, check=False, timeout=60)
     return (done.stdout + done.stderr).strip()

@@ -1,4 +1,4 @@
-"""LCM's wire format: what we send liblcm reads, what liblcm sends we read, and nothing hostile gets through."""
+"""LCM's wire format: liblcm and fwk read each other's messages, and hostile datagrams are refused."""
 
 import os
 import struct
@@ -40,7 +40,7 @@ def test_a_message_survives_its_datagrams_in_any_order(size: int) -> None:
 
 
 @pytest.mark.parametrize("size", SIZES[1:])
-def test_liblcm_reads_what_we_send(url: str, ours: PublicBus, size: int) -> None:
+def test_liblcm_reads_datagrams_of_fwk(url: str, ours: PublicBus, size: int) -> None:
     real, got = lcm.LCM(url), []
     real.subscribe("ch/one", lambda channel, data: got.append((channel, data))).set_queue_capacity(0)
     data = os.urandom(size)
@@ -50,7 +50,7 @@ def test_liblcm_reads_what_we_send(url: str, ours: PublicBus, size: int) -> None
 
 
 @pytest.mark.parametrize("size", SIZES[1:])
-def test_we_read_what_liblcm_sends(url: str, ours: PublicBus, size: int) -> None:
+def test_fwk_reads_datagrams_of_liblcm(url: str, ours: PublicBus, size: int) -> None:
     real, data = lcm.LCM(url), os.urandom(size)
     sender = threading.Thread(target=real.publish, args=("ch/one", data))
     sender.start()
@@ -106,6 +106,6 @@ def test_unfinished_messages_do_not_pile_up() -> None:
 @pytest.mark.parametrize(
     "url", ["tcpq://localhost", "udpm://127.0.0.1:7667", "udpm://239.0.0.1:7667?ttl=x", "udpm://239.0.0.1:x"]
 )
-def test_a_url_that_is_no_udp_bus_is_refused_with_an_example(url: str) -> None:
+def test_a_url_of_another_kind_is_refused_with_an_example(url: str) -> None:
     with pytest.raises(UrlError, match=r"udpm://239\.255\.76\.67:7667"):
         parse_url(url)

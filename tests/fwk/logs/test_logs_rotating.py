@@ -1,4 +1,4 @@
-"""Text files of bounded size and number, and who reads them while they are written."""
+"""Text files of bounded size and number, and their readers during rotation."""
 
 import itertools
 import os
@@ -33,7 +33,7 @@ def test_any_number_of_files(tmp_path: Path, files: int) -> None:
     assert list(read_rotating(log)) == [f"line {number:04}" for number in range(100 - 10 * files, 100)]
 
 
-def test_a_line_larger_than_a_file_has_one_of_its_own(tmp_path: Path) -> None:
+def test_a_line_larger_than_a_file_has_a_file_of_its_own(tmp_path: Path) -> None:
     log = RotatingFile(tmp_path / "log", 100, 3, pytest.fail)
     for text in ("a", "b" * 500, "c"):
         log.write(text)
@@ -41,18 +41,18 @@ def test_a_line_larger_than_a_file_has_one_of_its_own(tmp_path: Path) -> None:
     log.close()
 
 
-def test_a_log_that_is_there_is_gone_on_with(tmp_path: Path) -> None:
+def test_an_existing_log_is_continued(tmp_path: Path) -> None:
     written(tmp_path, 3)
     assert len(list(read_rotating(written(tmp_path, 2)))) == 5
 
 
-def test_who_follows_misses_nothing_while_files_are_put_aside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_follower_misses_nothing_during_rotation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rotating, "sleep_s", lambda _: None)
     log = RotatingFile(tmp_path / "log", 100, 4, pytest.fail)
     numbers = itertools.count()
 
     def write_some() -> bool:
-        """Asked at each look: not more than one file holds, so that none is gone before it was read."""
+        """Called at each read: writes no more than one file holds, so that no file disappears before it was read."""
         for _ in range(next(sizes)):
             log.write(f"{next(numbers):09}")
         return next(looks)
@@ -65,14 +65,14 @@ def test_who_follows_misses_nothing_while_files_are_put_aside(tmp_path: Path, mo
     log.close()
 
 
-def test_who_is_too_slow_goes_on_with_the_oldest_that_is_there(tmp_path: Path) -> None:
+def test_a_slow_follower_continues_with_the_oldest_file(tmp_path: Path) -> None:
     log = RotatingFile(tmp_path / "log", 100, 2, pytest.fail)
     log.write(f"{0:09}")
     lines = cast(Generator[str, None, None], read_rotating(tmp_path / "log", lambda: True))
     assert next(lines) == f"{0:09}"
     for number in range(1, 45):
         log.write(f"{number:09}")
-    assert [int(next(lines)) for _ in range(9)] == list(range(1, 10))  # what was open stays
+    assert [int(next(lines)) for _ in range(9)] == list(range(1, 10))  # the file that was open stays readable
     following = [int(next(lines)) for _ in range(10)]
     assert following[0] > 10
     assert following == list(range(following[0], following[0] + 10))
@@ -87,7 +87,7 @@ def test_an_unfinished_line_is_passed_over(tmp_path: Path) -> None:
     assert list(read_rotating(log)) == ["line 0000", "line 0001"]
 
 
-def test_a_full_disk_is_told_once_and_so_is_room(small_disk: Callable[[int], Path]) -> None:
+def test_a_full_disk_and_its_end_are_reported_once(small_disk: Callable[[int], Path]) -> None:
     folder = small_disk(4)
     said: list[str] = []
     log = RotatingFile(folder / "log", 1 << 30, 3, said.append)

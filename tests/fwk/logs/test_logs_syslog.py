@@ -1,4 +1,4 @@
-"""Lines reach the system's log, and a run does not mind one that is not there."""
+"""Lines reach the system's log, and a run continues without one."""
 
 import re
 import socket
@@ -42,7 +42,7 @@ def test_the_daemon_gets_level_component_tick_and_place(daemon: socket.socket) -
     assert second.startswith("<11>")
 
 
-def test_another_machine_is_told_who_sends() -> None:
+def test_another_machine_gets_the_senders_name() -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as remote:
         remote.bind(("127.0.0.1", 0))
         remote.settimeout(10.0)
@@ -52,11 +52,11 @@ def test_another_machine_is_told_who_sends() -> None:
         assert f" {socket.gethostname()} fwk[" in remote.recv(9000).decode()
 
 
-def test_unless_it_is_wanted_there_is_none() -> None:
+def test_without_the_option_syslog_is_not_used() -> None:
     assert targets.syslog(LogPlan(), "soccer", pytest.fail) == []
 
 
-def test_one_that_is_not_there_is_said_once_and_counted(tmp_path: Path) -> None:
+def test_a_missing_daemon_is_reported_once_and_counted(tmp_path: Path) -> None:
     said: list[str] = []
     sink = Syslog(f"{tmp_path}/none", "soccer", said.append)
     for _ in range(3):
@@ -68,7 +68,7 @@ def test_one_that_is_not_there_is_said_once_and_counted(tmp_path: Path) -> None:
     ]
 
 
-def test_a_daemon_that_was_started_again_is_found(tmp_path: Path) -> None:
+def test_a_restarted_daemon_is_found(tmp_path: Path) -> None:
     sink, heard = Syslog(f"{tmp_path}/log", "soccer", pytest.fail), []
     for number in range(2):
         with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as daemon:
@@ -80,7 +80,7 @@ def test_a_daemon_that_was_started_again_is_found(tmp_path: Path) -> None:
     assert heard == [True, True]
 
 
-def test_silent_syslog_daemon_holds_nothing_up(daemon: socket.socket) -> None:
+def test_a_silent_syslog_daemon_delays_nothing(daemon: socket.socket) -> None:
     said: list[str] = []
     sink = Syslog(daemon.getsockname(), "soccer", said.append)
     for _ in range(2000):

@@ -1,4 +1,4 @@
-"""Lines of text reach their targets from each one's own level on."""
+"""Text lines reach each target from the level of that target on."""
 
 from pathlib import Path
 
@@ -53,7 +53,7 @@ def test_each_target_has_its_level(level: str, texts: list[str]) -> None:
     assert heard.heard == [*texts, "a/imu", "tick", "end"]
 
 
-def test_the_files_that_are_wanted(tmp_path: Path) -> None:
+def test_the_requested_files_are_written(tmp_path: Path) -> None:
     def write(folder: str, log: LogPlan) -> Path:
         (tmp_path / folder).mkdir()
         for sink in targets.files(log, tmp_path / folder, pytest.fail):

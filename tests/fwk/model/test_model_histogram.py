@@ -24,7 +24,7 @@ def test_a_duration_is_known_to_a_sixteenth(duration_us: int) -> None:
 
 
 @given(DURATIONS, some.sampled_from([50, 95, 99, 100]))
-def test_a_percentile_is_a_duration_that_so_many_do_not_exceed(durations: list[int], percent: int) -> None:
+def test_a_percentile_is_not_exceeded_by_that_share(durations: list[int], percent: int) -> None:
     made = histogram(durations)
     found = made.percentile_us(percent)
     assert sum(duration <= found for duration in durations) * 100 >= percent * len(durations)
@@ -38,7 +38,7 @@ def test_a_percentile_is_a_duration_that_so_many_do_not_exceed(durations: list[i
 
 
 @given(DURATIONS, DURATIONS)
-def test_what_was_counted_since_a_moment(before: list[int], after: list[int]) -> None:
+def test_durations_since_a_moment_are_the_difference(before: list[int], after: list[int]) -> None:
     made = histogram(before)
     earlier = Histogram.from_json(made.to_json())
     for duration_us in after:
@@ -48,10 +48,10 @@ def test_what_was_counted_since_a_moment(before: list[int], after: list[int]) ->
     assert alone.worst_us <= since.worst_us <= alone.worst_us * 17 / 16
 
 
-def test_one_that_began_anew_is_taken_whole() -> None:
+def test_a_histogram_that_began_anew_is_taken_whole() -> None:
     assert histogram([5, 6]).since(histogram([5, 5, 5])).counts == {5: 1, 6: 1}
 
 
-def test_none_counted() -> None:
+def test_an_empty_histogram_has_no_figures() -> None:
     empty = Histogram()
     assert (empty.count, empty.mean_us, empty.percentile_us(99), empty.since(empty).worst_us) == (0, 0.0, 0, 0)

@@ -1,4 +1,4 @@
-"""A folder of one's own for launch files, components and types, from which nothing stays behind."""
+"""A folder for the launch files, components and types of a test, from which nothing stays behind."""
 
 import sys
 from collections.abc import Callable, Iterator
@@ -27,7 +27,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.fixture
 def load(folder: Path) -> Callable[..., Plan]:
-    """`load("components: ...", sets=["..."])`: the plan of a launch file `it.yaml` with this text."""
+    """Returns the plan of a launch file with this text: `load("components: ...", sets=["..."])`."""
 
     def loaded(text: str, **options: object) -> Plan:
         (folder / "it.yaml").write_text(text)

@@ -1,4 +1,4 @@
-"""Runs a table of broken launch files: each row is a message and, under it, what is broken."""
+"""Runs a table of broken launch files: each row is a message followed by the broken file."""
 
 from pathlib import Path
 from textwrap import dedent
@@ -11,9 +11,8 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 
 class Broken(NamedTuple):
-    """A row: all that the check says, one line a mistake, and the launch file `it.yaml` that it says it of.
-
-    Lines such as `--- other.yaml` begin further files.
+    """A row: the lines that the check prints, one for each mistake, and the launch file `it.yaml` they refer to.
+    / Lines such as `--- other.yaml` begin further files.
     """
 
     message: str
@@ -22,17 +21,17 @@ class Broken(NamedTuple):
 
 
 def rows(*broken: Broken) -> pytest.MarkDecorator:
-    """The table as parameters of a test, each called by its message."""
+    """Returns the rows of a table as parameters of a test, each named by its message."""
     return pytest.mark.parametrize("broken", broken, ids=[row.message.strip()[:70] for row in broken])
 
 
 def expected(broken: Broken) -> list[str]:
-    """The lines of the row's message."""
+    """Returns the lines of the row's message."""
     return dedent(broken.message).strip().splitlines()
 
 
 def said(broken: Broken, folder: Path) -> list[str]:
-    """What the check says of the row's files, written into `folder`."""
+    """Returns what the check prints about the row's files, written into `folder`."""
     write(broken, folder)
     with pytest.raises(PlanError) as caught:
         load_plan("it.yaml", LaunchOptions(**broken.options))

@@ -32,7 +32,7 @@ class WheelsConfig(Config):
 
 
 class Wheels(Component):
-    """Drives by `motor_command`, tells `odometry`."""
+    """Drives by `motor_command`, publishes `odometry`."""
 
     stage = ("sensor_acquire", "act_exec")
     config: WheelsConfig
@@ -75,7 +75,7 @@ class Watcher(Component):
 
 
 class Feeder(Component):
-    """Writes the odometry of everybody who reads one."""
+    """Writes the odometry of all components that read one."""
 
     stage = "pre_loop"
     feeds: Each[Writes[odometry_t]] = channel("*/odometry")
@@ -110,27 +110,27 @@ class Eye(Component):
 
 
 class Announcer(Component):
-    """Writes what looks like a camera's announcements, without frames."""
+    """Writes messages like a camera's announcements, without frames."""
 
     stage = "sensor_acquire"
     image: Writes[frame_t]
 
 
 class Sun(Component):
-    """Owns time."""
+    """Time source."""
 
     stage = "pre_loop"
     time_source: TimeSource
 
 
 class Way(Aspect):
-    """How far it was."""
+    """Aspect: the distance covered."""
 
     odometry: Reads[odometry_t]
 
 
 class Wayfarer(Component):
-    """Provides its way, measured by itself."""
+    """Provides the distance that it measured."""
 
     stage = "sensor_acquire"
     provides = Way
@@ -138,18 +138,18 @@ class Wayfarer(Component):
 
 
 class Guide(Component):
-    """Asks for the way."""
+    """Uses the aspect `Way`."""
 
     stage = "think"
     way: Way
 
 
 class Lead(Aspect):
-    """Goes ahead."""
+    """Aspect of a leader."""
 
 
 class Leader(Component):
-    """Leads, if somebody shows it the way."""
+    """Provides `Lead`, and uses `Way`."""
 
     stage = "think"
     provides = Lead
@@ -157,24 +157,24 @@ class Leader(Component):
 
 
 class Led(Wayfarer):
-    """Knows the way, if somebody leads."""
+    """Provides `Way`, and uses `Lead`."""
 
     lead: Lead
 
 
 class Stageless(Component):
-    """Forgot its stage."""
+    """Declares no stage."""
 
 
 class NotAComponent:
-    """Just a class."""
+    """A class that is not a component."""
 
 
 CHANNELS = ("*/odometry",)
 
 
 def greet() -> str:
-    """Just a function."""
+    """A function."""
     return "hello"
 
 

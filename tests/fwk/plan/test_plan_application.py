@@ -1,4 +1,4 @@
-"""Which files a component consists of: its own, and the application's that it imports."""
+"""Source files of a component: its own, and the modules of the application that it imports."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -40,7 +40,7 @@ def names(sources: Sources, plan: Plan, index: int, folder: Path) -> set[str]:
     return {str(file.relative_to(folder.resolve())) for file in sources.files(plan.components[index])}
 
 
-def test_all_that_it_imports_of_the_application_and_nothing_else(plan: Plan, folder: Path) -> None:
+def test_a_component_consists_of_its_imports_in_the_application(plan: Plan, folder: Path) -> None:
     sources = Sources(plan)
     around = {"shape/__init__.py", "shape/round.py", "shape/deep/__init__.py", "shape/deep/well.py", "shape/edge.py"}
     assert names(sources, plan, 0, folder) == {"one.py", *around}
@@ -64,7 +64,7 @@ def test_changed_import_is_noticed_and_broken_file_keeps_imports(plan: Plan, fol
     assert told[1] == "unused.py: cannot be read: No such file or directory"
 
 
-def test_installed_components_are_an_application_too(load: Callable[..., Plan]) -> None:
+def test_installed_components_count_as_an_application(load: Callable[..., Plan]) -> None:
     plan = load("include: one-robot.yaml")
     ball = next(each for each in plan.components if each.name == "cyan1/omni_ball")
     found = {"/".join(file.parts[-2:]) for file in Sources(plan).files(ball)}

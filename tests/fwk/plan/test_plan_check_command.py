@@ -1,4 +1,4 @@
-"""`fwk check` as people and scripts see it."""
+"""Output of `fwk check`, as people and scripts see it."""
 
 from pathlib import Path
 
@@ -32,7 +32,7 @@ def test_a_good_file_is_summed_up(fwk: typer.Typer) -> None:
     assert one.stdout == "it: 1 component, 3 channels, 1 process, 10 stages, 10 ticks/s\n"
 
 
-def test_what_this_machine_and_the_command_line_change_is_shown(fwk: typer.Typer, folder: Path) -> None:
+def test_changes_by_host_file_and_options_are_shown(fwk: typer.Typer, folder: Path) -> None:
     (folder / "it.host.yaml").write_text("config: {a: {}}\n")
     (folder / "it.host.yaml").write_text("config: {a/wheels: {mode: hard}}\n")
     result = CliRunner().invoke(fwk, ["it.yaml", "--set", "a/wheels.limits.speed_m_s=1"])

@@ -1,4 +1,4 @@
-"""The documentation of launch files names every key that there is."""
+"""The documentation of launch files names every key that exists."""
 
 import re
 from pathlib import Path

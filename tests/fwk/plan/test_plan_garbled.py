@@ -1,4 +1,4 @@
-"""Whatever stands in a launch file, the check ends with a plan or with mistakes, never with a traceback."""
+"""Any launch file ends the check with a plan or with mistakes, never with a traceback."""
 
 import random
 from collections.abc import Callable
@@ -63,7 +63,7 @@ def garbled(text: str, dice: random.Random) -> str:
     return text
 
 
-def test_what_is_garbled_here_is_right_before(load: Callable[..., Plan]) -> None:
+def test_the_files_are_right_before_they_are_garbled(load: Callable[..., Plan]) -> None:
     assert len(load(GOOD).components) == 3
 
 

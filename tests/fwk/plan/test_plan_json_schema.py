@@ -1,4 +1,4 @@
-"""The schema for editors accepts every launch file that we have and refuses what the check of launch files refuses."""
+"""The schema for editors accepts every launch file of the project and refuses what the check refuses."""
 
 import json
 import textwrap
@@ -91,10 +91,10 @@ def test_a_file_with_everything_fits(schema: Schema) -> None:
         ("needs: 3", "needs: wheels"),
     ],
 )
-def test_what_the_check_refuses_does_not_fit(
+def test_files_that_the_check_refuses_do_not_fit(
     schema: Schema, load: Callable[..., Plan], wrong: str, instead_of: str
 ) -> None:
-    if instead_of == "brake: false":  # known only by a pattern that editors do not resolve
+    if instead_of == "brake: false":  # a pattern that editors do not resolve
         schema["properties"]["config"]["properties"]["a/w*"] = schema["properties"]["config"]["properties"]["a/wheels"]
     text = RIGHT.replace(instead_of, wrong, 1)
     assert text != RIGHT
@@ -103,7 +103,7 @@ def test_what_the_check_refuses_does_not_fit(
         load(text)
 
 
-def test_a_host_specific_file_has_its_own(schema: Schema) -> None:
+def test_a_host_file_has_a_schema_of_its_own(schema: Schema) -> None:
     own = schema_of_file("it.yaml", host_specific=True)
     assert mistakes(own, plain("{speed: 2, config: {a/wheels: {gain: 0.3}}}")) == []
     assert mistakes(own, plain("{components: {}}"))
@@ -122,7 +122,7 @@ def said(*arguments: str) -> tuple[int, str]:
     return result.exit_code, result.output
 
 
-def test_the_command_prints_schemas_and_says_what_it_cannot(load: Callable[..., Plan], folder: Path) -> None:
+def test_the_command_prints_schemas_and_names_its_limits(load: Callable[..., Plan], folder: Path) -> None:
     load(RIGHT)
     for arguments in (["it.yaml"], ["it.yaml", "--host"], [], ["plan_parts:Wheels"]):
         code, text = said("schema", *arguments)

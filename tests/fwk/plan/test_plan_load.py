@@ -1,4 +1,4 @@
-"""From a launch file to a plan: settings in layers, templates, processes, parts, folders of one's own."""
+"""From a launch file to a plan: settings in layers, templates, processes, parts, own folders."""
 
 import json
 import sys
@@ -45,7 +45,7 @@ def channel_names(plan: Plan) -> list[str]:
     return [channel.name for channel in plan.channels]
 
 
-def test_what_a_file_does_not_say_has_defaults(load: Load, folder: Path) -> None:
+def test_missing_keys_have_defaults(load: Load, folder: Path) -> None:
     plan = load(DRIVING)
     assert (plan.name, plan.file, plan.period_us, plan.clock) == ("it", str(folder / "it.yaml"), 50_000, "simulated")
     assert (plan.seed, plan.speed, plan.stage_time_us, len(plan.stages)) == (1, 1.0, 0, 10)
@@ -55,7 +55,7 @@ def test_what_a_file_does_not_say_has_defaults(load: Load, folder: Path) -> None
     assert set(wheels.origins.values()) == {"default"}
 
 
-def test_a_file_says_what_the_run_is_like(load: Load) -> None:
+def test_keys_of_a_file_describe_the_run(load: Load) -> None:
     plan = load(
         "name: other\nperiod_s: 0.01\nclock: wall\nspeed: max\nseed: 9\nstage_time_s: 0.002\n"
         "stages: [act_exec, sensor_acquire]\npublic_url: udpm://239.255.76.67:7777?ttl=1\n"
@@ -100,7 +100,7 @@ def test_public_bus_moves_with_the_bus_port_unless_named(load: Load, bus_port: i
     assert named.public_url == "udpm://239.255.76.67:7000?recv_buf_size=4194304"
 
 
-def test_settings_lie_over_each_other_and_tell_their_origin(load: Load, folder: Path) -> None:
+def test_settings_override_each_other_and_name_their_origin(load: Load, folder: Path) -> None:
     (folder / "part.yaml").write_text(
         "components:\n"
         "  it/wheels:\n"
@@ -151,7 +151,7 @@ def test_a_template_makes_the_components_of_each_robot(load: Load) -> None:
     assert component(plan, "world/watcher").channels == {"odometries": ("cyan1/odometry", "cyan2/odometry")}
 
 
-def test_who_looks_at_images_needs_the_camera(load: Load) -> None:
+def test_a_viewer_of_images_needs_the_camera(load: Load) -> None:
     plan = load("components: {it/eye: {use: plan_parts:Eye}, it/camera: {use: plan_parts:Camera}}")
     assert [each.needs for each in plan.components] == [(1,), ()]
 
@@ -165,7 +165,7 @@ def test_channels_know_their_writer_and_readers(load: Load) -> None:
     assert [channel.index for channel in plan.channels] == list(range(len(plan.channels)))
 
 
-def test_a_launch_file_can_say_other_channels_and_stages(load: Load) -> None:
+def test_a_launch_file_can_set_channels_and_stages(load: Load) -> None:
     plan = load(
         "components:\n"
         "  a/wheels: {use: plan_parts:Wheels, channels: {motor_command: b/go, odometry: truth}, stage: think}\n"
@@ -201,7 +201,7 @@ def test_components_share_processes(load: Load, hosting: str, expected: list[str
 @pytest.mark.parametrize(
     ("hosting", "expected"), [("robot", ["it", "it/eye", "it/camera"]), ("single", ["all", "it/eye", "it/camera"])]
 )
-def test_what_starts_later_keeps_a_process_of_its_own(load: Load, hosting: str, expected: list[str]) -> None:
+def test_a_delayed_component_keeps_a_process_of_its_own(load: Load, hosting: str, expected: list[str]) -> None:
     plan = load(
         "components:\n"
         "  it/one: {use: plan_parts:Odometer}\n"
@@ -224,7 +224,7 @@ def test_a_channel_whose_writer_is_left_out_has_none(load: Load) -> None:
     assert writers == {"cyan1/odometry": NOBODY, "cyan1/motor_command": 1}
 
 
-def test_a_reader_of_many_does_not_hold_what_nobody_writes(load: Load) -> None:
+def test_a_reader_of_many_needs_no_writer(load: Load) -> None:
     text = (
         "components: {a/one: {use: plan_parts:Odometer}, a/x: {use: plan_parts:Reader}, w: {use: plan_parts:Watcher}}"
     )
@@ -240,7 +240,7 @@ def test_programs_outside_write_channels(load: Load) -> None:
     assert (plan.channels[0].name, plan.channels[0].writer, plan.channels[0].readers) == ("a/odometry", NOBODY, (0,))
 
 
-def test_own_components_lie_beside_or_above_the_launch_file(folder: Path) -> None:
+def test_own_components_are_found_beside_or_above_the_file(folder: Path) -> None:
     for part in ("launch", "procs", "lcmtypes"):
         (folder / part).mkdir()
     (folder / "lcmtypes" / "planted.lcm").write_text(

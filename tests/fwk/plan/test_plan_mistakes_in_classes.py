@@ -1,4 +1,4 @@
-"""What the check says of a component's class: one row for each thing that a class can say wrongly."""
+"""Mistakes in a component's class that the check reports: a row each."""
 
 from pathlib import Path
 
@@ -71,7 +71,7 @@ ROWS = {
 
 
 @pytest.mark.parametrize("number", range(len(ROWS)), ids=list(ROWS))
-def test_it_is_told(folder: Path, number: int) -> None:
+def test_mistake_is_reported(folder: Path, number: int) -> None:
     line, text = list(ROWS.items())[number]
     (folder / f"odd{number}.py").write_text(f"{HEAD}    {line}\n")
     (folder / "it.yaml").write_text(f"components: {{it/a: {{use: odd{number}:Odd}}}}")

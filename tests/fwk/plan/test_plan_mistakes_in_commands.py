@@ -1,4 +1,4 @@
-"""What the check says of commands and requests that nobody, two, or somebody else carries out."""
+"""Mistakes in commands and requests: no owner, two owners, or the wrong owner."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -69,7 +69,7 @@ LONG = "x" * 30
 
 
 def garden(broken: Broken) -> Broken:
-    """The row with the types and components that all use."""
+    """A row with the types and components that all rows use."""
     return broken._replace(text=dedent(broken.text).strip("\n") + "\n" + PARTS.strip("\n"))
 
 
@@ -229,7 +229,7 @@ def test_each_sender_has_a_channel_of_its_own(folder: Path, load: Callable[..., 
     assert every == ("a/dig@w/all", "a/dig@answers", "b/dig@w/all", "b/dig@answers")
 
 
-def test_one_may_carry_out_for_all_who_are_asked(folder: Path, load: Callable[..., Plan]) -> None:
+def test_one_component_may_serve_all_targets(folder: Path, load: Callable[..., Plan]) -> None:
     written(folder)
     plan = load("""
         components:

@@ -1,4 +1,4 @@
-"""What the check says of components: settings, templates, names, needs, time."""
+"""Mistakes in components that the check reports: settings, templates, names, needs, time."""
 
 from pathlib import Path
 

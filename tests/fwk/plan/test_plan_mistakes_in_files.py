@@ -1,4 +1,4 @@
-"""What the check says of YAML, keys, includes and the run's own values."""
+"""Mistakes in YAML, keys, includes and the run's own values that the check reports."""
 
 from pathlib import Path
 

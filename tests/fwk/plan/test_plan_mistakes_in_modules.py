@@ -1,4 +1,4 @@
-"""What the check says of modules and classes that a launch file names."""
+"""Mistakes in modules and classes of a launch file that the check reports."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""Mistakes in message types of one's own: a row each."""
+"""Mistakes in a user's message types: a row each."""
 
 from pathlib import Path
 
@@ -12,7 +12,7 @@ RUN = "components: {a/one: {use: plan_parts:Odometer}}\n"
 
 
 def of_type(message: str, source: str) -> Broken:
-    """A row of the file lcmtypes/mine.lcm with this text behind its package."""
+    """Returns a row for the file lcmtypes/mine.lcm with this text after its package."""
     return Broken(message, f"{RUN}--- lcmtypes/mine.lcm\npackage mine;\n{source}")
 
 
@@ -89,7 +89,7 @@ def of_type(message: str, source: str) -> Broken:
         "struct mine_t { double x[0]; }",
     ),
 )
-def test_types_of_ones_own(folder: Path, broken: Broken) -> None:
+def test_mistakes_in_user_types(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == [line.replace("{installed}", str(INSTALLED)) for line in expected(broken)]
 
 
@@ -123,7 +123,7 @@ def test_a_latin_1_comment_is_named_with_its_line(folder: Path) -> None:
         "struct /* one */ a_t // two\n{ };\nstruct b_t { a_t inner; core.frame_t frame; float f[1]; string s; }",
     ],
 )
-def test_types_that_are_right(folder: Path, source: str) -> None:
+def test_valid_types_are_accepted(folder: Path, source: str) -> None:
     write = Broken(
         "", f"{RUN}--- lcmtypes/mine.lcm\npackage mine;\n{source}\n--- it.yaml\ncomponents: {{a/b: {{use: no}}}}"
     )

@@ -1,4 +1,4 @@
-"""What the check says of channels, processes, parts of a plan, types of one's own, and files that are not there."""
+"""Mistakes in channels, processes, parts of a plan, user types, and missing files."""
 
 from pathlib import Path
 
@@ -89,7 +89,7 @@ LONG = "x" * 60
         it.yaml:3: b/one: port 'odometry': 'b/o.d' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
         it.yaml:4: c/one: port 'odometry': 'fwk/odometry': names that begin with 'fwk/' are the framework's own; take another namespace
         it.yaml:5: watcher: port 'odometries': 'cyan*' is not a valid pattern; put '*' for the namespace and a name after the last '/', such as */ball
-        """,  # noqa: E501 - as people see it
+        """,  # noqa: E501 - as users see it
         f"""
         components:
           a/one: {{use: plan_parts:Odometer, channels: {{odometry: {LONG}xx}}}}
@@ -158,7 +158,7 @@ def test_processes_and_parts(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
 
 
-def test_a_file_that_is_not_there(folder: Path) -> None:
+def test_a_missing_file(folder: Path) -> None:
     (folder / "launch").mkdir()
     (folder / "launch" / "garden.yaml").write_text("")
     (folder / "launch" / "garden.host.yaml").write_text("")

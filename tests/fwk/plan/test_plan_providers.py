@@ -1,4 +1,4 @@
-"""Who provides an aspect, found in the plan or refused with the names of both sides."""
+"""Providers of aspects: found in the plan, or refused with the names of both sides."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +9,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
 Load = Callable[..., Plan]
 
 
-def test_who_asks_needs_its_provider_and_reads_what_that_writes(load: Load) -> None:
+def test_a_user_needs_its_provider_and_reads_its_channels(load: Load) -> None:
     plan = load(
         "components:\n"
         "  a/guide: {use: plan_parts:Guide}\n"
@@ -103,5 +103,5 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
         """,
     ),
 )
-def test_what_is_refused(folder: Path, broken: Broken) -> None:
+def test_refused_combinations(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)

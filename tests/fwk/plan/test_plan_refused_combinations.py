@@ -1,4 +1,4 @@
-"""Combinations of components that are refused: all in one launch file, and `fwk check` tells them all at once."""
+"""Combinations of components that are refused, all in one launch file and all reported at once by `fwk check`."""
 
 from pathlib import Path
 
@@ -82,7 +82,7 @@ class Mute(Component):
 """
 
 
-def test_every_one_is_told_with_both_sides(folder: Path) -> None:
+def test_every_combination_is_reported_with_both_sides(folder: Path) -> None:
     (folder / "combined.py").write_text(MODULE)
     lines = ["hosts:", "  both: o/*", "components:", *(f"  {component}" for component, _ in ROWS)]
     (folder / "it.yaml").write_text("\n".join(lines))

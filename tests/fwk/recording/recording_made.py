@@ -1,4 +1,4 @@
-"""Makes short logs by hand, as a run of a small system would leave them."""
+"""Builds short logs directly, like those of a run of a small system."""
 
 from pathlib import Path
 from typing import Any
@@ -31,7 +31,7 @@ def entries(ticks: int = 20, robots: int = 2) -> list[Entry]:
 
 
 def entry(channel: str, message: Any, tick: int) -> Entry:
-    """Stamps a message: its sequence number is the tick."""
+    """Stamps a message; its sequence number is the tick."""
     namespace, _, short = channel.rpartition("/")
     stage, writer = WRITERS[short]
     message.header.tick = message.header.sequence = tick

@@ -1,4 +1,4 @@
-"""Comparing logs: what counts as equal, and that every kind of difference is found and named."""
+"""Comparison of logs: equal logs, and every kind of difference, found and named."""
 
 import random
 import struct
@@ -40,12 +40,12 @@ def test_the_frameworks_own_channels_do_not_count(tmp_path: Path) -> None:
     assert text_of(tmp_path, entries(), without) == "None"
 
 
-def test_what_liblcm_sends_itself_does_not_count(tmp_path: Path) -> None:
+def test_liblcms_own_messages_do_not_count(tmp_path: Path) -> None:
     heard = [*entries(), ("LCM_SELF_TEST", b"lcm self test", 0)]
     assert text_of(tmp_path, entries(), heard) == "None"
 
 
-def test_a_message_sent_again_counts_once(tmp_path: Path) -> None:
+def test_a_repeated_message_counts_once(tmp_path: Path) -> None:
     made = entries()
     heard = made[:]
     for distance in (1, 5, 30):
@@ -55,7 +55,7 @@ def test_a_message_sent_again_counts_once(tmp_path: Path) -> None:
     assert result.repeated == 3
 
 
-def test_a_message_sent_again_with_other_bytes_is_a_difference(tmp_path: Path) -> None:
+def test_a_repeated_message_with_other_bytes_is_a_difference(tmp_path: Path) -> None:
     made = entries()
     again = made[:]
     again.insert(at(made, "cyan1/odometry", 5) + 1, entry("cyan1/odometry", odometry(9, 9), 5))
@@ -102,7 +102,7 @@ def test_floats_are_compared_by_their_bits(tmp_path: Path, a: float, b: float) -
     assert text_of(tmp_path, logs[0], logs[1]).endswith(f"y_m is {a!r} in A, {b!r} in B")
 
 
-def test_bytes_that_no_field_shows_are_named_by_their_place(tmp_path: Path) -> None:
+def test_bytes_outside_all_fields_are_named_by_their_place(tmp_path: Path) -> None:
     made, other = entries(), entries()
     place = at(made, "cyan1/odometry", 3)
     channel, data, time_us = made[place]
@@ -161,7 +161,7 @@ STRUCTURAL = {
 
 
 @pytest.mark.parametrize(("change", "expected"), STRUCTURAL.values(), ids=STRUCTURAL)
-def test_what_is_not_there_or_elsewhere_is_named(
+def test_missing_and_misplaced_messages_are_named(
     tmp_path: Path, change: Callable[[list[Entry]], list[Entry]], expected: str
 ) -> None:
     assert text_of(tmp_path, entries(), change(entries())) == expected

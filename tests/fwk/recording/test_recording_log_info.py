@@ -1,4 +1,4 @@
-"""What `log_info` tells of a log."""
+"""Information that `log_info` gives about a log."""
 
 import json
 from pathlib import Path
@@ -60,7 +60,7 @@ def test_repeated_messages_are_counted_and_hide_no_gap(tmp_path: Path) -> None:
     assert (made.messages, made.repeated, made.lost) == (6, 2, 1)
 
 
-def test_what_does_not_decode_is_counted(tmp_path: Path) -> None:
+def test_messages_that_do_not_decode_are_counted(tmp_path: Path) -> None:
     channel, data, time_us = entry("a/odometry", odometry(1, 1), 1)
     log = write(
         tmp_path / "log",
@@ -83,7 +83,7 @@ def test_types_that_lcm_cannot_tell_apart_are_both_named(tmp_path: Path) -> None
     assert log_info(log).channels["a/twin"].types == ["twins.one_t or twins.other_t"]
 
 
-def test_dropped_events_and_damage_are_told(tmp_path: Path) -> None:
+def test_dropped_events_and_damage_are_reported(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "log", print) as writer:
         writer.append("a", b"1", 1)
         writer.events += 3
@@ -93,7 +93,7 @@ def test_dropped_events_and_damage_are_told(tmp_path: Path) -> None:
     assert log_info(tmp_path / "log").damaged_bytes == 29
 
 
-def test_a_file_that_is_no_log_is_refused(tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_log_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text").write_text("hello")
     with pytest.raises(LogError, match="text: not an LCM log: no event in 5 bytes"):
         log_info(tmp_path / "text")

@@ -1,4 +1,4 @@
-"""Where the gateway's messages go, without a gateway."""
+"""Targets of the gateway's messages, without a gateway."""
 
 import socket
 from dataclasses import replace
@@ -66,7 +66,7 @@ def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:
     recorder.close()
 
 
-def test_the_text_log_has_a_line_for_each_and_nothing_else(tmp_path: Path) -> None:
+def test_the_text_log_has_one_line_for_each_message(tmp_path: Path) -> None:
     log = TextLog(RotatingFile(tmp_path / "fwk.log", 1000, 1, pytest.fail))
     log.message("world/truth", b"\0" * 100, 0)
     log.message("fwk/log", line("wheels are hot"), 0)
@@ -98,7 +98,7 @@ def test_a_display_that_does_not_read_delays_no_process() -> None:
     display.close()
 
 
-def test_the_newest_messages_are_handed_over_at_the_end() -> None:
+def test_the_newest_messages_are_passed_on_at_the_end() -> None:
     ours, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     newest = Newest(PLAN, ours, lambda: 7)
     for number in range(3):

@@ -35,7 +35,7 @@ TICKS = 40
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder of the recorded application, in another place than when it was recorded."""
+    """A copy of the recorded application's folder, in another location than the original."""
     folder = Path(shutil.copytree(OLD, tmp_path / "workshop"))
     generate(folder / "lcmtypes")
     monkeypatch.setenv("PYTHONPATH", str(folder))

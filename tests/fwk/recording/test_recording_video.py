@@ -1,4 +1,4 @@
-"""Videos of recordings: one picture a tick, of what was newest at its end."""
+"""Videos of recordings: one picture a tick, of the newest messages at its end."""
 
 import json
 import resource
@@ -44,14 +44,14 @@ class Grey:
 
 @pytest.fixture(params=["PyAV", "OpenCV"], autouse=True)
 def library(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """The library that encodes; both are installed for tests."""
+    """The encoding library; both are installed for tests."""
     if request.param == "OpenCV":
         monkeypatch.setitem(sys.modules, "av", None)
     return str(request.param)
 
 
 def played(file: Path) -> tuple[list[int], float]:
-    """Brightness of each picture, and pictures a second."""
+    """Returns the brightness of each picture, and the pictures a second."""
     capture = cv2.VideoCapture(str(file))
     found: list[int] = []
     while True:
@@ -69,12 +69,12 @@ def test_each_tick_is_one_picture_at_the_speed_of_logical_time(tmp_path: Path) -
     assert per_s == pytest.approx(20.0)
 
 
-def test_pictures_begin_when_there_is_something_to_show(tmp_path: Path) -> None:
+def test_pictures_begin_with_the_first_drawable_tick(tmp_path: Path) -> None:
     late = [made for made in entries(ticks=20) if made[0].startswith("cyan1") or made[2] > 500_000]
     assert render_video(write(tmp_path / "log", late), tmp_path / "out.mp4", grey).pictures == 10
 
 
-def test_what_goes_wrong_is_told(tmp_path: Path) -> None:
+def test_failures_are_reported(tmp_path: Path) -> None:
     log = write(tmp_path / "log", entries(ticks=3))
     with pytest.raises(VideoError, match="log: nothing to show"):
         render_video(log, tmp_path / "out.mp4", lambda newest: newest("nothing"))
@@ -89,7 +89,7 @@ def test_what_goes_wrong_is_told(tmp_path: Path) -> None:
             drawing(name)
 
 
-def test_a_video_for_which_there_is_no_room_is_told(tmp_path: Path) -> None:
+def test_a_video_on_a_full_disk_is_reported(tmp_path: Path) -> None:
     log, before = write(tmp_path / "log", entries(ticks=3)), resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (200, before[1]))  # Python ignores SIGXFSZ: writing fails instead
     try:

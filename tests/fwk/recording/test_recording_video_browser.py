@@ -1,4 +1,4 @@
-"""Videos play in a browser: Chromium without a window loads a page with the video and reports how far it came."""
+"""Videos play in a browser: headless Chromium loads a page with the video and reports how far it played."""
 
 import http.server
 import os

@@ -1,4 +1,4 @@
-"""A supervisor in memory: its hosts, its gateway and its network are played by the test, in one thread."""
+"""A supervisor in memory: the test plays its hosts, gateway and network in one thread."""
 
 import signal
 from collections import deque
@@ -62,9 +62,8 @@ class MemorySocket:
 
 
 class MemoryRun:
-    """Plays hosts that answer at once, unless the test says otherwise, and a gateway that takes every record.
-
-    It is network and process starter of the supervisor at the same time; wall time jumps to the end of each wait.
+    """Plays hosts that answer at once, unless the test prevents it, and a gateway that takes every record.
+    / It is both network and process starter of the supervisor; wall time jumps to the end of each wait.
     """
 
     def __init__(self, components: dict[str, type[Component]], **fields: Any) -> None:
@@ -103,11 +102,10 @@ class MemoryRun:
         self.play(lambda: len(self.records) >= 1)
 
     def play(self, until: Callable[[], bool], longest_us: int = 600 * S) -> None:
-        """Runs the supervisor until something has happened.
-
-        Raises:
-            AssertionError: it has not within the wall time `longest_us`, or within `STEPS_MAX` steps, which take no
-                wall time while ticks follow each other.
+        """Runs the supervisor until `happened` is true.
+        / Raises:
+            AssertionError: it is still false after the wall time `longest_us`, or after `STEPS_MAX` steps; steps take
+            no wall time while ticks follow each other.
         """
         if not self._steps:
             self._steps = self.supervisor.work(_Gateway())
@@ -125,13 +123,13 @@ class MemoryRun:
             self._until_us = self._steps.send(readable)
 
     def play_ticks(self, count: int) -> None:
-        """Runs so many more ticks."""
+        """Runs that number of further ticks."""
         last = len(self.records) + count
         self.play(lambda: len(self.records) >= last)
 
     @property
     def texts(self) -> list[str]:
-        """Texts of all log lines of the supervisor."""
+        """Returns the texts of all log lines of the supervisor."""
         return [line.text for line in self.lines]
 
     def ready(self, host: int) -> None:
@@ -201,7 +199,7 @@ class MemoryRun:
 
     def _gateway_done(self, tick: int) -> None:
         made = recorded_t()
-        made.run, made.tick, made.change = RUN, tick, 1 << 30  # it listens to every dynamic channel
+        made.run, made.tick, made.change = RUN, tick, 1 << 30  # the gateway listens to every dynamic channel
         self.report(sync.RECORDED, sync.encode_recorded(made), self.ports.host(self.ports.gateway))
 
     # network

@@ -42,7 +42,7 @@ def run_of(**fields: Any) -> MemoryRun:
 
 
 def asks_once(what: Callable[[done_t], None]) -> Callable[[done_t], None]:
-    """Lets the next iteration of the director ask for something."""
+    """Lets the next iteration of the director send a request."""
     asked: list[int] = []
 
     def alters(done: done_t) -> None:
@@ -120,7 +120,7 @@ def test_lockstep_kills_nothing_by_a_time_out(stage: str) -> None:
     assert host.running
 
 
-def test_real_time_kills_what_does_not_stop() -> None:
+def test_real_time_kills_a_host_that_does_not_stop() -> None:
     run = run_of(clock="wall")
     run.does_not_stop = {LATER}
     run.alters = asks_once(restarts("r/later"))

@@ -1,4 +1,4 @@
-"""What continuous components are told, and how their dones are taken, without processes."""
+"""Ticks for continuous components and their dones, without processes."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -84,7 +84,7 @@ def test_each_done_is_taken_once_and_always_sent_back() -> None:
     assert told.take(1, 1, incarnation=2)
 
 
-def test_who_does_not_run_is_told_later() -> None:
+def test_a_stopped_component_is_informed_later() -> None:
     told = Told()
     host = told.table[PLANS]
     host.ended(-9, 0, stopping=False)

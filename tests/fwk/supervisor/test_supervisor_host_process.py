@@ -1,4 +1,4 @@
-"""Restart policies as histories: when a process starts and ends, and what happens then."""
+"""Restart policies as histories: starts and ends of a process, and the actions that follow."""
 
 import pytest
 
@@ -26,7 +26,7 @@ def entry(
         ("always", -9, "waiting"),
     ],
 )
-def test_what_follows_an_end(when: RestartWhen, code: int, state: str) -> None:
+def test_actions_after_an_end(when: RestartWhen, code: int, state: str) -> None:
     host = entry(when)
     host.begin_start(0)
     host.ended(code, 1000, stopping=False)
@@ -60,7 +60,7 @@ def test_starts_outside_the_window_are_forgotten() -> None:
     assert host.restarts == 20
 
 
-def test_nothing_is_started_again_while_everything_stops() -> None:
+def test_no_process_is_restarted_during_shutdown() -> None:
     host = entry("always")
     host.begin_start(0)
     host.ended(-15, 1, stopping=True)
@@ -74,14 +74,14 @@ def test_the_reason_names_the_signal() -> None:
     assert host.reason == "killed by signal 9"
 
 
-def test_who_leaves_without_having_been_asked_is_told_so() -> None:
+def test_an_unexpected_end_is_described_as_such() -> None:
     host = entry("never")
     host.begin_start(0)
     host.ended(0, 1, stopping=False)
     assert "left by itself" in host.reason
 
 
-def test_the_reason_names_the_culprit_of_a_shared_process() -> None:
+def test_the_reason_names_the_failing_component_of_a_host() -> None:
     host = entry("never")
     host.begin_start(0)
     host.ended(-11, 1, stopping=False, culprit="cyan1/base")
@@ -96,7 +96,7 @@ def running(when: RestartWhen = "on-failure") -> HostProcess:
     return host
 
 
-def test_asked_to_stop_it_leaves_and_stays_away() -> None:
+def test_a_stopped_process_ends_and_stays_away() -> None:
     host = running("always")
     host.want_stop(10)
     assert host.must_leave
@@ -109,13 +109,13 @@ def test_asked_to_stop_it_leaves_and_stays_away() -> None:
     assert not host.must_join
 
 
-def test_a_restart_is_a_number_that_goes_up() -> None:
+def test_a_restart_is_a_number_that_increases() -> None:
     host = running()
     host.want_restart(10)
     assert (host.desired_run, host.actual_run) == (2, 1)
     assert host.must_leave
     host.begin_stop(20)
-    assert host.expected  # the loop waits for it
+    assert host.expected  # the main loop waits for it
     host.ended(0, 30, stopping=False)
     assert host.state == "waiting"
     assert host.restart_us == 30
@@ -125,7 +125,7 @@ def test_a_restart_is_a_number_that_goes_up() -> None:
     assert host.settled
 
 
-def test_what_was_given_up_starts_again_when_asked() -> None:
+def test_a_failed_host_starts_again_on_request() -> None:
     host = entry("never")
     host.begin_start(0)
     host.ended(1, 10, stopping=False)
@@ -137,14 +137,14 @@ def test_what_was_given_up_starts_again_when_asked() -> None:
     assert not host.must_leave
 
 
-def test_start_leaves_what_runs_alone() -> None:
+def test_start_leaves_running_processes_alone() -> None:
     host = running()
     host.want_start(10)
     assert not host.must_leave
     assert host.settled
 
 
-def test_asked_restarts_forget_failures_of_before() -> None:
+def test_requested_restarts_reset_the_failure_count() -> None:
     host = entry(limit=1)
     for moment in (0, 10):
         host.begin_start(moment)
@@ -156,14 +156,14 @@ def test_asked_restarts_forget_failures_of_before() -> None:
     assert host.state == "waiting"
 
 
-def test_what_shall_stop_and_dies_before_is_not_started_again() -> None:
+def test_a_process_that_dies_before_its_stop_is_not_restarted() -> None:
     host = running("always")
     host.want_stop(10)
     host.ended(-9, 20, stopping=False)
     assert host.state == "stopped"
 
 
-def test_changes_of_settings_wait_until_their_tick_is_answered() -> None:
+def test_settings_are_kept_until_their_tick_is_answered() -> None:
     host = running()
     host.changes = [Change(0, 1, "{}", step=5), Change(0, 2, "{}", step=8)]
     host.answered_step = 5
@@ -171,21 +171,21 @@ def test_changes_of_settings_wait_until_their_tick_is_answered() -> None:
     assert [change.number for change in host.changes] == [2]
     host.want_restart(10)
     host.begin_stop(20)
-    assert host.changes == []  # the new process is started with them
+    assert host.changes == []  # the new process starts with them
 
 
-def test_what_was_lost_stays_lost_whoever_dies() -> None:
+def test_lost_messages_stay_lost_across_restarts() -> None:
     host = entry()
     for lost in (2, 3):
         host.begin_start(0)
-        for sofar in range(lost + 1):  # it says so again and again
+        for sofar in range(lost + 1):  # the host reports it repeatedly
             said = component_state_t()
             said.name, said.lost_frames, said.iterations = "cyan1/base", sofar, 100
             counters = host_counters_t()
             counters.lost, counters.fetched, counters.foreign = sofar, 10 * sofar, 100 * sofar
             host.report([said], [], counters)
         host.ended(-9, 0, stopping=False)
-    host.begin_start(0)  # and this process has not reported anything
+    host.begin_start(0)  # and this incarnation has not reported anything
     host.ended(-9, 0, stopping=False)
     host.begin_start(0)
     (component,) = host.components
@@ -202,7 +202,7 @@ def test_every_state_has_its_successors() -> None:
         host.begin_stop(0)
 
 
-def test_time_outs_apply_only_where_they_are_asked_for() -> None:
+def test_timeouts_apply_only_where_they_are_requested() -> None:
     host = HostProcess(0, "a", RestartPolicy())
     host.begin_start(0)
     assert not host.not_ready_in_time(10**12)

@@ -1,4 +1,4 @@
-"""The main loop without processes: what hosts are told in which order, and which answers count."""
+"""The main loop without processes: order of datagrams to hosts, and which answers count."""
 
 from collections.abc import Callable
 
@@ -40,7 +40,7 @@ def test_marks_move_with_the_next_stage() -> None:
     assert dict(zip(second.channel, second.sequence, strict=True)) == {LEFT: 1, RIGHT: 1}
 
 
-def test_repeated_tick_does_not_tell_newer_marks() -> None:
+def test_repeated_tick_does_not_carry_newer_marks() -> None:
     run = pair()
     run.does_not_answer = {RIGHT}
     newest = len(run.records)
@@ -86,7 +86,7 @@ def test_real_time_names_and_reminds_a_late_host() -> None:
     run.play(lambda: run.ticks[-1].tick > late_tick[0] + 3)
     reminders = [tick for tick in run.ticks if tick.tick == late_tick[0]][1:]
     assert reminders
-    assert all(list(tick.absent) == [LEFT] for tick in reminders)  # nor may a new process take it for its first
+    assert all(list(tick.absent) == [LEFT] for tick in reminders)  # nor may a new process take it as its first tick
     assert list(run.ticks[-1].absent) == [RIGHT] or run.ticks[-1].tick == late_tick[0]
     run.does_not_answer = set()
     run.done(RIGHT, *late_tick, sequence=77)

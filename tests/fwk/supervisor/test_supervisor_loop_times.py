@@ -1,4 +1,4 @@
-"""Warnings about ticks and components that take too long."""
+"""Warnings about slow ticks and components."""
 
 from typing import Any
 
@@ -32,7 +32,7 @@ class Dreams(Component):
 
 
 class Timed:
-    """Ticks with times that a test makes up."""
+    """Ticks with durations that the test chooses."""
 
     def __init__(self, groups: list[list[str]] | None = None, **fields: Any) -> None:
         parts = {"r/senses": Senses, "r/thinks": Thinks, "r/dreams": Dreams}
@@ -88,14 +88,14 @@ def test_warnings_are_rare_and_count_what_they_left_out() -> None:
     assert timed.texts[1].endswith("(49 more since the last such line)")
 
 
-def test_a_little_too_long_or_nothing_desired_is_no_reason() -> None:
+def test_slight_excess_or_no_desired_rate_gives_no_warning() -> None:
     timed = Timed()
     timed.tick(10 * S, think_us=8 * MS)  # 10.2 ms
     timed.tick(20 * S, think_us=800 * MS, desired_us=0)
     assert timed.texts == []
 
 
-def test_who_does_not_want_warnings_gets_none() -> None:
+def test_warnings_can_be_turned_off() -> None:
     timed = Timed(loop_time_warnings=False, stage_time_us=1)
     timed.tick(10 * S, think_us=30 * MS)
     assert timed.texts == []
@@ -116,7 +116,7 @@ def test_lockstep_overruns_are_named_ten_times_then_rarely() -> None:
     assert timed.texts[-1].endswith("allowed are 4 ms (90 more since the last such line)")
 
 
-def test_in_real_time_it_is_the_loop_that_names_the_late() -> None:
+def test_in_real_time_the_loop_names_late_components() -> None:
     timed = Timed(stage_time_us=4 * MS, clock="wall")
     timed.tick(10 * S, think_us=5 * MS)
     assert timed.texts == []

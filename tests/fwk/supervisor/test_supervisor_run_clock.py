@@ -1,4 +1,4 @@
-"""The central clock: logical time of the ticks and their place on the wall."""
+"""The run clock: logical time of ticks and their wall time."""
 
 from fwk import Component, Writes
 from fwk.supervisor.run_clock import RunClock
@@ -15,12 +15,12 @@ def pace(speed: float, clock: str = "simulated") -> RunClock:
     return RunClock(plan_of({"r/senses": Senses}, period_s=0.05, clock=clock), speed)
 
 
-def test_without_a_source_time_goes_on_by_the_period() -> None:
+def test_without_a_source_time_advances_by_the_period() -> None:
     clock = pace(0)
     assert [clock.advance(0) for _ in range(3)] == [50_000, 100_000, 150_000]
 
 
-def test_a_source_says_when_the_next_tick_is_once() -> None:
+def test_a_source_sets_the_time_of_the_next_tick_once() -> None:
     clock = pace(0)
     clock.advance(0)
     clock.source(70_000)
@@ -44,12 +44,12 @@ def test_speed_two_begins_ticks_twice_as_often() -> None:
     assert begins == [0, 25_000, 50_000, 75_000]
 
 
-def test_as_fast_as_it_goes_never_waits() -> None:
+def test_maximum_speed_never_waits() -> None:
     clock = pace(0)
     assert clock.begin_us(123) == 123
 
 
-def test_who_is_too_slow_does_not_run_after_lost_time() -> None:
+def test_a_slow_run_does_not_catch_up_with_lost_time() -> None:
     clock = pace(1.0)
     clock.begin_us(0)
     clock.advance(0)
@@ -58,7 +58,7 @@ def test_who_is_too_slow_does_not_run_after_lost_time() -> None:
     assert clock.begin_us(5_000_100) == 5_050_000
 
 
-def test_the_wall_clock_is_what_it_is() -> None:
+def test_wall_clock_time_is_taken_unchanged() -> None:
     clock = pace(1.0, "wall")
     clock.begin_us(1_000_000)
     assert clock.advance(1_000_000) == 50_000

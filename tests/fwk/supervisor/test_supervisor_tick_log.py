@@ -1,4 +1,4 @@
-"""The tick log without a gateway process: what is kept, repeated and waited for."""
+"""The tick log without a gateway process: records kept, repeated and waited for."""
 
 from fwk import Component, Writes
 from fwk.bus import sync

@@ -15,7 +15,7 @@ class Obeys(Component):
         self.total.write()
 
 
-def test_what_comes_in_is_visible_from_the_next_tick_on() -> None:
+def test_outside_messages_are_visible_from_the_next_tick_on() -> None:
     system = MemorySystem({"r/obeys": Obeys}, outside={"r/wish": motor_command_t})
     system.tick(2)
     for speed in (1.0, 2.0):

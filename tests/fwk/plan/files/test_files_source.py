@@ -1,4 +1,4 @@
-"""YAML as launch files read it: plain values as people mean them, and every value's line."""
+"""YAML as launch files read it: plain values, and the line of each value."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Recordings that are made by hand, tick by tick."""
+"""Builds recordings directly, tick by tick."""
 
 import json
 from collections.abc import Sequence
@@ -48,7 +48,7 @@ class HandMadeLog:
         self._log.append("fwk/record", made.encode(), made.time_us)
 
     def replayed(self) -> Replay:
-        """Returns the replay of all of this, at its end."""
+        """Returns the replay of the recording, at its end."""
         self._log.close()
         made = Replay(Recording(self.path))
         made.run()

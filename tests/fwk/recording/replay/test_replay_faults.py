@@ -1,4 +1,4 @@
-"""A replay of what went wrong in a run: late iterations that never ran, messages that somebody never got."""
+"""Replay of faults of a run: late iterations that never ran, messages that a reader never got."""
 
 import json
 from collections.abc import Sequence
@@ -41,7 +41,7 @@ class GainConfig(Config):
 
 
 class Sensor(Component):
-    """Counts."""
+    """Counts its iterations."""
 
     stage = "sensor_acquire"
     imu: Writes[imu_t]
@@ -52,7 +52,7 @@ class Sensor(Component):
 
 
 class Counter(Component):
-    """Adds up what it hears; says at the end how often it ran and by which settings."""
+    """Sums up what it hears; reports in `finalize` how often it ran and with which settings."""
 
     stage = "think"
     config: GainConfig
@@ -85,7 +85,7 @@ SHARED = plan_of(
 
 
 class Made:
-    """A log that is made by hand, tick by tick."""
+    """A log that is built tick by tick."""
 
     def __init__(self, path: Path, plan: Plan = PLAN) -> None:
         self.path = path
@@ -97,25 +97,25 @@ class Made:
         self._log.append("fwk/plan", said.encode(), 0)
 
     def sensed(self, number: int) -> None:
-        """The sensor's message of the tick that comes next."""
+        """Adds the sensor's message of the next tick."""
         message = imu_t()
         message.heading_rad = float(number)
         self._write(message, "r/sensor", number, self._tick + 1, ACQUIRE)
 
     def counted(self, number: int, heading_rad: float, tick: int, stage: int = THINK, y_m: float = 0.0) -> None:
-        """The counter's message of a tick."""
+        """Adds the counter's message of a tick."""
         message = pose_t()
         message.x_m, message.y_m, message.heading_rad = float(number - (stage == header_t.FINAL)), y_m, heading_rad
         self._write(message, "r/counter", number, tick, stage)
 
     def counted_anew(self, number: int, heading_rad: float, tick: int) -> None:
-        """The first message of a counter that was started again."""
+        """Adds the first message of a restarted counter."""
         message = pose_t()
         message.x_m, message.heading_rad = 1.0, heading_rad
         self._write(message, "r/counter#2", number, tick, THINK)
 
     def tick(self, *events: TickEvent, marks: Sequence[int], gain: float = 0.0) -> None:
-        """A tick in which the sensor runs, and then this happens; `gain` is what the counter is told before."""
+        """Adds a tick: the sensor runs, then these events follow; the counter is first sent `gain`."""
         self._tick += 1
         made = tick_record_t()
         made.version, made.tick, made.time_us = protocol_t.VERSION, self._tick, self._tick * 50_000
@@ -132,7 +132,7 @@ class Made:
         self._log.append("fwk/record", encode(made, "fwk/record"), made.time_us)
 
     def replayed(self, *only: str) -> Replay:
-        """The replay of all this."""
+        """Returns the replay of the log."""
         self._log.close()
         made = Replay(Recording(self.path), only)
         made.run()
@@ -154,7 +154,7 @@ def done(host: int, tick: int, step: int) -> StageDone:
 
 
 def missed(number: int) -> MessageLost:
-    """The counter never got that message of the sensor."""
+    """Adds the loss of that sensor message to the counter."""
     return MessageLost(COUNTER, SENSOR, number)
 
 
@@ -170,7 +170,7 @@ def test_late_iteration_that_never_ran_is_not_replayed(tmp_path: Path) -> None:
     made.sensed(2)
     made.tick(LATE, marks=(2, 1))
     made.sensed(3)
-    made.counted(2, 1.0, tick=1, stage=header_t.FINAL, y_m=1.0)  # the settings that were meant for it it was never told
+    made.counted(2, 1.0, tick=1, stage=header_t.FINAL, y_m=1.0)  # it never received the settings that were sent with it
     made.tick(STOPPED, FinalDone(COUNTER, 1), marks=(3, 2), gain=5.0)
     assert differences(made.replayed()) == []
 
@@ -186,7 +186,7 @@ def test_late_iteration_has_the_inputs_and_settings_of_its_tick(tmp_path: Path) 
     assert differences(made.replayed()) == []
 
 
-def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> None:
+def test_a_message_lost_in_the_run_is_lost_in_replay(tmp_path: Path) -> None:
     made = Made(tmp_path / "log.lcm")
     made.sensed(1)
     made.counted(1, 0.0, tick=1)
@@ -200,7 +200,7 @@ def test_what_a_process_never_got_its_component_does_not_get(tmp_path: Path) -> 
 
 
 def started_anew(folder: Path, *never_got: TickEvent) -> Made:
-    """Two ticks; in the second a process in the place of one that died has answered for another component."""
+    """Adds two ticks; in the second a restarted process has answered for another component."""
     made = Made(folder / "log.lcm", SHARED)
     made.sensed(1)
     made.counted(1, 1.0, tick=1)
@@ -212,7 +212,7 @@ def started_anew(folder: Path, *never_got: TickEvent) -> Made:
 
 
 def test_newcomer_has_messages_that_its_process_lost(tmp_path: Path) -> None:
-    """Its process is new in tick 2, itself in tick 3; of what came between the newest is lost."""
+    """Its process is new in tick 2, the component in tick 3; the newest message between is lost."""
     made = started_anew(tmp_path)
     made.sensed(3)
     made.counted_anew(2, 2.0, tick=3)
@@ -228,7 +228,7 @@ def test_newest_message_lost_by_a_new_process_is_absent_there(tmp_path: Path) ->
     assert differences(made.replayed()) == []
 
 
-def test_what_the_recording_never_got_its_writer_writes_again(tmp_path: Path) -> None:
+def test_messages_that_the_recording_lacks_are_written_again(tmp_path: Path) -> None:
     made = Made(tmp_path / "log.lcm")
     made.counted(1, 1.0, tick=1)
     made.tick(done(COUNTER, 1, THINK), marks=(1, 1))

@@ -26,7 +26,7 @@ opened: list[int] = []
 
 
 class Wheels(Component):
-    """Drives a device, and survives that it is not there; its class does not say so."""
+    """Drives a device and survives its absence; its class does not declare that."""
 
     stage = "think"
     pose: Writes[pose_t]
@@ -113,7 +113,7 @@ def _bind_in_c() -> None:
     ],
     ids=["device", "subprocess", "system", "network", "spawn", "signal", "setting", "library", "socket"],
 )
-def test_guard_refuses_what_reaches_outside(attempt: Callable[[], object], reason: str) -> None:
+def test_guard_refuses_access_to_the_outside(attempt: Callable[[], object], reason: str) -> None:
     guard = Guard()
     with pytest.raises(ReachesOutsideError, match=reason), guard.watching("r/wheels"):
         attempt()

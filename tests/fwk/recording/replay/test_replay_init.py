@@ -1,4 +1,4 @@
-"""What `init` sees is the same in a replay: sequence numbers, the blackboard, and numbers of camera frames."""
+"""`init` sees the same in a replay: sequence numbers, the blackboard, and frame numbers."""
 
 from pathlib import Path
 
@@ -13,11 +13,11 @@ from lcmtypes.soccer import pose_t
 from tests.fwk.recording.replay.replay_logs import HandMadeLog
 
 THINK = 5
-CAME = 1  # number of the change that says that the component takes part
+CAME = 1  # number of the change with which the component joins
 
 
 class Witness(Component):
-    """Says what it saw in `init`: the newest number of its channel, and whether the blackboard names its writer."""
+    """Reports what it saw in `init`: the newest number of its channel, and whether the blackboard names its writer."""
 
     stage = "think"
     blackboard: Blackboard

@@ -1,4 +1,4 @@
-"""What everybody is told of a component."""
+"""The published state of a component."""
 
 import pytest
 

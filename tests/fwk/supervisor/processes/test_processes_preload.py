@@ -1,4 +1,4 @@
-"""What is made before processes are forked: codecs of all channels, and what classes ask for, once for each setting."""
+"""Work done before processes are forked: codecs of all channels, and shared data of classes, once for each setting."""
 
 from typing import ClassVar
 
@@ -21,7 +21,7 @@ class TablesConfig(Config):
 
 
 class Tables(Component):
-    """Has a table that all of its kind can share."""
+    """Has a table that all components of the class can share."""
 
     stage = "think"
     imu: Writes[imu_t]
@@ -36,7 +36,7 @@ class Tables(Component):
 
 
 class Looks(Component):
-    """Reads."""
+    """Reads a channel."""
 
     stage = "act"
     imu: Reads[imu_t]
@@ -47,7 +47,7 @@ def forget_tables() -> None:
     Tables.made.clear()
 
 
-def test_codecs_are_there_before_any_process_asks_for_them() -> None:
+def test_codecs_exist_before_any_process_needs_them() -> None:
     codec.decoder.cache_clear()
     codec.encoder.cache_clear()
     preload(plan_of({"r/tables": Tables, "r/looks": Looks}, channels={"r/looks": {"imu": "r/imu"}}))
@@ -62,6 +62,6 @@ def test_class_is_asked_once_for_equal_settings() -> None:
     assert Tables.made == [1, 2]
 
 
-def test_class_that_cannot_is_left_to_its_own_init() -> None:
+def test_a_class_that_fails_is_left_to_its_own_init() -> None:
     preload(plan_of({"r/tables": Tables, "s/tables": Tables}, {"r/tables": {"size": -1}}))
     assert Tables.made == [1]
