@@ -44,7 +44,8 @@ def ports() -> Iterator[PortBlock]:
 @pytest.fixture
 def leave_out() -> Callable[[str], NoReturn]:
     """`leave_out("needs root")` skips the test; the end of the test run lists the reason.
-    / This is the only way to skip. A test is skipped only for something that the machine lacks, never because the
+
+    This is the only way to skip. A test is skipped only for something that the machine lacks, never because the
     test fails.
     """
     return pytest.skip
@@ -88,7 +89,8 @@ def small_disk(
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
     """Lists the skipped tests with their reasons, so that a green run does not hide them.
-    / Uses the reports, which arrive from all workers.
+
+    Uses the reports, which arrive from all workers.
     """
     left_out: dict[str, list[str]] = {}
     for report in terminalreporter.stats.get("skipped", []):

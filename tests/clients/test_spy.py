@@ -1,5 +1,6 @@
 """lcm-spy as a real process decodes every channel.
-/ Its window is a Swing table. A Java agent inside the unchanged program reads that table, so the test checks what a
+
+Its window is a Swing table. A Java agent inside the unchanged program reads that table, so the test checks what a
 person would see, without analysing pixels. A screenshot shows that the window was drawn.
 """
 
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.system
 
 
 def one_of_each_type() -> list[Entry]:
-    """Publishes three messages of each type, on channels such as `every/soccer.pose_t`."""
+    """Returns three messages of each type, on channels such as `every/soccer.pose_t`."""
     ours = {file.stem for file in (Path(__file__).parents[2] / "lcmtypes").glob("*.lcm")}
     types = [kind for kinds in by_fingerprint().values() for kind in kinds if has_header(kind)]
     types = [kind for kind in types if type_name(kind).partition(".")[0] in ours]  # other tests register more types

@@ -35,7 +35,8 @@ def label(component: type[Component]) -> str:
 
 def usage(component: type[Component]) -> tuple[str, ComponentPlan] | None:
     """Returns the first launch file in which all needs of the component are met, and its index in that plan.
-    / A port for many instances needs two of them if any launch file has two. None if no launch file suits.
+
+    A port for many instances needs two of them if any launch file has two. None if no launch file suits.
     """
     found = [each for each in _usages() if (each[1].module, each[1].class_name) == _key(component)]
     each_ports = [port.attribute for port in declaration(component).ports if port.each]

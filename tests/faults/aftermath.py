@@ -40,7 +40,8 @@ class Aftermath:
         gone_s: float = GONE_S,
     ) -> Recording:
         """Asserts that the run ended with `code`, left nothing behind, and wrote a whole recording.
-        / `equal_to` is the log of an undisturbed run; with `replays` a replay has to write the same messages.
+
+        `equal_to` is the log of an undisturbed run; with `replays` a replay has to write the same messages.
         """
         if code is not None:
             assert run.wait() == code, run.text

@@ -1,5 +1,6 @@
 """Runs many short systems with random faults and replays each; prints differences and keeps their folders.
-/ python -m tests.faults.stress --seed 1 --runs 10 --load 2 --clock wall
+
+python -m tests.faults.stress --seed 1 --runs 10 --load 2 --clock wall
 """
 
 import argparse

@@ -1,5 +1,6 @@
 """Replays each component of the recording `log.lcm` of the current folder alone.
-/ Prints as JSON how many messages of each component were compared, and which of them differed.
+
+Prints as JSON how many messages of each component were compared, and which of them differed.
 """
 
 import json

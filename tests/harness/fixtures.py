@@ -17,7 +17,8 @@ GONE_S = 5.0
 @pytest.fixture
 def launch(tmp_path: Path, ports: PortBlock) -> Iterator[Launch]:
     """Starts runs, `launch("launch/x.yaml", "--ticks", "5", env={}, folder=...)`, and kills the rest at the end.
-    / Fails if a run that ended by itself, or was killed, has left processes behind.
+
+    Fails if a run that ended by itself, or was killed, has left processes behind.
     """
     launched: list[Launched] = []
 

@@ -1,5 +1,6 @@
 """Derives from the contract alone what every iteration of the orchestra must have seen, and finds violations.
-/ Visible to an iteration (tick, stage) is every message of an earlier (tick, stage), and no other. An iteration sees
+
+Visible to an iteration (tick, stage) is every message of an earlier (tick, stage), and no other. An iteration sees
 the messages that became visible since the last iteration of its process; the first iteration of a restarted player
 sees the newest messages as of the tick in which its process joined the loop, and all later ones.
 """

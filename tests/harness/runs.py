@@ -28,7 +28,8 @@ _BASES = range(21_120, 32_000, _BLOCK)  # first lock block of ports
 
 class PortBlock:
     """Ports that no other test on this machine uses at the same time: consecutive blocks of 128 ports.
-    / The lock of a block is a name in the network namespace, which is also the scope of ports; it ends with its
+
+    The lock of a block is a name in the network namespace, which is also the scope of ports; it ends with its
     process.
     """
 

@@ -1,4 +1,4 @@
-"""The match in letters."""
+"""The match drawn in characters."""
 
 import pytest
 
@@ -31,7 +31,7 @@ def test_drawing_fits_and_shows_everything(columns: int, rows: int) -> None:
     assert ball < magenta  # y points up
 
 
-def test_too_little_room_shows_nothing() -> None:
+def test_too_little_room_gives_no_drawing() -> None:
     assert field_drawing(truth(), 8, 3) == []
 
 

@@ -1,6 +1,6 @@
-"""A small system with commands and requests: a lifter that carries out, a calculator that answers, two that want it.
+"""A small system with commands and requests: a lifter, a calculator, and two clients.
 
-What was carried out stands in what the lifter writes: each command once, in the order in which it was begun.
+The lifter's messages show what it carried out: each command once, in the order in which it began them.
 """
 
 from tests.harness.components import sources
@@ -18,7 +18,7 @@ public_url: "{public_url}"
 
 
 def command_system(public_url: str) -> dict[str, str]:
-    """The files of a user's folder."""
+    """Returns the files of a user's folder."""
     return {
         **sources("lcmtypes/lift.lcm", "lift_parts.py", "weather.py"),
         "launch/lift.yaml": LAUNCH.format(public_url=public_url),

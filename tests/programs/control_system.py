@@ -1,4 +1,4 @@
-"""A small system to be looked at and steered: a counter, one that follows it, and a camera with its user."""
+"""A small system to inspect and control: a counter, its follower, and a camera with its user."""
 
 import json
 import signal
@@ -27,7 +27,7 @@ def write_system(folder: Path, ports: PortBlock) -> None:
 
 
 class Steered:
-    """A run of it, and what is typed in another terminal."""
+    """A run of the system, and commands in another terminal."""
 
     def __init__(self, launched: Launched, ports: PortBlock) -> None:
         self.launched = launched
@@ -35,40 +35,40 @@ class Steered:
         launched.until_true(self._ticks, "the first tick")
 
     def fwk(self, *arguments: str, code: int = 0) -> str:
-        """What `fwk ARGUMENTS` prints about this run; it has to end with that exit code."""
+        """Returns the output of `fwk ARGUMENTS` about this run; the command has to end with that exit code."""
         which = [] if "--verify" in arguments else ["--bus-port", str(self._ports.bus)]
         return fwk(self.launched.folder, *arguments, *which, code=code)
 
     def json(self, *arguments: str) -> Any:
-        """What `fwk ARGUMENTS --json` prints."""
+        """Returns the output of `fwk ARGUMENTS --json`, decoded."""
         return json.loads(self.fwk(*arguments, "--json"))
 
     def ask(self, verb: str, **fields: Any) -> dict[str, Any]:
-        """An answer of the supervisor."""
+        """Returns an answer of the supervisor."""
         with Client(supervisor_address(self._ports.bus), TIMEOUT_S) as client:
             return client.ask(verb, **fields)
 
     def steer(self, action: str, *names: str) -> None:
-        """As `fwk ACTION NAMES`, without a process of its own."""
+        """Acts like `fwk ACTION NAMES`, without a process for it."""
         self.ask("steer", action=action, names=names)
 
     def component(self, name: str) -> dict[str, Any]:
-        """The state of a component."""
+        """Returns the state of a component."""
         found: dict[str, Any] = self.ask("status", names=[name])["components"][0]
         return found
 
     @property
     def tick(self) -> int:
-        """The newest tick."""
+        """Returns the newest tick."""
         return int(self.ask("status")["tick"])
 
     def ticks_pass(self, number: int = 3) -> None:
-        """Waits so many ticks."""
+        """Waits for that number of ticks."""
         before = self.tick
         self.launched.until_true(lambda: self.tick >= before + number, f"{number} more ticks")
 
     def end(self) -> Path:
-        """Ends the run in good order; its recording."""
+        """Ends the run regularly; returns its recording."""
         self.launched.signal(signal.SIGINT)
         assert self.launched.wait() == 0, self.launched.text
         return self.launched.run_dir / "log.lcm"

@@ -1,4 +1,4 @@
-"""A small system around a device with LCM types of its own: a driver, what it tells others, and who adds that up."""
+"""A small system around a device with LCM types of its own: a driver, and a listener that sums up its messages."""
 
 from tests.harness.components import sources
 
@@ -15,7 +15,7 @@ public_url: "{public_url}"
 
 
 def device_system(public_url: str, time: str = "period_s: 0.02") -> dict[str, str]:
-    """The files of a user's folder."""
+    """Returns the files of a user's folder."""
     return {
         **sources("lcmtypes/devices.lcm", "device_parts.py"),
         "device.yaml": LAUNCH.format(time=time, public_url=public_url),

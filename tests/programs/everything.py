@@ -1,4 +1,4 @@
-"""A system in which everything happens at once: beside orchestra, lift and driver a planner, and programs outside."""
+"""A system in which everything happens at once: orchestra, lift and driver with a planner and programs outside."""
 
 from tests.harness.components import sources
 from tests.programs.together import together
@@ -12,5 +12,5 @@ outside:
 
 
 def everything(public_url: str, *, real_time: bool, groups: bool = False) -> dict[str, str]:
-    """The files of a user's folder."""
+    """Returns the files of a user's folder."""
     return together(public_url, MORE, real_time=real_time, groups=groups) | sources("everything_parts.py")

@@ -1,4 +1,4 @@
-"""Components that open and close channels as they like, and write down all that they see of the blackboard."""
+"""Components that open and close channels at random, and write down everything they see of the blackboard."""
 
 from tests.harness.components import sources
 
@@ -6,7 +6,7 @@ WANDERER = '  d/trader: {use: "traders:Wanderer", restart: {limit: 100, backoff_
 
 
 def market(public_url: str, more: str = "", *, wanderer: bool = False) -> dict[str, str]:
-    """The files of an application: three traders in two stages, if asked for one at its own pace, and a bystander."""
+    """Returns an application's files: three traders in two stages, one continuous if asked, and a bystander."""
     launch = f"""
 name: market
 period_s: 0.02
@@ -24,7 +24,7 @@ components:
 
 
 def brief(public_url: str) -> dict[str, str]:
-    """The files of an application with a writer that opens its channel when it is told to."""
+    """Returns the files of an application with a writer that opens its channel on command."""
     launch = f"""
 name: brief
 period_s: 0.02

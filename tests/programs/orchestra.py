@@ -1,9 +1,9 @@
-"""A small system that uses all of the contract at once: what its players heard stands in what they write.
+"""A small system that uses all of the contract at once: the notes of its players hold what they heard.
 
-Six players in five stages hear everybody, themselves too; `d` and `e` are peers of one stage, `a` takes part in two.
-Each writes one note an iteration and none to three bursts; `b`'s bursts are larger than a datagram. The conductor is
-the time source, its ticks are not equally long. A camera gives out frames, a viewer looks at them. A player can be told
-to make trouble (`trouble.py`), and all processes to lose datagrams (`weather.py`).
+Six players in five stages hear all players, including themselves; `d` and `e` share a stage, `a` takes part in two.
+Each writes one note in each iteration and none to three bursts; the bursts of `b` are larger than a datagram. The
+conductor is the time source; its ticks differ in length. A camera publishes frames, a viewer looks at them. Settings
+give a player faults (`trouble.py`), and let all processes lose datagrams (`weather.py`).
 """
 
 from tests.harness.components import sources
@@ -36,7 +36,7 @@ hosts:
 
 
 def orchestra(public_url: str, more: str = "") -> dict[str, str]:
-    """The files of a user's folder; `more` is added to the launch file."""
+    """Returns the files of a user's folder; `more` is added to the launch file."""
     return {
         **sources("lcmtypes/play.lcm", "player.py", "vision_parts.py", "trouble.py", "weather.py"),
         "launch/orchestra.yaml": LAUNCH.format(public_url=public_url) + more,

@@ -1,4 +1,4 @@
-"""A small system that programs outside take part in: one that obeys a joystick, in what it writes everything counts."""
+"""A small system that programs outside take part in: a component sums up the values of a joystick."""
 
 from tests.harness.components import sources
 
@@ -15,7 +15,7 @@ public_url: "{public_url}"
 
 
 def outside_system(public_url: str, time: str) -> dict[str, str]:
-    """The files of a user's folder."""
+    """Returns the files of a user's folder."""
     return {
         **sources("obeys_parts.py", "weather.py"),
         "joystick.yaml": LAUNCH.format(time=time, public_url=public_url),

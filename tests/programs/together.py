@@ -1,4 +1,4 @@
-"""Orchestra and lift in one run, by either clock, with a driver that takes the main loop over and gives it back."""
+"""Orchestra and lift in one run, in lockstep or real time, with a driver that repeatedly takes the main loop over."""
 
 import re
 
@@ -21,13 +21,13 @@ FILE = "launch/together.yaml"
 
 
 def together(public_url: str, more: str = "", *, real_time: bool, groups: bool = False) -> dict[str, str]:
-    """The files of a user's folder; `more` continues the launch file where its components are."""
+    """Returns the files of a user's folder; `more` continues the components of the launch file."""
     files = orchestra(public_url, GROUPS if groups else "") | command_system(public_url)
     text = (TOGETHER.rstrip() + "\n" + more.lstrip("\n")) + (WALL if real_time else "")
     files |= sources("driver.py") | {FILE: text}
     for name in ("launch/orchestra.yaml", "launch/lift.yaml"):
         files[name] = re.sub(r'use: ("[\w.:]+")', r"use: \1, restart: {limit: 100, backoff_s: 0.01}", files[name])
-        if real_time:  # the wall's clock instead of the conductor's, and no frames, which are not recorded
+        if real_time:  # wall time instead of the conductor's, and no frames, which are not recorded
             no_source = r"  world/conductor: .*\n|, world/conductor|  a/viewer: .*\n|speed: max\n"
             files[name] = re.sub(no_source, "", files[name])
     return files

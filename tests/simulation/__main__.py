@@ -37,7 +37,7 @@ class Summary:
 
 
 def main() -> int:
-    """Simulates; returns the exit code."""
+    """Simulates histories; returns the exit code."""
     parser = argparse.ArgumentParser(description="Simulates whole systems with faults, each history from a seed.")
     parser.add_argument("--histories", type=int, default=1000, help="how many; default 1000")
     parser.add_argument("--seconds", type=float, default=0.0, help="end after so much time; 0: when all are done")

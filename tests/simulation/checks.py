@@ -35,7 +35,7 @@ class Failure:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What came of the histories of one scenario."""
+    """Result of the histories of one scenario."""
 
     failures: tuple[Failure, ...]
     runs: int
@@ -45,7 +45,7 @@ class Verdict:
 
 
 def verdict_of(scenario: Scenario) -> Verdict:
-    """Runs a scenario with and without its faults, and replays it; returns what it breaks."""
+    """Runs a scenario with and without its faults, and replays it; returns the promises that it breaks."""
     folder = Path(tempfile.mkdtemp(prefix="fwk-simulate-", dir=_memory()))
     try:
         outcome = run(scenario, folder)
@@ -65,7 +65,7 @@ def verdict_of(scenario: Scenario) -> Verdict:
 
 
 def trace_of(scenario: Scenario) -> Trace:
-    """Runs a scenario and returns what happened, step by step."""
+    """Runs a scenario and returns its events, step by step."""
     folder = Path(tempfile.mkdtemp(prefix="fwk-simulate-", dir=_memory()))
     trace = Trace(True)
     try:
@@ -110,7 +110,7 @@ def _single(outcome: Outcome) -> Iterator[Failure]:
 
 
 def _lost(outcome: Outcome, log: Log, scenario: Scenario) -> Iterator[Failure]:
-    """Every message that is not recorded is counted and named; without outside faults none is lost."""
+    """Every message that is not recorded is counted and named; without outside faults no message is lost."""
     channels = {each["index"]: each["name"] for each in log.plan["channels"]}
     marks = {channel: mark for record in log.records for channel, mark in record.marks.items()}
     missing = 0
@@ -132,7 +132,7 @@ def _lost(outcome: Outcome, log: Log, scenario: Scenario) -> Iterator[Failure]:
 
 
 def _settings(outcome: Outcome, log: Log) -> Iterator[Failure]:
-    """A setting that was acknowledged is in force from then on, until a newer one is."""
+    """An acknowledged setting is in force from then on, until a newer one is."""
     names = {each["name"]: each["index"] for each in log.plan["components"]}
     for name, value, tick in outcome.acknowledged:
         recorded = [(record.tick, new["tune"]) for record in log.records for who, new in record.settings

@@ -1,4 +1,4 @@
-"""Generic components: what each of them sends is a digest of everything that it sees."""
+"""Generic components: each sends a digest of everything that it sees."""
 
 import zlib
 from functools import partial
@@ -34,11 +34,11 @@ RUMOURS = 2
 
 
 class SimulatedCrashError(Exception):
-    """A component fails, as its settings ask for."""
+    """A component fails, as its settings demand."""
 
 
 class PlayerConfig(Config):
-    """What a player does besides hearing all others."""
+    """Actions of a player besides hearing all others."""
 
     tune: int = 0
     """Stands in every note: shows which settings were in force."""
@@ -114,7 +114,7 @@ class Player(Component):
 
     @property
     def note_place(self) -> int:
-        """Place of the running iteration in its tick, as headers say it."""
+        """Returns the position of the running iteration in its tick, as in headers."""
         return self.note._stamp.stage
 
     def heard_by(self) -> list[Reads[Any]]:
@@ -122,21 +122,21 @@ class Player(Component):
         return [*self.notes.values(), *self.bursts.values()]
 
     def act(self) -> None:
-        """Does what the kind of the component is for."""
+        """Performs the action of this kind of component."""
 
     def tell(self, text: str) -> None:
-        """Adds to what this iteration was told."""
+        """Adds to the inputs that this iteration saw."""
         self.note.value.told.append(text)
 
     def moved(self) -> bool:
-        """Returns whether the component asks for something in this iteration."""
+        """Returns whether the component sends a request in this iteration."""
         return bool(self.rng.random() < self.config.eager)
 
     def crash(self, where: str) -> None:
-        """Fails if the settings ask for it, once in a run.
+        """Fails if the settings demand it, once in a run.
 
         Raises:
-            SimulatedCrashError: the settings ask for it here.
+            SimulatedCrashError: the settings demand it here.
         """
         if self.config.crash_in == where and self.config.crash_tick and machine.once(f"{self.name} {where}"):
             raise SimulatedCrashError(f"{self.name} fails in {where}")
@@ -150,7 +150,7 @@ class Drifter(Player):
 
 
 class Conductor(Player):
-    """Says when the next tick is."""
+    """Time source: sets the time of the next tick."""
 
     time_source: TimeSource
 
@@ -220,7 +220,7 @@ class Usurper(Player):
 
 
 class Director(Player):
-    """Stops, starts and exchanges others."""
+    """Stops, starts and replaces other components."""
 
     plugins: PluginControl
 
@@ -234,7 +234,7 @@ class Director(Player):
 
 
 class Opener(Player):
-    """Opens and closes channels while it runs."""
+    """Opens and closes channels during the run."""
 
     blackboard: Blackboard
 
@@ -247,12 +247,12 @@ class Opener(Player):
             self.open()
 
     def seen(self) -> str:
-        """Returns everything that the blackboard says, as text."""
+        """Returns everything that the blackboard shows, as text."""
         views = [f"{view.name} {view.writer} {view.readers}" for view in self.blackboard.instances()]
         return f"{views} {[self.blackboard.has_writer(f'rumour/r{number}') for number in range(RUMOURS)]}"
 
     def open(self) -> None:
-        """Opens some channel in some way."""
+        """Opens a random channel in a random way."""
         name = f"rumour/r{int(self.rng.integers(RUMOURS))}"
         way = int(self.rng.integers(3))
         if way == 0:
@@ -277,7 +277,7 @@ class Opener(Player):
                 self.tell(str(error))
 
     def use(self, handle: Any) -> None:
-        """Reads or writes what is open."""
+        """Reads or writes the open channels."""
         if hasattr(handle, "write"):
             self.tell(f"{handle.channel} {handle.is_open} {handle.refused}")
             if handle.is_open and self.rng.random() < 0.8:
@@ -292,14 +292,14 @@ class Opener(Player):
 
 
 class Rover(Opener):
-    """Opens and closes channels at a pace of its own, which is slower than the ticks of some plans."""
+    """Opens and closes channels at a rate of its own, which is slower than the ticks of some plans."""
 
     stage = ()
     rate_hz = 30.0
 
 
 class Listener(Player):
-    """Hears what programs outside say."""
+    """Hears programs outside."""
 
     call: Reads[call_t] = channel(CALLS)
 
@@ -315,14 +315,14 @@ KINDS = {
 
 
 def taken_of(kind: str, command: Any) -> taken_t:
-    """Returns which command it is."""
+    """Returns the identity of a command."""
     made = taken_t()
     made.kind, made.sender, made.sequence = kind, command.sender, command.sequence
     return made
 
 
 def raw_of(reader: Reads[Any]) -> list[bytes]:
-    """Returns the messages that are new for this iteration, and the newest, as they were sent."""
+    """Returns the messages that are new for this iteration, and the newest one, as sent."""
     return [*reader._fresh, reader._raw or b""]
 
 

@@ -1,4 +1,4 @@
-"""Faults of a simulated world: the weather between processes, and actions that hit one of them at a moment."""
+"""Faults of a simulated world: the weather between processes, and actions on one process at a moment."""
 
 from dataclasses import dataclass
 from random import Random
@@ -7,13 +7,13 @@ from typing import Literal
 ActionKind = Literal[
     "kill",  # the process ends at once
     "kill_at_send",  # the process ends before it sends its datagram number `amount` from now on
-    "stop",  # the process stands still for `amount` microseconds
+    "stop",  # the process stops for `amount` microseconds
     "stop_at_send",  # the same, before its datagram number `amount` from now on
     "jump",  # the clock of the machine jumps ahead by `amount` microseconds
     "set",  # a tool sets the component's `tune` to `amount`
     "steer",  # a tool asks to start, stop, restart, load or unload the component
     "pause",  # a tool pauses the run and lets it go on after `amount` microseconds
-    "call",  # a program outside says the number `amount`
+    "call",  # a program outside publishes the number `amount`
 ]
 OUTSIDE: frozenset[ActionKind] = frozenset({"kill", "kill_at_send", "set", "steer", "pause", "call"})
 """Actions from outside: two runs with them may differ, but each replays."""
@@ -37,7 +37,7 @@ class Action:
 
 @dataclass(frozen=True)
 class Weather:
-    """What happens to every datagram and process; each number is a probability unless it says otherwise."""
+    """Faults of datagrams and processes; each number is a probability unless its comment says otherwise."""
 
     latency_us: int = 20
     """Longest usual time of a datagram on its way."""
@@ -56,12 +56,12 @@ class Weather:
 
     @property
     def calm(self) -> bool:
-        """Whether nothing goes wrong."""
+        """Returns whether there are no faults."""
         return self == Weather()
 
 
 def weather_of(random: Random) -> Weather:
-    """Draws a weather: each kind of fault is there or not, and then rare or frequent."""
+    """Draws a weather: each kind of fault is absent, rare or frequent."""
 
     def rate(most: float) -> float:
         return round(most * random.random() ** 3, 4) if random.random() < 0.5 else 0.0

@@ -25,14 +25,14 @@ def find(number: int, histories: int) -> Found:
         for seed in range(1, histories + 1):
             failures = verdict_of(scenario_of(seed)).failures
             if failures:
-                if _MODULE in str(failures[0]):  # it raises by itself, which proves nothing
+                if _MODULE in str(failures[0]):  # the mutation raises by itself, which proves nothing
                     raise RuntimeError(f"the mutation '{mutation.name}' does not fit the engine: {failures[0]}")
                 return mutation.name, seed, str(failures[0])
     return mutation.name, 0, f"not found: {mutation.breaks}"
 
 
 def main() -> int:
-    """Looks for all mutations; returns the exit code."""
+    """Searches for all mutations; returns the exit code."""
     parser = argparse.ArgumentParser(description="Breaks the contract on purpose and shows that histories find it.")
     parser.add_argument("--histories", type=int, default=300, help="most histories for a mutation; default 300")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1, help="default: one a processor")

@@ -1,4 +1,4 @@
-"""What components of a simulated system use of the machine below them: processor time, and a disk that remembers."""
+"""The simulated machine below components: processor time, and a disk that remembers."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ def _no_process() -> str:
 
 @dataclass
 class Machine:
-    """The machine that the components of this process run on; outside the simulated world a machine that does nothing.
+    """The machine that the components of this process run on; outside the simulated world it does nothing.
 
     A replay runs outside the world, so its components neither take time nor fail.
     """
@@ -30,14 +30,14 @@ class Machine:
 
     def enter(self, work: Callable[[int], None], process: Callable[[], str]) -> None:
         """Lets components run on a simulated machine."""
-        self.__init__(True, work, process)  # type: ignore[misc]  # everything anew
+        self.__init__(True, work, process)  # type: ignore[misc]  # replaced as a whole
 
     def leave(self) -> None:
         """Lets components run on a machine without time and memory."""
-        self.__init__()  # type: ignore[misc]  # everything anew
+        self.__init__()  # type: ignore[misc]  # replaced as a whole
 
     def once(self, mark: str) -> bool:
-        """Returns whether this is the first call with `mark`, in whichever process; False outside the simulation."""
+        """Returns whether this is the first call with `mark` in any process; False outside the simulation."""
         if not self.simulated or mark in self.marks:
             return False
         self.marks.add(mark)

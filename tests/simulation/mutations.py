@@ -1,4 +1,4 @@
-"""The contract, broken on purpose: each mutation replaces one method of the engine, and histories have to find it."""
+"""Deliberate violations of the contract: each mutation replaces one method of the engine, and histories must find it."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -36,7 +36,7 @@ class Mutation:
 
     @contextmanager
     def applied(self) -> Iterator[None]:
-        """Breaks the contract meanwhile."""
+        """Breaks the contract for the duration of the block."""
         right = getattr(self.owner, self.attribute)
         with ExitStack() as broken:
             broken.enter_context(patch.object(self.owner, self.attribute, self.replacement(right)))
@@ -95,7 +95,7 @@ def _answers_once(right: Any) -> Any:
 
 
 def _timeless(right: Any) -> Any:
-    """Commands are sorted by a header that knows no time."""
+    """Commands are sorted by a header without the time."""
 
     class Timeless:
         @staticmethod

@@ -1,4 +1,4 @@
-"""The network of a simulated world, at the level of datagrams: who hears what, when, and what is lost on the way."""
+"""The network of a simulated world, at the level of datagrams: receivers, delays and losses."""
 
 from __future__ import annotations
 
@@ -34,11 +34,11 @@ class Source(ABC):
     @property
     @abstractmethod
     def readable(self) -> bool:
-        """Whether there is something to read."""
+        """Returns whether there is something to read."""
 
 
 class Signal(Source):
-    """Becomes readable when `set` is called, and stays so until `clear` is."""
+    """Becomes readable when `set` is called, and stays so until `clear` is called."""
 
     def __init__(self, ether: Ether) -> None:
         super().__init__(ether)
@@ -46,7 +46,7 @@ class Signal(Source):
 
     @property
     def readable(self) -> bool:
-        """Whether it is set."""
+        """Returns whether it is set."""
         return self._set
 
     def set(self) -> None:
@@ -60,7 +60,7 @@ class Signal(Source):
         self._set = False
 
     def recv(self, _size: int, /) -> bytes:
-        """Returns nothing once it is set, as a connection that was closed.
+        """Returns nothing once it is set, like a closed connection.
 
         Raises:
             BlockingIOError: it is not set.
@@ -84,7 +84,7 @@ class SimulatedSocket(Source):
 
     @property
     def readable(self) -> bool:
-        """Whether a datagram waits."""
+        """Returns whether a datagram waits."""
         return bool(self._waiting)
 
     def fileno(self) -> int:
@@ -92,7 +92,7 @@ class SimulatedSocket(Source):
         return -1 if self.closed else super().fileno()
 
     def recvfrom(self, _size: int, /) -> tuple[bytes, Address]:
-        """Returns the next datagram and the address that it came from.
+        """Returns the next datagram and the address of its sender.
 
         Raises:
             BlockingIOError: no datagram waits.
@@ -111,14 +111,14 @@ class SimulatedSocket(Source):
         return len(data)
 
     def close(self) -> None:
-        """Gives the socket back."""
+        """Releases the socket."""
         if not self.closed:
             self._ether.forget(self, self._group)
             self.closed = True
             self.watcher = None
 
     def deliver(self, data: bytes, address: Address) -> None:
-        """Lets a datagram arrive."""
+        """Delivers a datagram."""
         if not self.closed:
             self._waiting.append((data, address))
             if self.watcher:
@@ -167,7 +167,7 @@ class Ether:
             del self._own[socket.port]
 
     def send(self, process: Process, source: Address, address: Address, data: bytes) -> None:
-        """Sends a datagram to every socket that hears the address, to each with a delay of its own."""
+        """Sends a datagram to every socket that receives from the address, to each with a separate delay."""
         to, port = address
         world = self._world
         world.trace.add(process.local_us, process.name, f"-> {_place(address)}", data)

@@ -1,10 +1,11 @@
-"""Says from the contract's words alone what every iteration must have seen; shares no code with the engine.
+"""Derives from the contract alone what every iteration must have seen; shares no code with the engine.
 
-Visible to an iteration is every message whose done was taken before its stage began, and no other; in lockstep these
-are the messages of all earlier (tick, stage). An iteration sees what became visible since the last one of its process.
-A component iterates in the ticks that `every` and `offset` select; in the others it takes part without an iteration.
-The first one of a process that joins a run that goes on, and one after more than 16 ticks of absence, sees of each
-channel the newest message alone. Commands are taken out in the order of tick, stage, sender and sequence.
+Visible to an iteration is every message whose done was taken before its stage began, and no other; in lockstep
+these are the messages of all earlier (tick, stage). An iteration sees the messages that became visible since the last
+iteration of its process. A component iterates in the ticks that `every` and `offset` select; in the others it takes
+part without an iteration. The first iteration of a process that joins a run, and the first one after more than 16
+ticks of absence, see only the newest message of each channel. Commands are taken out in the order of tick, stage,
+sender and sequence.
 """
 
 from collections.abc import Iterator
@@ -22,7 +23,7 @@ Counts = dict[str, int]
 
 @dataclass
 class _Process:
-    """What a process of a host has seen so far."""
+    """Everything that a process of a host has seen so far."""
 
     incarnation: int
     seen: dict[str, Counts] = field(default_factory=dict)
@@ -32,7 +33,7 @@ class _Process:
 
 
 def contradictions(log: Log) -> list[str]:
-    """Returns every iteration that saw something else than the contract says, in words."""
+    """Returns every iteration that violates the contract, in words."""
     return list(_Oracle(log).findings())
 
 
@@ -57,8 +58,8 @@ class _Oracle:
                 self._numbers.setdefault(key, []).append(header.sequence)
         self._taken: Counts = {}
         self._visible: Counts = {}
-        self._at: dict[tuple[int, int], Counts] = {}  # tick, step of a stage: what was visible
-        self._told: dict[int, Counts] = {}  # tick: what continuous components were told
+        self._at: dict[tuple[int, int], Counts] = {}  # tick, step of a stage: visible messages
+        self._told: dict[int, Counts] = {}  # tick: messages announced to continuous components
         self._missed: set[tuple[int, str, int]] = set()  # host, channel, number
         self._incarnation: dict[int, int] = {}  # of each host
         self._stage_of: dict[tuple[int, int], int] = {}  # tick, step: index of the stage
@@ -101,7 +102,7 @@ class _Oracle:
             yield f"tick {record.tick}: its steps are out of order: {steps}"
 
     def _take(self, host: int, tick: int, stage: int) -> None:
-        """The done of a host was taken."""
+        """Takes the done of a host."""
         for channel in self._written_by.get(host, ()):
             incarnation = self._incarnation.get(host, 0)
             if stage == header_t.FINAL:  # a process may have been stopped before it joined the run
@@ -131,7 +132,7 @@ class _Oracle:
             where = f"{header.writer} in tick {header.tick}, stage {header.stage}"
             if header.stage == header_t.FINAL:
                 continue
-            unknown = channel in self._holed and header.sequence != before + 1  # an iteration before is not recorded
+            unknown = channel in self._holed and header.sequence != before + 1  # an earlier iteration is not recorded
             before = header.sequence
             if incarnation != process.incarnation:
                 process, iterations = _Process(incarnation), 0
@@ -187,7 +188,7 @@ class _Oracle:
                 yield from self._earlier(where, channel, header, numbers[-1])
 
     def _joins(self, name: str, process: _Process, tick: int) -> bool:
-        """Whether an iteration is the first of a process that joins, or follows an absence of the component."""
+        """Returns whether an iteration is the first of a process that joins, or follows an absence of the component."""
         component = self._names[name]
         if name not in process.ticks and process.incarnation > 1:
             return True
@@ -201,7 +202,7 @@ class _Oracle:
                 if last < at < tick and self._stage_of.get((at, step)) in component["stages"]
             }
         )
-        newest = last or 1 - AWAY_TICKS  # in its first life a component joins before tick 1
+        newest = last or 1 - AWAY_TICKS  # in its first incarnation a component joins before tick 1
         for at in [*took_part, tick]:
             if at > newest + AWAY_TICKS:
                 return True
@@ -209,7 +210,7 @@ class _Oracle:
         return False
 
     def _earlier(self, where: str, channel: str, header: Header, number: int) -> Iterator[str]:
-        """In lockstep the newest message that was heard is of an earlier (tick, stage), whatever the records say."""
+        """Checks that the newest message seen in lockstep is of an earlier (tick, stage), whatever the records say."""
         for other, _ in self._log.messages.get(channel, []):
             late = other.stage != header_t.FINAL and (other.tick, other.stage) >= (header.tick, header.stage)
             if other.sequence == number and late and not self._is_continuous(other.writer):
@@ -230,7 +231,7 @@ class _Oracle:
 
 
 class _Queue:
-    """The commands of one component: in which order the contract lets it take them out."""
+    """The commands of one component, and the order in which the contract lets it take them out."""
 
     def __init__(self, log: Log, name: str) -> None:
         component = next(each for each in log.plan["components"] if each["name"] == name)
@@ -245,7 +246,7 @@ class _Queue:
         self._waiting: dict[str, list[tuple[str, int]]] = {"order": [], "question": []}
 
     def restarted(self) -> None:
-        """A new process knows no commands of the time before."""
+        """Forgets all earlier commands, as a new process does."""
         self._waiting = {"order": [], "question": []}
 
     def iteration(self, where: str, header: Header, note: Any, visible: Counts) -> Iterator[str]:
@@ -270,7 +271,7 @@ class _Queue:
 
 
 def holed_channels(log: Log) -> set[str]:
-    """Returns the channels of which the recording lacks messages: it is unknown when the others became visible."""
+    """Returns the channels whose messages the recording lacks in part: their visibility is unknown."""
     channels = {each["index"]: each["name"] for each in log.plan["channels"]}
     marks = {
         channels[index]: mark for record in log.records for index, mark in record.marks.items() if index in channels

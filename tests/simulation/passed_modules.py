@@ -1,7 +1,8 @@
 """Counts the modules of fwk that an event passes: `python -m tests.simulation.passed_modules`.
 
-A small system is simulated in one thread, and every call of a function is noted by module and process. A tick passes
-the modules that run in quiet ticks. A change and a crash pass the further modules that run until the tick after them.
+A small system is simulated in one thread, and every call of a function is noted by module and process. A tick
+passes the modules that run in quiet ticks. A change and a crash pass the further modules that run until the tick
+after them.
 """
 
 import sys
@@ -39,7 +40,7 @@ class Watched(System):
         super().__init__(scenario, folder, Trace(False))
 
     def note(self, frame: FrameType, event: str, _argument: Any) -> None:
-        """Notes a call; to be given to `sys.setprofile`."""
+        """Notes a call; an argument for `sys.setprofile`."""
         running = self.world.running
         if event != "call" or self._noted is None or running is None:
             return

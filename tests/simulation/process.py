@@ -1,4 +1,4 @@
-"""A process of a simulated world: runs a participant, takes time, stands still, dies at any point."""
+"""A process of a simulated world: runs a participant, takes time, stops, dies at any point."""
 
 import traceback
 from collections.abc import Callable
@@ -21,10 +21,9 @@ _NEVER_US = 1 << 62
 
 
 class Process:
-    """Runs a participant on simulated sockets and time; it is the participant's `Network`, too.
+    """Runs a participant on simulated sockets and time, and is the participant's `Network`.
 
-    A step of the participant is one event of the world; the wall time that it takes moves what it sends, and when it
-    wakes up next.
+    A step of the participant is one event of the world; its wall time delays what it sends and its next wake-up.
     """
 
     def __init__(self, name: str, world: World, ether: Ether, ended: Callable[[int], None]) -> None:
@@ -47,17 +46,17 @@ class Process:
         self._wake_us = _NEVER_US
         self._wakes = 0
         self._stopped_until_us = 0
-        self._die_in = 0  # datagrams until it dies; 0: it does not
+        self._die_in = 0  # number of datagrams until it dies; 0: it does not die
         self._stop_in = 0
         self._stop_us = 0
         self._started = False
         self._done = 0  # datagrams read and sent
         self._spins = 0
 
-    # What a participant uses.
+    # The network, for the participant.
 
     def now_us(self) -> int:
-        """Returns the wall time; looking at it takes some."""
+        """Returns the wall time; each call takes some."""
         self.local_us = max(self.local_us, self._world.now_us) + 1
         return self.local_us
 
@@ -87,7 +86,7 @@ class Process:
         self._done += 1
 
     def may_send(self) -> bool:
-        """Counts a datagram that is about to be sent; returns whether the process lives long enough."""
+        """Counts a datagram that is about to be sent; returns whether the process lives long enough to send it."""
         if self.died_us is not None:
             return False
         self.local_us += SEND_US
@@ -105,15 +104,15 @@ class Process:
                 self.local_us += self._stop_us
         return True
 
-    # What the world does to it.
+    # Actions of the world.
 
     def start(self, make: Callable[[], Steps[Any]]) -> None:
-        """Begins the participant that `make` makes, in the first step of the process."""
+        """Starts the participant that `make` returns, in the first step of the process."""
         self._wake_us = max(self.local_us, self._world.now_us)
         self._world.at(self._wake_us, partial(self._begin, make))
 
     def arrived(self) -> None:
-        """Something that the process waits for became readable."""
+        """Notes that a source of the process became readable."""
         self._schedule(self._world.now_us)
 
     def terminate(self) -> None:
@@ -122,12 +121,12 @@ class Process:
         self._schedule(self._world.now_us)
 
     def signal(self, number: int) -> None:
-        """Hands the process a signal."""
+        """Delivers a signal to the process."""
         self.signals.append(number)
         self._schedule(self._world.now_us)
 
     def kill(self) -> None:
-        """Ends the process at once; what it would have sent later is not sent."""
+        """Ends the process at once; its later datagrams are not sent."""
         if self.died_us is None:
             self._world.trace.add(self._world.now_us, self.name, "is killed")
             self.died_us = self._world.now_us
@@ -147,7 +146,7 @@ class Process:
         self._stop_in, self._stop_us = number, time_us
 
     def go_on(self) -> None:
-        """Ends a standstill."""
+        """Continues the stopped process."""
         self._stopped_until_us = 0
         self._schedule(self._world.now_us)
 
@@ -157,7 +156,7 @@ class Process:
 
     @property
     def alive(self) -> bool:
-        """Whether it runs."""
+        """Returns whether the process runs."""
         return self.died_us is None
 
     def _open(self, port: int, group: bool) -> SimulatedSocket:
@@ -234,12 +233,12 @@ class Process:
             self._close()
 
     def _close(self) -> None:
-        """Lets the participant's `finally` clauses run; nothing that they send gets out."""
+        """Runs the participant's `finally` clauses; their datagrams are dropped."""
         steps, self._steps = self._steps, None
         try:
             if steps:
                 steps.close()
-        except Exception:  # it died in the middle of something
+        except Exception:  # the process died in the middle of a step
             self._world.trace.add(self.local_us, self.name, f"is gone: {traceback.format_exc(limit=1)}")
 
     def _schedule_next(self) -> None:
@@ -247,12 +246,12 @@ class Process:
         self._schedule(self._world.now_us if readable else self._until_us)
 
     def _end(self, code: int) -> None:
-        """Closes what it has open; its end is known a little later, when the last of its datagrams are on their way."""
+        """Closes the sockets; the end is reported a little later, while the last datagrams are on their way."""
         if self.died_us is None:
             self.died_us = self.local_us
             self._world.trace.add(self.local_us, self.name, f"ends with exit code {code}")
         elif code != KILLED:
-            code = KILLED  # it died in the middle of its last step
+            code = KILLED  # the process died in the middle of its last step
         if self._steps and self._world.running is not self:
             self._close()
         for socket in self._sockets:

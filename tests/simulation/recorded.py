@@ -1,4 +1,4 @@
-"""The recording of a history, read without the engine: messages, and what the main loop decided, as plain tuples."""
+"""The recording of a history, read without the engine: messages and decisions of the main loop, as plain tuples."""
 
 import json
 from dataclasses import dataclass, field

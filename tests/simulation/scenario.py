@@ -1,4 +1,4 @@
-"""A scenario: everything that decides one history; drawn from a seed, small enough to be shrunk, printed and kept."""
+"""A scenario: everything that determines one history; drawn from a seed, small enough to shrink, print and keep."""
 
 import dataclasses
 from collections.abc import Mapping
@@ -35,7 +35,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Scenario:
-    """What happens in one history."""
+    """The events of one history."""
 
     seed: int
     ticks: int
@@ -57,13 +57,13 @@ class Scenario:
 
     @property
     def regroupable(self) -> bool:
-        """Whether the contract promises the same bytes however components share processes."""
+        """Whether the contract promises the same bytes for every assignment of components to processes."""
         apart = any(part.kind == "Director" or part.settings.get("crash_tick") for part in self.parts)
         return self.exact and not apart
 
     @property
     def may_fail(self) -> bool:
-        """Whether a component may fail for good: one that fails by itself, or is killed again and again."""
+        """Whether a component may fail for good: by itself, or by repeated kills."""
         crashes = any(part.settings.get("crash_tick") for part in self.parts)
         return crashes or any(action.kind in ("kill", "kill_at_send") for action in self.actions)
 
@@ -129,7 +129,7 @@ def scenario_of(seed: int) -> Scenario:
         ticks=ticks,
         parts=parts,
         stages=tuple(inner),
-        hosting=hosting,  # type: ignore[arg-type]  # one of these
+        hosting=hosting,  # type: ignore[arg-type]  # one of these literals
         wall=wall,
         period_us=random.choice([10_000, 50_000]),
         stage_time_us=random.choice([0, 5_000]) if wall else 0,

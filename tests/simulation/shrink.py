@@ -1,4 +1,4 @@
-"""Makes a failing scenario smaller as long as it breaks the same promise."""
+"""Shrinks a failing scenario as long as it breaks the same promise."""
 
 import dataclasses
 from collections.abc import Callable, Iterator
@@ -26,7 +26,7 @@ def shrink(scenario: Scenario, fails: Callable[[Scenario], bool], runs_max: int 
 
 
 def _smaller(scenario: Scenario) -> Iterator[Scenario]:
-    """Returns candidates, those that take away most first."""
+    """Returns smaller candidates, the smallest first."""
     if not scenario.weather.calm:
         yield dataclasses.replace(scenario, weather=Weather())
     if len(scenario.actions) > 1:

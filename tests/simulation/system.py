@@ -40,7 +40,7 @@ LIMIT_US = 120_000_000
 
 @dataclass
 class Outcome:
-    """What came of a run."""
+    """Result of a run."""
 
     path: Path
     """The recording."""
@@ -68,7 +68,7 @@ class Outcome:
 
 
 class _Connection:
-    """A tool that asks the supervisor for something."""
+    """A tool that sends requests to the supervisor."""
 
     open = True
     pid = 0
@@ -81,7 +81,7 @@ class _Connection:
         self._answered(message)
 
     def stream(self, message: dict[str, Any]) -> None:
-        """Takes an answer of many."""
+        """Takes an answer of a stream."""
         self._answered(message)
 
     def refuse(self, error: str) -> None:
@@ -90,7 +90,7 @@ class _Connection:
 
 
 class _Server(Signal):
-    """The control server: hands requests to the supervisor in its own time."""
+    """The control server: passes requests to the supervisor at simulated times."""
 
     def __init__(self, ether: Ether, answer: Answer) -> None:
         super().__init__(ether)
@@ -98,19 +98,19 @@ class _Server(Signal):
         self._requests: list[tuple[dict[str, Any], Callable[[dict[str, Any]], None]]] = []
 
     def ask(self, request: dict[str, Any], answered: Callable[[dict[str, Any]], None]) -> None:
-        """Puts a request."""
+        """Queues a request."""
         self._requests.append((request, answered))
         self.set()
 
     def handle(self) -> None:
-        """Answers what was asked."""
+        """Answers the queued requests."""
         self.clear()
         requests, self._requests = self._requests, []
         for request, answered in requests:
             self._answer(json.dumps(request).encode(), _Connection(answered))  # type: ignore[arg-type]
 
     def close(self) -> None:
-        """Answers no tool any more."""
+        """Stops answering."""
 
 
 class _Public(Signal):
@@ -121,7 +121,7 @@ class _Public(Signal):
         self._waiting: list[bytes] = []
 
     def say(self, data: bytes) -> None:
-        """A program outside publishes a message."""
+        """Publishes a message as a program outside."""
         self._waiting.append(data)
         self.set()
 
@@ -141,7 +141,7 @@ class _Public(Signal):
 
 
 class _GatewayEnd(Signal):
-    """Tells the supervisor that the gateway has ended."""
+    """Informs the supervisor about the end of the gateway."""
 
     def gateway_end(self) -> str:
         """Describes how it ended."""
@@ -149,7 +149,7 @@ class _GatewayEnd(Signal):
 
 
 class _SlowDisk:
-    """Takes time for each tick, as a busy disk does."""
+    """Takes time for each tick, like a busy disk."""
 
     def __init__(self, process: Process, world: World) -> None:
         self._process = process
@@ -168,7 +168,7 @@ class _SlowDisk:
 
 
 class System:
-    """Everything that takes part in one run."""
+    """All participants of one run."""
 
     def __init__(self, scenario: Scenario, folder: Path, trace: Trace) -> None:
         self.scenario = scenario
@@ -190,7 +190,7 @@ class System:
         self._gateway_process = Process("gateway", self.world, self._ether, self._on_gateway_end)
 
     def run(self) -> Outcome:
-        """Runs it to its end."""
+        """Runs the system to its end."""
         world, outcome = self.world, self.outcome
         machine.enter(self._work, lambda: world.running.name if world.running else "")
         try:
@@ -206,7 +206,7 @@ class System:
             machine.leave()
         self._zygote.close()
         if self._recorder:
-            self._recorder.close()  # of a gateway that did not come to its end
+            self._recorder.close()  # the gateway did not end regularly
         processes = [self._supervisor_process, self._gateway_process, *self._zygote.processes.values()]
         outcome.errors = [f"{process.name}: {process.error}" for process in processes if process.error]
         outcome.wall_us, outcome.events = world.now_us - START_US, world.events
@@ -255,7 +255,7 @@ class System:
         self.world.weather = Weather(latency_us=self.scenario.weather.latency_us)
 
     def _on_sent(self, address: Address, data: bytes) -> None:
-        """Watches the tick records, by which actions know their time."""
+        """Watches the tick records, from which actions know their time."""
         if address[1] == self._ports.record and data[8:].startswith(sync.RECORD + b"\0"):
             tick = sync.decode_record(data[8 + len(sync.RECORD) + 1 :]).tick
             if tick > self._tick:

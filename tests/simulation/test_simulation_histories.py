@@ -13,7 +13,7 @@ HISTORIES = 8
 
 
 def broken(scenario: Scenario) -> list[str]:
-    """What a history breaks, in words."""
+    """Returns the promises that a history breaks, in words."""
     return [str(failure) for failure in verdict_of(scenario).failures]
 
 

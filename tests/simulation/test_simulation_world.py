@@ -1,4 +1,4 @@
-"""The simulated world itself: time, datagrams, processes that die and stand still, the same history from one seed."""
+"""The simulated world itself: time, datagrams, processes that die and stop, the same history from one seed."""
 
 from collections.abc import Generator
 from functools import partial
@@ -21,9 +21,9 @@ PORT = 100
 
 
 class Pair:
-    """A process that sends `count` datagrams, one a millisecond, and one that hears them."""
+    """A process that sends `count` datagrams, one a millisecond, and one that receives them."""
 
-    def __init__(self, weather: Weather = Weather(), count: int = 100) -> None:  # noqa: B008 - it cannot change
+    def __init__(self, weather: Weather = Weather(), count: int = 100) -> None:  # noqa: B008 - immutable
         self.world = World(1, weather, Trace(False))
         self.ether = Ether(self.world)
         self.heard: list[tuple[bytes, int]] = []
@@ -35,7 +35,7 @@ class Pair:
         self.sender.start(self._send)
 
     def run(self, time_us: int) -> None:
-        """Lets so much wall time pass."""
+        """Lets that wall time pass."""
         self.world.at(START_US + time_us, lambda: None)
         self.world.run(lambda: self.world.now_us >= START_US + time_us, time_us + 1)
 
@@ -44,7 +44,7 @@ class Pair:
         for number in range(self._count):
             yield self.sender.now_us() + 1000
             socket.sendto(bytes([number]), (GROUP, PORT))
-            socket.sendto(b"", (LOOPBACK, 77))  # no socket is there
+            socket.sendto(b"", (LOOPBACK, 77))  # no socket exists yet
 
     def _hear(self) -> Generator[int, list[int], None]:
         socket = self.hearer.group_socket(PORT)
@@ -59,7 +59,7 @@ class Pair:
 
 
 def numbers(pair: Pair) -> list[int]:
-    """Returns which datagrams were heard, in order."""
+    """Returns which datagrams were received, in order."""
     return [data[0] for data, _ in pair.heard]
 
 
@@ -92,13 +92,13 @@ def test_delayed_datagrams_are_overtaken() -> None:
 
 def test_killed_process_sends_nothing_more() -> None:
     pair = Pair()
-    pair.sender.kill_at_send(21)  # every second one goes nowhere
+    pair.sender.kill_at_send(21)  # every second datagram has no receiver
     pair.run(200_000)
     assert numbers(pair) == list(range(10))
     assert pair.codes == [-9]
 
 
-def test_stopped_process_goes_on_where_it_was() -> None:
+def test_stopped_process_continues_where_it_was() -> None:
     pair = Pair()
     pair.world.at(START_US + 50_500, partial(pair.sender.stand_still, 1_000_000))
     pair.run(1_500_000)
@@ -140,7 +140,7 @@ def test_one_seed_gives_one_history(tmp_path: Path, seed: int) -> None:
     assert len(histories[0]) > 50
 
 
-def test_shrinking_leaves_what_matters() -> None:
+def test_shrinking_keeps_what_matters() -> None:
     parts = tuple(Part(f"a{number}/player", "Player", settings={"bursts": 3}) for number in range(4))
     actions = tuple(Action("stop", 1, 100, f"a{number}/player", 1000) for number in range(4))
     big = Scenario(1, 30, parts, weather=Weather(loss=0.1, delay=0.2), actions=actions)

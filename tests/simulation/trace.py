@@ -1,4 +1,4 @@
-"""What happened in a simulated world, step by step, for people."""
+"""Events of a simulated world, step by step, for people."""
 
 from collections.abc import Callable, Iterator
 
@@ -28,7 +28,7 @@ _TYPES: dict[bytes, Callable[[bytes], object]] = {
 
 
 class Trace:
-    """Collects lines while it is `on`; collecting costs little, the words are made when they are read."""
+    """Collects lines while it is `on`; collecting is cheap, lines are formatted when they are read."""
 
     def __init__(self, on: bool) -> None:
         self.on = on
@@ -47,7 +47,7 @@ class Trace:
 
 
 def words_of(datagram: bytes) -> str:
-    """Returns what a datagram says, in one line."""
+    """Returns a datagram's contents in one line."""
     if not wire.is_short(datagram):
         return f"fragment of {len(datagram)} bytes"
     channel, _, data = datagram[8:].partition(b"\0")
@@ -56,7 +56,7 @@ def words_of(datagram: bytes) -> str:
 
 
 def message_words(channel: str, data: bytes) -> str:
-    """Returns which message it is, in one line."""
+    """Returns the identity of a message in one line."""
     if not type_registry.is_interface(data):
         return f"{channel}: {len(data)} bytes"
     header = Header.of(data)
@@ -64,7 +64,7 @@ def message_words(channel: str, data: bytes) -> str:
 
 
 def _plain(value: object) -> str:
-    """Returns fields in the order of their declaration, without counts, empty ones and the run's number."""
+    """Returns fields in the order of their declaration, without counts, empty fields and the run's number."""
     if isinstance(value, dict):
         said = [
             f"{name}={_plain(item)}"

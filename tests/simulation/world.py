@@ -20,11 +20,11 @@ EVENTS_MAX = 2_000_000
 
 
 class StuckError(Exception):
-    """The world does not come to its end; says how far it came."""
+    """The world does not end; the message describes its progress."""
 
 
 class World:
-    """Wall time and events. Events of the same time happen in an order that the seed draws."""
+    """Wall time and events. The seed determines the order of simultaneous events."""
 
     def __init__(self, seed: int, weather: Weather, trace: Trace) -> None:
         self.now_us = START_US
@@ -37,23 +37,23 @@ class World:
         self._heap: list[tuple[int, float, int, Callable[[], None]]] = []
 
     def at(self, time_us: int, action: Callable[[], None]) -> None:
-        """Lets `action` happen at a wall time, or now if that has passed."""
+        """Schedules `action` at a wall time, or now if that has passed."""
         heapq.heappush(self._heap, (time_us, self.random.random(), self.events, action))
         self.events += 1
 
     def after(self, delay_us: int, action: Callable[[], None]) -> None:
-        """Lets `action` happen after some wall time."""
+        """Schedules `action` after some wall time."""
         self.at(self.now_us + delay_us, action)
 
     def jump(self, ahead_us: int) -> None:
-        """Moves the clock ahead; what was due meanwhile happens now, in its order."""
+        """Moves the clock ahead; events due in between happen now, in their order."""
         self.now_us += ahead_us
 
     def run(self, until: Callable[[], bool], limit_us: int) -> None:
-        """Lets events happen until `until` is true.
+        """Runs events until `until` is true.
 
         Raises:
-            StuckError: it is not true after so much wall time, or nothing can happen any more.
+            StuckError: it is still false after that wall time, or no further event can happen.
         """
         heap = self._heap
         while not until():

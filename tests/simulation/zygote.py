@@ -59,7 +59,7 @@ class SimulatedZygote:
         world.after(FORK_US + slow_us, partial(self._fork, host, start))
 
     def signal(self, pid: int, number: int) -> None:
-        """Signals a host process; one that has ended meanwhile is left alone."""
+        """Signals a host process; does nothing if the process has ended."""
         self._world.after(NOTICE_US, partial(self._signal, pid, number))
 
     def events(self) -> list[Started | Ended]:
@@ -74,7 +74,7 @@ class SimulatedZygote:
             process.kill()
 
     def wake(self) -> None:
-        """Lets it go on if it was stopped."""
+        """Continues the zygote if it was stopped."""
 
     def _fork(self, host: int, start: Start) -> None:
         pid = 100 + len(self.processes)

@@ -1,4 +1,4 @@
-"""From runs to the figures that are quoted."""
+"""From runs to the published figures."""
 
 import pytest
 
@@ -36,7 +36,7 @@ def test_median_hides_the_rare_and_mean_does_not() -> None:
 
 
 def test_ratio_compares_within_a_round() -> None:
-    # the machine was twice as slow in round 1: the ratio does not see it
+    # the machine was half as fast in round 1: the ratio is unaffected
     runs = Runs([run(0, "fwk", 120), run(0, "lcm", 100), run(1, "fwk", 240), run(1, "lcm", 200)])
     assert runs.ratio("fwk", "lcm", "N=5") == Spread(1.2, 1.2, 1.2, 2)
 

@@ -1,4 +1,4 @@
-"""Verdicts on the goals, each made to pass and to fail."""
+"""Verdicts on the goals, each with a figure that passes and one that fails."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -76,7 +76,7 @@ def test_one_figure_misses_one_goal(goal: int, change: dict[tuple[str, str], flo
         (JITTER, {AT_100_HZ: {"error_us": [100.0] * 98 + [5000.0] * 2}}),
     ],
 )
-def test_one_figure_of_our_own_misses_one_goal(goal: int, change: dict[str, dict[str, Any]]) -> None:
+def test_one_figure_of_fwk_alone_misses_one_goal(goal: int, change: dict[str, dict[str, Any]]) -> None:
     assert verdicts(GOOD, {**OWN, **change})[goal].met is False
 
 
@@ -89,9 +89,9 @@ def test_a_short_run_leaves_goals_of_long_runs_open() -> None:
     assert verdicts(GOOD, {**OWN, **short})[MISSED].word == "not measured"
 
 
-def test_a_peer_that_is_faster_is_named() -> None:
+def test_a_faster_peer_is_named() -> None:
     assert "ZeroMQ N=160" in verdicts({**GOOD, ("zmq", "N=160"): 8900})[AHEAD].figures
 
 
-def test_bare_transports_are_no_rivals() -> None:
+def test_bare_transports_are_not_rivals() -> None:
     assert "bare LCM" not in verdicts({**GOOD, ("lcm", "N=20"): 10})[AHEAD].figures

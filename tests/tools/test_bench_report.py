@@ -78,7 +78,7 @@ def test_the_cost_table_shows_measured_peers_only() -> None:
     assert len(tables.cost_table(Runs(runs()), PEERS, growth((80,))[0]).splitlines()) == 2
 
 
-def test_tables_of_our_own() -> None:
+def test_tables_of_fwk_alone() -> None:
     measured = Runs(
         [
             Run(0, "fwk", "100 Hz", {"error_us": [*([100.0] * 98), 2000.0, 3000.0]}),

@@ -24,7 +24,7 @@ def pretend(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("pretend")
-def test_peers_change_places_from_round_to_round() -> None:
+def test_peers_change_positions_from_round_to_round() -> None:
     seen: list[Run] = []
     rotation.rotate(PEERS, growth((5,)), 4, 1.0, seen.append)
     assert ["".join(run.peer for run in seen if run.round == number) for number in range(4)] == [

@@ -39,7 +39,7 @@ def test_a_source_of_an_earlier_stage_is_seen_in_the_same_tick() -> None:
     assert shape.expected_tick(6, 1, 100) == 99  # both in stage 1
 
 
-def test_shape_is_read_back_as_it_was_saved(tmp_path: Path) -> None:
+def test_a_saved_shape_is_read_back_unchanged(tmp_path: Path) -> None:
     shape = Shape(20, reads=10, padding_bytes=65536, folder=str(tmp_path))
     assert Shape.read(shape.save()) == shape
 

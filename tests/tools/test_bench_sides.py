@@ -78,7 +78,7 @@ def test_measure_stops_at_its_number_of_ticks_or_its_time() -> None:
 
 
 class Script:
-    """A component's side that plays ticks and inputs."""
+    """A component's side with scripted ticks and inputs."""
 
     def __init__(self, ticks: Sequence[int], source_ticks: Sequence[int | None]) -> None:
         self.ticks = deque(ticks)

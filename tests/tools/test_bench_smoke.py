@@ -1,4 +1,4 @@
-"""Two components of fwk and of the peers that need nothing installed, in real processes."""
+"""Two components of fwk, and of the peers without dependencies, in real processes."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -41,7 +41,7 @@ def test_a_peer_does_the_work(name: str, padding_bytes: int) -> None:
     assert len(result["tick_us"]) >= 1
     assert all(tick > 0 for tick in result["tick_us"])
     assert result["stale"] is not None  # both components ended by themselves and left their count
-    if name != "lcm":  # liblcm hands messages over in a thread; elsewhere what was sent before the tick is there
+    if name != "lcm":  # liblcm delivers messages in a thread; for the others, messages sent before the tick are there
         assert result["stale"] == 0
     assert result["cpu_us"] > 0
     assert result["switches"] > 0

@@ -1,5 +1,6 @@
 """Tutorial pages, followed word for word: files are written, commands typed, outputs compared.
-/ tests/packaging follows the first tutorial with the wheel in a fresh environment.
+
+tests/packaging follows the first tutorial with the wheel in a fresh environment.
 """
 
 import shlex

@@ -12,7 +12,8 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 class Broken(NamedTuple):
     """A row: the lines that the check prints, one for each mistake, and the launch file `it.yaml` they refer to.
-    / Lines such as `--- other.yaml` begin further files.
+
+    Lines such as `--- other.yaml` begin further files.
     """
 
     message: str

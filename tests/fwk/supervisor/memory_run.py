@@ -63,7 +63,8 @@ class MemorySocket:
 
 class MemoryRun:
     """Plays hosts that answer at once, unless the test prevents it, and a gateway that takes every record.
-    / It is both network and process starter of the supervisor; wall time jumps to the end of each wait.
+
+    It is both network and process starter of the supervisor; wall time jumps to the end of each wait.
     """
 
     def __init__(self, components: dict[str, type[Component]], **fields: Any) -> None:
@@ -102,8 +103,9 @@ class MemoryRun:
         self.play(lambda: len(self.records) >= 1)
 
     def play(self, until: Callable[[], bool], longest_us: int = 600 * S) -> None:
-        """Runs the supervisor until `happened` is true.
-        / Raises:
+        """Runs the supervisor until `until()` is true.
+
+        Raises:
             AssertionError: it is still false after the wall time `longest_us`, or after `STEPS_MAX` steps; steps take
             no wall time while ticks follow each other.
         """

@@ -1,4 +1,4 @@
-"""Short ways to describe a match for tests of the thinking."""
+"""Short descriptions of matches for tests of the behaviour."""
 
 from procs.behaviour.roles import Job
 from procs.behaviour.view import Ball, Robot, View

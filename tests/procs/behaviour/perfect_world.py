@@ -1,4 +1,4 @@
-"""A world model that knows the truth, with noise if asked: for playing before there are eyes."""
+"""A world model that knows the truth, with noise if configured, for matches without vision."""
 
 import numpy as np
 
@@ -8,7 +8,7 @@ from procs.model.robot import team_of
 
 
 class PerfectWorldModelConfig(Config):
-    """How far from the truth."""
+    """Standard deviations of the errors."""
 
     place_sd_m: float = 0.0
     heading_sd_rad: float = 0.0
@@ -17,7 +17,7 @@ class PerfectWorldModelConfig(Config):
 
 
 class PerfectWorldModel(Component):
-    """Stands in for camera, vision, localization, world model and radio of one robot."""
+    """Replaces camera, vision, localization, world model and radio of one robot."""
 
     stage = "worldstate"
 

@@ -1,4 +1,4 @@
-"""Where to shoot and whom to pass to."""
+"""Targets of shots and receivers of passes."""
 
 from procs.behaviour import aim
 from procs.model.field import Point
@@ -28,7 +28,7 @@ def test_robot_behind_ball_or_beyond_target_does_not_count() -> None:
     assert free_rad > 3.0
 
 
-def test_robot_far_down_the_way_counts_as_wider() -> None:
+def test_robot_far_down_the_line_counts_as_wider() -> None:
     slow = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=4.0)
     fast = aim.lane_rad(Point(0.0, 0.0), Point(9.0, 0.0), [robot("", 8.0, 1.0)], ball_m_s=12.0)
     assert slow < 0.0 < fast

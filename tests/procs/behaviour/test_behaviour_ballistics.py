@@ -1,4 +1,4 @@
-"""Kicks and meetings against the physics of the simulated ball."""
+"""Kicks and interceptions against the physics of the simulated ball."""
 
 import math
 
@@ -21,7 +21,7 @@ def test_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
     assert speed_m_s == pytest.approx(2.0, abs=0.05)
 
 
-def test_rolling_ball_is_foreseen() -> None:
+def test_rolling_ball_is_predicted() -> None:
     friction, x_m, speed_m_s = RollingFriction(BallSettings()), 0.0, 2.0
     friction.roll(2.0, 0.0)
     for _ in range(2000):
@@ -32,18 +32,18 @@ def test_rolling_ball_is_foreseen() -> None:
     assert ballistics.ball_after(ball, 60.0).x_m == pytest.approx(5.0, abs=0.01)  # v^2 / 2a: it stops
 
 
-def test_ways_and_times_fit() -> None:
+def test_distances_and_times_agree() -> None:
     for distance_m in (0.0, 0.5, 2.5, 8.0):
         assert ballistics.way_m(ballistics.reach_s(distance_m)) == pytest.approx(distance_m)
 
 
-def test_meeting_with_a_resting_ball_is_at_the_ball() -> None:
+def test_interception_of_a_resting_ball_is_at_the_ball() -> None:
     meeting = ballistics.meet(Ball(known=True, place=Point(3.0, 4.0)), Point(0.0, 0.0))
     assert meeting.place == (3.0, 4.0)
     assert meeting.time_s == pytest.approx(ballistics.reach_s(5.0 - 0.33))
 
 
-def test_meeting_with_a_passing_ball_is_ahead_of_it() -> None:
+def test_interception_of_a_passing_ball_is_ahead_of_it() -> None:
     ball = Ball(known=True, place=Point(-4.0, 1.0), velocity_m_s=Point(2.5, 0.0))
     meeting = ballistics.meet(ball, Point(0.0, 0.0))
     assert -1.0 < meeting.place.x_m < 0.5

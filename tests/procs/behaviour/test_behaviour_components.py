@@ -43,7 +43,7 @@ def newest(bench: Bench, port: str) -> Any:
 
 
 def put(bench: Bench, port: str, **fields: Any) -> None:
-    """Puts a message of this tick; the bench itself leaves the time at zero."""
+    """Puts a message of this tick on the bench, which itself leaves the time at zero."""
     made: Any = bench.port(port).message_type()
     made.header.time_us = bench.time_us
     bench.port(port).put(made, **fields)
@@ -84,7 +84,7 @@ def test_navigator_keeps_the_speed_limit_of_the_target() -> None:
     assert math.hypot(command.vx_m_s, command.vy_m_s) == pytest.approx(0.8)
 
 
-def test_robot_that_is_lost_stands_still_and_says_so() -> None:
+def test_robot_without_a_pose_stands_still_and_reports_it() -> None:
     bench = navigate(5, localized=False, x_m=5.0)
     command = newest(bench, "motor_command")
     assert (command.vx_m_s, command.vy_m_s, command.omega_rad_s) == (0.0, 0.0, 0.0)
@@ -197,7 +197,7 @@ def carry_out(skiller: Bench, times: int = 1, ball_m: float | None = None, **com
 
 
 @pytest.mark.parametrize(("robot", "sign"), [("cyan2", 1.0), ("magenta2", -1.0)])
-def test_skiller_speaks_in_the_world_frame(robot: str, sign: float) -> None:
+def test_skiller_writes_targets_in_the_world_frame(robot: str, sign: float) -> None:
     bench = Bench(Skiller, f"{robot}/skiller")
     carry_out(bench, skill="mark", x_m=sign * -5.0)
     target: drive_target_t = newest(bench, "drive_target")
@@ -278,7 +278,7 @@ def test_kick_that_fails_is_asked_for_again(skiller: Bench, answered: bool) -> N
 
 
 def senseless(value: float, message: Any) -> Any:
-    """Fills every number with a fraction, also those of what the message contains."""
+    """Fills every number with a fraction, also in nested messages."""
     for name, kind, dimensions in zip(message.__slots__, message.__typenames__, message.__dimensions__, strict=True):
         if kind == "double" and dimensions is None:
             setattr(message, name, value)

@@ -1,4 +1,4 @@
-"""The simple opponent: what each robot does, and that a launch file chooses it."""
+"""The simple opponent: the actions of each robot, and the choice of strategy in a launch file."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Robots at play with a perfect world model: kick-off, goals, defence, and the same match twice."""
+"""Matches with a perfect world model: kick-off, goals, defence, and the same match twice."""
 
 import math
 from collections.abc import Sequence
@@ -79,7 +79,7 @@ def test_ten_robots_play_by_the_rules_and_score() -> None:
 def test_keeper_saves_shots_that_it_can_reach() -> None:
     for y_m in (-0.8, 0.0, 0.8):
         system = match(["cyan1", "cyan2"], 1, {}, starts={"cyan2": (9.0, 6.0, 0.0)})
-        system.tick(120)  # until the kick-off runs, so that goals count
+        system.tick(120)  # until the game state is that of play, in which goals count
         ball = system.runners["world/simulator"].component._world.ball  # type: ignore[attr-defined]
         ball.put(-4.5, 0.5)
         ball.body.velocity = (-5.0, 5.0 * (y_m - 0.5) / 6.5)

@@ -1,4 +1,4 @@
-"""Ways around discs."""
+"""Paths around discs."""
 
 import math
 
@@ -10,7 +10,7 @@ from procs.model.field import Point
 START, TARGET = Point(0.0, 0.0), Point(4.0, 0.0)
 
 
-def test_free_way_is_straight() -> None:
+def test_free_path_is_straight() -> None:
     way = find_way(START, TARGET, [Disc(Point(2.0, 1.0), 0.6), Disc(Point(-1.0, 0.0), 0.6)])
     assert (way.direction_rad, way.length_m, way.blocked) == (0.0, 4.0, False)
 
@@ -33,7 +33,7 @@ def test_two_overlapping_discs_are_passed_as_one() -> None:
     assert way.direction_rad > 0
 
 
-def test_way_out_of_a_closed_ring_is_not_invented() -> None:
+def test_closed_ring_has_no_path_out() -> None:
     ring = [Disc(Point(math.cos(turn), math.sin(turn)), 0.6) for turn in (index * math.pi / 4 for index in range(8))]
     way = find_way(START, TARGET, ring)
     assert way.blocked
@@ -53,12 +53,12 @@ def test_target_inside_a_disc_is_approached_to_its_edge() -> None:
 
 
 @pytest.mark.parametrize("target", [Point(-3.0, 0.0), Point(0.0, 3.0)])
-def test_from_inside_a_disc_the_way_leads_out(target: Point) -> None:
+def test_path_from_inside_a_disc_leads_out(target: Point) -> None:
     way = find_way(START, target, [Disc(Point(0.4, 0.0), 0.6)])
     assert not way.blocked
 
 
-def test_following_the_way_touches_no_disc_and_arrives() -> None:
+def test_following_the_path_touches_no_disc_and_arrives() -> None:
     discs = [Disc(Point(1.5, 0.3), 0.6), Disc(Point(2.5, -0.5), 0.6), Disc(Point(1.8, -1.2), 0.6)]
     place, direction_rad = START, None
     for _ in range(200):

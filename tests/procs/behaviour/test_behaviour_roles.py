@@ -1,4 +1,4 @@
-"""Roles and places: the same for every robot of the team, whatever the order of the mates."""
+"""Roles and positions: the same for every robot of the team, in any order of the mates."""
 
 import itertools
 import math
@@ -40,7 +40,7 @@ def test_robots_compute_the_same_jobs_in_any_order_of_mates() -> None:
     }
 
 
-def test_robots_at_one_place_agree_on_the_attacker() -> None:
+def test_robots_at_one_position_agree_on_the_attacker() -> None:
     twins = (robot("cyan3", -4.0, 0.0), robot("cyan4", -4.0, 0.0))
     orders = [(TEAM[0], TEAM[1], *pair) for pair in (twins, twins[::-1])]
     first, second = (assign(view(TEAM[4], ball(0.0, 0.0), order), FIELD) for order in orders)
@@ -81,7 +81,7 @@ def test_supporter_changes_its_flank_only_for_a_clear_ball() -> None:
         assert jobs["cyan5"].place.y_m * flank > 0
 
 
-def test_robot_that_is_lost_has_no_job_but_its_mates_have() -> None:
+def test_robot_without_a_pose_has_no_job_but_its_mates_have() -> None:
     lost = View(localized=False, own=TEAM[1], ball=ball(0.0, 0.0), mates=(TEAM[0], TEAM[2]))
     assert set(assign(lost, FIELD)) == {"cyan1", "cyan3"}
 
@@ -94,7 +94,7 @@ def test_six_robots_all_have_jobs() -> None:
 @pytest.mark.parametrize("state", [State.KICK_OFF, State.THROW_IN, State.FREE_KICK, State.CORNER_KICK, State.DROP_BALL])
 @pytest.mark.parametrize("whose", Whose)
 @pytest.mark.parametrize("spot", [Point(0.0, 0.0), Point(10.8, 6.8), Point(-10.8, -6.8), Point(-3.0, 6.9)])
-def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot: Point) -> None:
+def test_positions_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot: Point) -> None:
     if state is State.KICK_OFF and spot != (0.0, 0.0):
         return
     game = Game(state, stopped=True, whose=whose, spot=spot)
@@ -109,7 +109,7 @@ def test_places_at_set_pieces_keep_the_distance(state: State, whose: Whose, spot
 
 
 @pytest.mark.parametrize("own", [Point(-2.0, 5.0), Point(-1.0, 1.0), Point(2.0, 0.0)])
-def test_way_to_a_place_leads_around_a_set_pieces_ball(own: Point) -> None:
+def test_path_to_a_position_leads_around_a_set_pieces_ball(own: Point) -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(0.0, 0.0))
     place = Point(-2.0, -5.0)
     distances_m = [math.dist(own, game.spot)]

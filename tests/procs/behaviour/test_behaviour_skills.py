@@ -85,7 +85,7 @@ def test_rolling_ball_is_faced_where_it_comes_from() -> None:
     assert drive(GetBall().step(scene(seen))).heading_rad == pytest.approx(math.atan2(1.0, 3.0))
 
 
-def test_intercept_waits_on_the_balls_way_facing_it() -> None:
+def test_intercept_waits_on_the_balls_path_facing_it() -> None:
     wait = drive(Intercept().step(scene(view(robot("cyan2", -1.0, 0.6), ball(4.0, 0.0, -3.0, 0.0)))))
     assert wait.place == pytest.approx((-1.0, 0.0))
     assert wait.heading_rad == pytest.approx(math.atan2(-0.6, 5.0))
@@ -167,7 +167,7 @@ def test_keeper_covers_the_ball_side_between_the_posts() -> None:
     assert drive(KeepGoal().step(scene(view(keeper, Ball(known=False))))).place.y_m == 0.0
 
 
-def test_machine_moves_a_running_skill_and_restarts_an_ended_one() -> None:
+def test_machine_updates_a_running_skill_and_restarts_an_ended() -> None:
     machine, seen = Machine(), view(OWN, Ball(known=False))
     machine.begin("get_ball")
     assert machine.step(scene(seen)).status is Status.FAILED

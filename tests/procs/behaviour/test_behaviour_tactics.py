@@ -1,4 +1,4 @@
-"""What robots decide: situations and the orders that follow."""
+"""Decisions of robots: situations and the orders that follow."""
 
 import math
 
@@ -34,7 +34,7 @@ def test_robots_stand_still_in_a_pause(state: State, role: str) -> None:
     assert decide(seen, Game(state, stopped=True), role).skill == "stop"
 
 
-def test_robot_that_is_lost_stands_still() -> None:
+def test_robot_without_a_pose_stands_still() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), ball(1.0, 0.0))._replace(localized=False)
     assert decide(seen).skill == "stop"
 
@@ -44,7 +44,7 @@ def test_attacker_gets_a_free_ball() -> None:
     assert (order.skill, order.place) == ("get_ball", (1.0, 0.0))
 
 
-def test_attacker_intercepts_a_ball_that_comes_its_way() -> None:
+def test_attacker_intercepts_a_ball_that_approaches() -> None:
     assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, -3.0, 0.0))).skill == "intercept"
     assert decide(view(robot("cyan2", -2.0, 0.0), ball(3.0, 0.0, 3.0, 0.0))).skill == "get_ball"
 
@@ -63,7 +63,7 @@ def test_robot_far_from_the_goal_dribbles_towards_the_goal() -> None:
     assert abs(order.place.y_m) < 4.0
 
 
-def test_robot_in_the_own_half_does_not_shoot() -> None:
+def test_robot_in_its_own_half_does_not_shoot() -> None:
     assert decide(with_ball(-0.5, 0.0), holds_ball=True).skill == "dribble"
 
 
@@ -147,7 +147,7 @@ def test_defender_leaves_an_opponent_to_a_nearer_mate() -> None:
     assert order.skill == "goto"
 
 
-def test_before_the_own_goal_a_pressed_robot_clears_the_ball() -> None:
+def test_pressed_robot_before_its_own_goal_clears_the_ball() -> None:
     beside = robot("", -6.0, 1.0)
     assert decide(with_ball(-6.0, 0.0, beside), holds_ball=True).skill == "shoot"
     assert decide(with_ball(-6.0, 0.0), holds_ball=True).skill == "dribble"
@@ -158,7 +158,7 @@ def test_ball_that_an_opponent_dribbles_is_not_waited_for() -> None:
     assert decide(seen).skill == "get_ball"
 
 
-def test_without_a_ball_to_be_seen_the_formation_is_taken() -> None:
+def test_formation_is_taken_while_no_ball_is_seen() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
     order = decide(seen)
     assert (order.skill, order.place) == ("goto", (-3.0, 1.0))

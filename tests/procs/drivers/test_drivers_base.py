@@ -1,4 +1,4 @@
-"""The wheels' driver: commands in, wheel speeds out, odometry from what the wheels say."""
+"""The driver of the wheels: commands in, wheel speeds out, odometry from measured wheel speeds."""
 
 import math
 from typing import Any
@@ -57,7 +57,7 @@ def test_disabled_motors_brake() -> None:
     assert drive(base, 10, vx_m_s=1.0, enabled=False) == pytest.approx((0.0, 0.0, 0.0))
 
 
-def test_silence_brakes_and_is_said_once() -> None:
+def test_silence_brakes_and_is_reported_once() -> None:
     base = bench(command_timeout_s=0.2)
     drive(base, 40, vx_m_s=1.0, enabled=True)
     base.iterate(3, stage="act_exec")
@@ -82,7 +82,7 @@ def test_odometry_drives_a_quarter_circle() -> None:
     assert (odometry.vx_m_s, odometry.omega_rad_s) == pytest.approx((1.0, math.pi / 2))
 
 
-def test_measurement_that_comes_late_counts_all_the_same() -> None:
+def test_late_measurement_counts_in_full() -> None:
     base = bench()
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     state = wheel_state_t()
@@ -103,7 +103,7 @@ def test_lost_measurement_is_bridged() -> None:
 
 
 @pytest.mark.parametrize("speed_m_s", [math.nan, math.inf, 1e300])
-def test_impossible_wheel_speeds_are_refused_aloud(speed_m_s: float) -> None:
+def test_impossible_wheel_speeds_are_refused_with_a_warning(speed_m_s: float) -> None:
     base = bench()
     base.port("wheel_state").put(measured_m_s=[0.0, speed_m_s, 0.0])
     roll(base, Velocity(1.0, 0.0, 0.0), 1)

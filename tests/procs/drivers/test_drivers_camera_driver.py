@@ -1,4 +1,4 @@
-"""The camera's driver: pictures of files by tick, streams that come and go, devices that are not there."""
+"""The camera driver: pictures of files by tick, interrupted streams, and devices that do not exist."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -24,7 +24,7 @@ def bench(source: Path | str, **settings: Any) -> Bench:
 
 
 def seen(camera: Bench) -> Picture | None:
-    """The picture that the next iteration gives out."""
+    """Returns the picture that the next iteration publishes."""
     before = len(camera.port("image").sent)
     camera.iterate()
     sent = camera.port("image").sent[before:]
@@ -36,7 +36,7 @@ def seen(camera: Bench) -> Picture | None:
 
 
 def shades_of(camera: Bench, ticks: int) -> list[int | None]:
-    """Of the pictures of so many ticks: which of `shades` each is."""
+    """Returns which of `shades` each of the next pictures is."""
     pictures = [seen(camera) for _ in range(ticks)]
     return [None if each is None else round(float(each.mean()) / 8) for each in pictures]
 
@@ -83,7 +83,7 @@ def test_every_third_tick(film: Path) -> None:
     assert shades_of(bench(film, every=3), 7) == [0, None, None, 1, None, None, 2]
 
 
-def test_size_and_channels_as_wanted(film: Path) -> None:
+def test_size_and_channels_follow_the_settings(film: Path) -> None:
     camera = bench(film, width_px=32, height_px=24, grey=True)
     camera.iterate(3)
     frame = camera.port("image").sent[-1]
@@ -115,7 +115,7 @@ def test_new_source_during_a_run_begins_at_the_tick(film: Path, tmp_path: Path) 
         ("{folder}/text.mp4", r"no video that can be read"),
     ],
 )
-def test_what_cannot_be_opened_is_refused_with_the_reason(tmp_path: Path, source: str, error: str) -> None:
+def test_source_that_cannot_be_opened_is_refused_with_a_reason(tmp_path: Path, source: str, error: str) -> None:
     (tmp_path / "text.mp4").write_text("no film" * 100)
     with pytest.raises(SourceError, match=error):
         bench(source.format(folder=tmp_path))
@@ -148,7 +148,7 @@ def test_damaged_picture_is_named(tmp_path: Path) -> None:
 
 @pytest.fixture
 def streams() -> Iterator[Callable[..., Stream]]:
-    """Makes network cameras."""
+    """Creates network cameras."""
     made: list[Stream] = []
 
     def start(shade: int, port: int = 0) -> Stream:
@@ -161,7 +161,7 @@ def streams() -> Iterator[Callable[..., Stream]]:
 
 
 def until(camera: Bench, happened: Callable[[], bool]) -> None:
-    """Iterates until something has happened."""
+    """Iterates until `happened` is true."""
     deadline_us = monotonic_us() + TIMEOUT_US
     while not happened():
         assert monotonic_us() < deadline_us, [line.text for line in camera.logged]
@@ -169,7 +169,7 @@ def until(camera: Bench, happened: Callable[[], bool]) -> None:
         sleep_s(0.005)
 
 
-def test_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., Stream]) -> None:
+def test_lost_stream_is_reported_reopened_and_continued(streams: Callable[..., Stream]) -> None:
     stream = streams(100)
     camera = bench(stream.url, retry_s=0.05, longest_retry_s=0.1)
     frames, logged = camera.port("image").sent, camera.logged
@@ -181,7 +181,7 @@ def test_lost_stream_is_said_opened_again_and_goes_on(streams: Callable[..., Str
     assert f"{stream.url} not back: '{stream.url}': no pictures come from there" in logged[1].text
     streams(200, stream.port)
     until(camera, lambda: len(frames) >= before + 3)
-    assert [line.text for line in logged[2:]] == [f"{stream.url} back"]  # failures are told once, not at each attempt
+    assert [line.text for line in logged[2:]] == [f"{stream.url} back"]  # reported once, not at each attempt
     picture = None
     while picture is None:
         picture = seen(camera)

@@ -1,4 +1,4 @@
-"""The kicker's driver: when it fires, when it waits, when it forgets."""
+"""The kicker's driver: when it fires, waits, and drops a command."""
 
 from typing import Any
 

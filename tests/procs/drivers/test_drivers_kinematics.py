@@ -34,7 +34,7 @@ def test_straight_ahead_rests_the_rear_wheel() -> None:
     assert (first, second, third) == pytest.approx((-math.sqrt(3) / 2, 0.0, math.sqrt(3) / 2))
 
 
-def test_to_the_left_the_rear_wheel_does_most() -> None:
+def test_to_the_left_the_rear_wheel_turns_fastest() -> None:
     assert wheels_of(Velocity(0.0, 1.0, 0.0), 0.2) == pytest.approx((0.5, -1.0, 0.5))
 
 
@@ -76,7 +76,7 @@ def test_ramp_never_changes_faster_than_its_limits(wanted: list[Velocity]) -> No
         assert abs(after.omega_rad_s - before.omega_rad_s) <= 10.0 * 0.05 + 1e-9
 
 
-def test_broken_wish_brakes() -> None:
+def test_invalid_command_brakes() -> None:
     limits = ramp()
     limits.advance(Velocity(1.0, 0.0, 0.0), 1.0)
     assert limits.advance(Velocity(math.nan, 0.0, math.inf), 1.0) == STANDSTILL

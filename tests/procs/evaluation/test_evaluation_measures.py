@@ -1,4 +1,4 @@
-"""Measures of pieces whose errors are known."""
+"""Measures of game pieces with known errors."""
 
 import math
 from typing import Any
@@ -52,7 +52,7 @@ def model(ball_m: tuple[float, float], deviation_m: float = 0.1, **values: Any) 
 
 
 def piece(robots: list[true_robot_t], ticks: int = 40, vx_m_s: float = 1.0) -> Piece:
-    """Makes a piece in which the ball rolls along x, from the centre, and all robots stand."""
+    """Makes a piece in which the ball rolls along x, from the centre, and all robots stand still."""
     made = Piece(0.05)
     for tick in range(FIRST, FIRST + ticks):
         truth = made.truth[tick] = ground_truth_t()
@@ -61,12 +61,12 @@ def piece(robots: list[true_robot_t], ticks: int = 40, vx_m_s: float = 1.0) -> P
     return made
 
 
-def test_ball_errors_are_those_of_the_belief() -> None:
+def test_ball_errors_are_those_of_the_estimate() -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
     made.by_robot["world_model"] = {"cyan1": {tick: model((truth.ball_x_m, 0.1)) for tick, truth in made.truth.items()}}
     found = believed(made)
     assert np.sqrt(found["ball rolling freely, position"].mean()) == pytest.approx(0.1)
-    assert np.sqrt(found["ball moving, velocity"].mean()) == pytest.approx(1.0)  # the belief says that it rests
+    assert np.sqrt(found["ball moving, velocity"].mean()) == pytest.approx(1.0)  # the estimate says that it rests
     assert found["inside 95 %, all"].mean() == 1.0
     assert not len(found["ball resting, position"])
 
@@ -79,7 +79,7 @@ def test_claims_are_counted_by_the_holder_of_the_ball(toucher: str, case: str) -
         "cyan1": {tick: model((truth.ball_x_m + 0.3, 0.0)) for tick, truth in made.truth.items()}
     }
     found = believed(made)
-    assert found[f"inside 95 %, {case}"].mean() == 0.0  # three deviations off
+    assert found[f"inside 95 %, {case}"].mean() == 0.0  # three standard deviations off
     assert not len(found["ball rolling freely, position"])
 
 
@@ -110,7 +110,7 @@ def test_kick_delay_ends_when_the_velocity_is_known() -> None:
     assert believed(made)["velocity known after a kick"].tolist() == pytest.approx([0.15, math.inf])
 
 
-def test_lag_of_an_opponent_is_its_way_behind_by_its_speed() -> None:
+def test_lag_of_an_opponent_is_its_distance_behind_by_its_speed() -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 2.0, 0.0, vx_m_s=2.0)])
     behind = robot_estimate_t()
     behind.x_m = 1.8

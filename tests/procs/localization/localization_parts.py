@@ -47,7 +47,7 @@ class FakeRobot:
         self.pose = self.rng.uniform((-10.5, -6.5, -math.pi), (10.5, 6.5, math.pi))
 
     def drive(self, velocity: Floats) -> None:
-        """Drives for a frame at a velocity of the robot frame: m/s, m/s, rad/s."""
+        """Drives for a frame at a velocity in the robot frame: m/s, m/s, rad/s."""
         self.velocity = velocity
         self.pose = self._moved(self.pose, velocity)
         measured = self.measured = velocity.copy()
@@ -62,7 +62,7 @@ class FakeRobot:
         return np.array((*(pose[:2] + way_m), pose[2] + velocity[2] * PERIOD_S))
 
     def white_points(self, count: int = 100) -> tuple[Floats, Floats]:
-        """Returns white points in the robot frame, from a picture that shakes, with clutter among them."""
+        """Returns white points in the robot frame, from a shaking picture with clutter."""
         seen = (paint_m() - self.pose[:2]) @ rotation(self.pose[2])
         range_m = np.hypot(seen[:, 0], seen[:, 1])
         inside = np.flatnonzero((range_m < REACH_M) & (range_m > 0.4))
@@ -115,7 +115,7 @@ def until_localized(bench: Bench, robot: FakeRobot, limit_s: float) -> float:
 
 
 class Course:
-    """Random driving within the field at up to 2.7 m/s, with accelerations that a robot can do."""
+    """Random driving within the field at up to 2.7 m/s, with feasible accelerations."""
 
     def __init__(self, robot: FakeRobot) -> None:
         self.robot = robot

@@ -95,7 +95,7 @@ def test_blocked_robot_with_turning_wheels_stays_in_place() -> None:
     assert np.sqrt(np.mean(np.square(errors[5:]))) < 0.06, "the wheels turn 0.1 m a frame"
 
 
-def test_odometry_that_starts_anew_does_not_move_the_robot() -> None:
+def test_odometry_that_restarts_does_not_move_the_robot() -> None:
     robot = FakeRobot(seed=21)
     robot.pose = np.array((3.0, 2.0, 0.0))
     robot.odometry = np.array((7.0, -3.0, 2.0))

@@ -1,4 +1,4 @@
-"""The tree of a robot's frames, and a component that gets its transforms from it."""
+"""The tree of a robot's frames, and a component that uses its transforms."""
 
 import math
 from typing import Any
@@ -63,7 +63,7 @@ def test_transform_lookups_use_the_time_of_the_input() -> None:
     assert not system.logged
 
 
-def test_without_a_pose_the_spot_says_why_it_is_unknown_once() -> None:
+def test_without_a_pose_the_spot_states_the_reason_once() -> None:
     bench = Bench(BallSpot)
     for _ in range(3):
         bench.port("ball_percept").put(visible=True, x_m=1.0)

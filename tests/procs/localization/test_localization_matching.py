@@ -44,7 +44,7 @@ def test_match_without_noise_finds_the_pose() -> None:
     assert found.scores[0] > 0.999
 
 
-def test_line_gives_no_information_about_the_place_along_it() -> None:
+def test_line_gives_no_information_about_position_along_it() -> None:
     y_m = np.linspace(-0.7, 1.5, 50)
     found = match(line_map(FIELD), LinePoints(np.zeros(50), y_m), np.array([[0.1, 4.5, 0.0]]))
     information = found.information[0]
@@ -55,11 +55,11 @@ def test_line_gives_no_information_about_the_place_along_it() -> None:
 def test_blockwise_table_equals_the_table_of_all_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     places_m = np.random.default_rng(1).uniform((-11.0, -8.0), (11.0, 8.0), (5000, 2))
     by_blocks = LineMap(FIELD).look_up(*places_m.T)
-    monkeypatch.setattr("procs.localization.line_map._BLOCK_M", 100.0)  # one block, to which all lines are near
+    monkeypatch.setattr("procs.localization.line_map._BLOCK_M", 100.0)  # one block, near to all lines
     assert np.array_equal(by_blocks, LineMap(FIELD).look_up(*places_m.T))
 
 
-def test_search_finds_the_place_among_its_first_guesses() -> None:
+def test_search_finds_the_pose_among_its_first_guesses() -> None:
     robot = FakeRobot(seed=3)
     search = GlobalSearch(line_map(FIELD), REACH_M)
     hits = 0

@@ -73,7 +73,7 @@ def test_compass_that_contradicts_the_pose_starts_a_search() -> None:
 
 @pytest.mark.parametrize("parity", [0, 1])
 def test_kidnapping_is_noticed_with_frames_of_every_second_tick(parity: int) -> None:
-    """Cameras take turns: a robot may get its frames in even or in odd ticks only."""
+    """Cameras alternate between ticks: a robot may get its frames in even or in odd ticks only."""
     bench, robot = Bench(Localization, **settings_in("soccer.yaml", "cyan1/localization")), FakeRobot(3)
     robot.pose = np.array((-5.0, 2.0, 0.3))
     known: list[bool] = []

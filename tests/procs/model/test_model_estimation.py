@@ -1,4 +1,4 @@
-"""The library parts of the estimation: what they are, and what their import costs."""
+"""Library parts of the estimation: their identity, and the cost of their import."""
 
 import subprocess
 import sys
@@ -33,5 +33,5 @@ def test_estimation_imports_no_statistics_and_no_optimizers() -> None:
     run(LEAN)
 
 
-def test_library_that_is_imported_already_is_used() -> None:
+def test_already_imported_library_is_used() -> None:
     run(ORDINARY)

@@ -1,4 +1,4 @@
-"""The field's geometry against the measures of the rule book's drawing."""
+"""The field's geometry against the dimensions in the rule book."""
 
 import math
 
@@ -10,7 +10,7 @@ from procs.model.field import SIDES, Field, Point
 FIELD = Field()
 
 
-def test_lines_lie_inside_the_measures_and_are_symmetric() -> None:
+def test_lines_lie_inside_the_field_and_are_symmetric() -> None:
     ends = {point for segment in FIELD.segments() for point in segment}
     assert max(point.x_m for point in ends) == pytest.approx(11.0 - 0.0625)
     assert max(point.y_m for point in ends) == pytest.approx(7.0 - 0.0625)
@@ -55,7 +55,7 @@ def test_posts_leave_the_goal_width_free() -> None:
     assert left.x_m == pytest.approx(10.9375)
 
 
-def test_unknown_measures_are_refused() -> None:
+def test_unknown_dimensions_are_refused() -> None:
     with pytest.raises(ValidationError, match="lenght_m"):
         Field.model_validate({"lenght_m": 18.0})
 

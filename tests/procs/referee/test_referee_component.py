@@ -1,4 +1,4 @@
-"""The referee on the bench: what it reads and writes."""
+"""Messages of the referee on the bench."""
 
 from typing import Any
 
@@ -65,7 +65,7 @@ def test_events_of_several_ticks_all_count() -> None:
     assert state(bench).score_cyan == 1
 
 
-def test_unknown_kinds_of_events_are_left_alone() -> None:
+def test_unknown_kinds_of_events_are_ignored() -> None:
     bench = playing()
     bench.port("match_events").put(ball_x_m=3.0, events=[make(99)])
     bench.iterate()

@@ -1,4 +1,4 @@
-"""The referee's rules as scripts: what the linesmen report, and what is called."""
+"""The referee's rules as scripts: events from the field, and the calls that follow."""
 
 import pytest
 
@@ -52,7 +52,7 @@ def test_set_piece_becomes_play_when_the_ball_has_moved() -> None:
     assert states == [(State.KICK_OFF, Team.CYAN), (State.PLAY, Team.NONE)]
 
 
-def test_set_piece_that_no_robot_takes_is_play_after_its_time() -> None:
+def test_set_piece_that_no_robot_takes_becomes_play_in_time() -> None:
     referee = Referee(Rules(kick_off_stoppage_s=1.0, set_piece_s=3.0))
     states = []
     for duration_s in (3.9, 0.2):
@@ -194,7 +194,7 @@ def test_set_piece_does_not_wait_forever() -> None:
         (State.THROW_IN, Team.CYAN, "magenta2", (-0.5, 4.0), True),
     ],
 )
-def test_places_of_robots_at_a_set_piece(
+def test_positions_of_robots_at_a_set_piece(
     state: State, team: Team, robot: str, place: tuple[float, float], allowed: bool
 ) -> None:
     robots = {"cyan1": Point(-0.5 - 1.0 * (team is Team.NONE), 0.0), robot: Point(*place)}

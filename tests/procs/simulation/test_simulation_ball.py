@@ -1,4 +1,4 @@
-"""Ball and robots: kicks, ball handling, bounces, and what the referee hears of it."""
+"""Ball and robots: kicks, ball handling, bounces, and the events for the referee."""
 
 import math
 from itertools import pairwise
@@ -34,7 +34,7 @@ def kick(world: World, robot: str, speed_m_s: float, kick_id: int = 1) -> None:
 
 
 def dribble(world: World, velocity: Velocity, ticks: int = 60) -> None:
-    """Speeds up over the first second."""
+    """Speeds up during the first second."""
     for tick in range(ticks):
         now = Velocity(*(part * min(1.0, tick / 20) for part in velocity))
         world.robots["cyan1"].drive.command(wheels_of(now, 0.2), world.time_us)
@@ -86,7 +86,7 @@ def test_same_number_kicks_once_and_speed_zero_never() -> None:
     assert Kind.KICK not in [event.kind for event in run(world, 2)]
 
 
-def test_kick_without_a_ball_is_spent_on_the_air() -> None:
+def test_kick_without_a_ball_discharges_the_kicker() -> None:
     world = ball_in_mouth()
     world.ball.put(1.0, 0.0)
     kick(world, "cyan1", 8.0)
@@ -150,7 +150,7 @@ def test_without_ball_handling_driving_backwards_leaves_the_ball() -> None:
     assert world.ball.body.position.x == pytest.approx(IN_MOUTH_M, abs=0.01)
 
 
-def test_mouth_swallows_more_of_a_shot_than_the_back() -> None:
+def test_mouth_absorbs_more_of_a_shot_than_the_back() -> None:
     speeds = {}
     for heading_rad in (0.0, math.pi):
         world = world_with(cyan1=Pose(0.0, 0.0, heading_rad))
@@ -165,7 +165,7 @@ def test_mouth_swallows_more_of_a_shot_than_the_back() -> None:
     assert 0.2 < speeds[0.0] < 0.6 * speeds[math.pi]
 
 
-def test_goal_is_seen_once_and_by_whom() -> None:
+def test_goal_is_reported_once_with_the_last_touch() -> None:
     world = ball_in_mouth()
     world.robots["cyan1"].put(9.0, 0.3, 0.0)
     world.ball.put(9.0 + IN_MOUTH_M, 0.3)
@@ -250,7 +250,7 @@ def test_robots_that_overlap_are_pushed_apart() -> None:
     assert one.get_distance(two) > 0.495
 
 
-def test_left_alone_the_world_loses_energy_until_it_rests() -> None:
+def test_energy_of_an_undisturbed_world_decreases_to_rest() -> None:
     starts = {f"cyan{n}": Pose(-1.0 * n, 0.1 * n, 0.0) for n in range(1, 5)}
     world = World(list(starts), np.random.default_rng(1), starts=starts)
     world.ball.put(0.0, 0.3)

@@ -31,7 +31,7 @@ def test_robot_reaches_the_velocity_that_its_wheels_turn_for(wanted: Velocity) -
     assert drive(one_robot(), wanted, 40) == pytest.approx(wanted, abs=0.01)
 
 
-def test_it_turns_on_the_spot_as_fast_as_told() -> None:
+def test_robot_turns_on_the_spot_at_the_commanded_speed() -> None:
     world = one_robot()
     assert drive(world, Velocity(0.0, 0.0, 5.0), 40).omega_rad_s == pytest.approx(5.0, abs=0.01)
     assert world.robots["cyan1"].body.position == pytest.approx((-8.0, 0.0), abs=0.01)
@@ -77,7 +77,7 @@ def test_measured_speeds_are_the_mean_over_the_tick() -> None:
     assert robot.drive.measured_m_s() == robot.drive.wheels_m_s
 
 
-def test_what_is_no_number_stops_the_wheels() -> None:
+def test_command_that_is_not_a_number_stops_the_wheels() -> None:
     world = one_robot()
     drive(world, Velocity(1.0, 0.0, 0.0), 20)
     world.robots["cyan1"].drive.command((math.nan, math.nan, math.nan), world.time_us)

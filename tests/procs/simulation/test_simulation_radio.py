@@ -18,7 +18,7 @@ def radio(seed: int = 1, **settings: float) -> Bench:
 
 
 def say(bench: Bench, robot: str) -> None:
-    """The robot says which tick it is."""
+    """Sends the tick from the robot."""
     message = team_message_t()
     message.robot = robot
     message.header.tick = bench.tick + 1
@@ -26,7 +26,7 @@ def say(bench: Bench, robot: str) -> None:
     bench.port("messages", robot).put(message)
 
 
-def test_every_mate_hears_it_and_the_sender_does_not() -> None:
+def test_every_mate_receives_it_and_the_sender_does_not() -> None:
     bench = radio()
     say(bench, "cyan2")
     say(bench, "cyan4")
@@ -59,7 +59,7 @@ def test_message_arrives_as_it_was_sent() -> None:
 
 
 @pytest.mark.parametrize("loss", [0.0, 0.03, 0.3, 1.0])
-def test_that_share_is_lost_on_each_link_on_its_own(loss: float) -> None:
+def test_each_link_loses_that_share_independently(loss: float) -> None:
     bench = radio(loss=loss)
     ticks = 400
     for _ in range(ticks):
@@ -93,7 +93,7 @@ def test_delay_lies_between_the_least_and_the_jitter_on_top() -> None:
     assert np.mean(delays_s) == pytest.approx(0.08 + 0.1 + 0.025, abs=0.02)
 
 
-def test_same_seed_same_radio_other_seed_another() -> None:
+def test_same_seed_gives_the_same_radio_and_another_differs() -> None:
     def run(seed: int) -> list[bytes]:
         bench = radio(seed, loss=0.3, delay_jitter_s=0.2)
         for _ in range(50):

@@ -1,4 +1,4 @@
-"""The rendered picture: what stands where, what hides what, and the same bytes every time."""
+"""The rendered picture: positions, occlusion, and the same bytes every time."""
 
 import math
 from functools import cache
@@ -23,7 +23,7 @@ def renderer() -> Renderer:
 
 
 def colour_at(picture: Picture, x_m: float, y_m: float, z_m: float = 0.0, mirror: Mirror = MIRROR) -> Bgr:
-    """What the picture shows at a point of the robot frame."""
+    """Returns the colour of the picture at a point of the robot frame."""
     column, row = np.rint(mirror.project(np.array([[x_m, y_m, z_m]]))[0]).astype(int)
     blue, green, red = (int(level) for level in picture[row, column])
     return blue, green, red
@@ -98,7 +98,7 @@ def test_shaking_moves_the_whole_picture(shake_px: tuple[float, float]) -> None:
     differing = (moved != shaken).any(axis=2)[ring_mask].mean()
     if shake_px == (right, down):
         assert differing < 1e-3
-    else:  # half a pixel on: edges change, surfaces do not
+    else:  # half a pixel further: edges change, surfaces do not
         assert 0.0 < differing < 0.1
     assert (still != shaken).any(axis=2)[ring_mask].mean() > differing
 

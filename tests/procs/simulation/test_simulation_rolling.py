@@ -1,4 +1,4 @@
-"""The ball's two phases of friction against the formulas for constant decelerations."""
+"""The ball's two phases of friction against the formulas for constant deceleration."""
 
 import math
 from itertools import pairwise
@@ -19,14 +19,14 @@ def run(friction: RollingFriction, vx_m_s: float, vy_m_s: float, step_s: float =
 
 
 @pytest.mark.parametrize("speed_m_s", [2.0, 5.0, 10.0])
-def test_kicked_ball_goes_as_far_as_the_formula_says(speed_m_s: float) -> None:
+def test_kicked_ball_rolls_as_far_as_the_formula_says(speed_m_s: float) -> None:
     way_m = sum(vx * 0.005 for vx, _ in run(RollingFriction(BALL), speed_m_s, 0.0))
     rolling_m_s = speed_m_s / (1 + BALL.inertia)
     expected_m = (speed_m_s**2 - rolling_m_s**2) / (2 * BALL.sliding_m_s2) + rolling_m_s**2 / (2 * BALL.rolling_m_s2)
     assert way_m == pytest.approx(expected_m, rel=0.01)
 
 
-def test_it_rolls_from_six_tenths_of_its_first_speed() -> None:
+def test_ball_rolls_from_six_tenths_of_its_first_speed() -> None:
     speeds = [vx for vx, _ in run(RollingFriction(BALL), 5.0, 0.0)]
     losses = [(before - after) / 0.005 for before, after in pairwise(speeds)]
     assert losses[0] == pytest.approx(3.0)
@@ -47,13 +47,13 @@ def test_deflected_ball_keeps_its_old_spin_and_is_turned_by_it() -> None:
     assert max(vx for vx, _ in velocities) == pytest.approx(3.0 * BALL.inertia / (1 + BALL.inertia), rel=0.05)
 
 
-def test_step_does_not_change_the_way() -> None:
+def test_step_size_does_not_change_the_path() -> None:
     coarse = sum(vx * 0.01 for vx, _ in run(RollingFriction(BALL), 4.0, 0.0, 0.01))
     fine = sum(vx * 0.001 for vx, _ in run(RollingFriction(BALL), 4.0, 0.0, 0.001))
     assert coarse == pytest.approx(fine, rel=0.01)
 
 
-def test_it_comes_to_rest() -> None:
+def test_ball_comes_to_rest() -> None:
     velocities = run(RollingFriction(BALL), 1.0, -1.0)
     assert velocities[-1] == (0.0, 0.0)
     assert all(math.hypot(*after) <= math.hypot(*before) for before, after in pairwise(velocities))

@@ -1,4 +1,4 @@
-"""The simulator as a component: channels, time, silence of robots, the ball crew, and the same bytes every time."""
+"""The simulator as a component: channels, time, silent robots, the ball crew, and the same bytes every time."""
 
 import hashlib
 import math
@@ -36,7 +36,7 @@ def bench(**settings: Any) -> Bench:
 
 
 def tick(world: Bench, times: int = 1, **wheels: list[float]) -> ground_truth_t:
-    """Lets time go on while robots are told to turn their wheels."""
+    """Advances time while robots are told to turn their wheels."""
     for _ in range(times):
         for robot, wheel_m_s in wheels.items():
             message = wheel_command_t()
@@ -53,7 +53,7 @@ def events(world: Bench) -> list[match_event_t]:
     return [event for report in reports for event in report.events]
 
 
-def test_robots_stand_where_their_numbers_say() -> None:
+def test_robots_start_where_their_numbers_say() -> None:
     robots = {robot.name: robot for robot in tick(bench()).robots}
     assert list(robots) == ["cyan1", "cyan2", "magenta1"]
     assert robots["cyan1"].x_m < -10.0 < 10.0 < robots["magenta1"].x_m
@@ -65,12 +65,12 @@ def test_settings_move_a_robot() -> None:
     assert (truth.robots[1].x_m, truth.robots[1].y_m, truth.robots[1].heading_rad) == pytest.approx((-1.0, 2.0, 0.5))
 
 
-def test_start_for_a_robot_that_is_not_there_is_refused() -> None:
+def test_start_of_a_robot_that_does_not_exist_is_refused() -> None:
     with pytest.raises(ValueError, match=r"world/simulator: starts: no robot 'cyan7'; there are: cyan1, cyan2, mag"):
         bench(starts={"cyan7": (0.0, 0.0, 0.0)})
 
 
-def test_it_says_when_the_next_tick_is() -> None:
+def test_simulator_sets_the_time_of_the_next_tick() -> None:
     world = bench()
     world.iterate()
     assert world.runner.time_source.next_us == world.time_us + 50_000
@@ -88,14 +88,14 @@ def test_wheels_turn_and_are_measured() -> None:
     assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s == pytest.approx([-0.866, 0.0, 0.866], abs=1e-3)
 
 
-def test_robot_that_hears_nothing_more_stops() -> None:
+def test_robot_that_receives_nothing_stops() -> None:
     world = bench()
     tick(world, 20, cyan1=[-0.866, 0.0, 0.866])
     assert tick(world, 4).robots[0].vx_m_s == pytest.approx(1.0, abs=0.01)
     assert tick(world, 20).robots[0].vx_m_s == pytest.approx(0.0, abs=1e-3)
 
 
-def test_robot_that_hears_nothing_more_stops_handling_the_ball() -> None:
+def test_robot_that_receives_nothing_stops_handling_the_ball() -> None:
     world = bench(starts={"cyan1": (-0.33, 0.0, 0.0)})
     drive = kicker_drive_t()
     drive.dribble = True
@@ -108,7 +108,7 @@ def test_robot_that_hears_nothing_more_stops_handling_the_ball() -> None:
     assert len(events(world)) == before
 
 
-def test_imu_tells_heading_and_yaw_rate() -> None:
+def test_imu_reports_heading_and_yaw_rate() -> None:
     world = bench()
     truth = tick(world, 40, cyan1=[0.4, 0.4, 0.4])
     imu = world.port("imu", "cyan1").sent[-1]
@@ -154,7 +154,7 @@ def test_referee_placement_happens_once_for_each_number() -> None:
     assert tick(world).ball_x_m == pytest.approx(11.89)
 
 
-def test_placement_that_is_no_place_is_refused_aloud() -> None:
+def test_impossible_placement_is_refused_with_a_warning() -> None:
     world = bench()
     world.port("ball_placement").put(placement_id=1, x_m=math.nan, y_m=0.0)
     assert tick(world).ball_x_m == 0.0
@@ -170,7 +170,7 @@ def test_realism_makes_odometry_drift_from_the_truth() -> None:
 
 
 class Wanderer(Component):
-    """Drives and kicks at random, and listens to everything."""
+    """Drives and kicks at random, and receives everything."""
 
     stage = "think"
     rng: np.random.Generator
@@ -212,7 +212,7 @@ class Crew(Component):
 
 
 def wandering_robots(ticks: int, robots: int = 5) -> MemorySystem:
-    """Two teams of wanderers."""
+    """Returns two teams of wanderers."""
     components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/crew": Crew}
     for team in ("cyan", "magenta"):
         for number in range(1, robots + 1):
@@ -224,7 +224,7 @@ def wandering_robots(ticks: int, robots: int = 5) -> MemorySystem:
 
 
 def digest(system: MemorySystem) -> str:
-    """Of every byte that was sent on any channel."""
+    """Returns a digest of all bytes sent on any channel."""
     total = hashlib.sha256()
     for name, sent in sorted(system.sent.items()):
         for message in sent:

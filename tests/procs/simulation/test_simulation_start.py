@@ -1,4 +1,4 @@
-"""Names, formation and free places, delays and sensors."""
+"""Names, formation and free positions, delays and sensors."""
 
 import math
 
@@ -15,7 +15,7 @@ from procs.simulation.physics.start_places import free_place, starting_pose
 FIELD = Field()
 
 
-def test_names_say_team_number_and_side() -> None:
+def test_names_give_team_number_and_side() -> None:
     assert (team_of("cyan3"), number_of("cyan3"), side_of("cyan")) == ("cyan", 3, -1.0)
     assert (team_of("magenta12"), number_of("magenta12"), side_of("magenta")) == ("magenta", 12, 1.0)
     assert (team_of("robby"), number_of("robby"), side_of("robby")) == ("robby", 0, -1.0)
@@ -37,18 +37,18 @@ def test_number_one_keeps_the_goal() -> None:
     assert FIELD.in_goal_area(pose.x_m, pose.y_m, 1.0)
 
 
-def test_free_place_is_taken_as_it_is() -> None:
+def test_free_position_is_used_unchanged() -> None:
     assert free_place(Point(1.0, 2.0), [Point(1.0, 2.5)], 0.4) == (1.0, 2.0)
 
 
-def test_place_between_two_robots_moves_out_of_both() -> None:
+def test_position_between_two_robots_moves_out_of_both() -> None:
     robots = [Point(0.0, 0.0), Point(0.5, 0.0)]
     place = free_place(Point(0.2, 0.05), robots, 0.4)
     assert min(math.dist(place, robot) for robot in robots) >= 0.4 - 1e-9
     assert math.dist(place, (0.2, 0.05)) < 0.5
 
 
-def test_place_in_the_very_middle_of_a_robot_has_a_way_out() -> None:
+def test_position_at_the_very_centre_of_a_robot_has_a_way_out() -> None:
     assert free_place(Point(1.0, 1.0), [Point(1.0, 1.0)], 0.4) == pytest.approx((1.0, 1.4))
 
 
@@ -61,7 +61,7 @@ def test_delay_line_keeps_order_and_time() -> None:
     assert line.due(500) == ["b"]
 
 
-def test_ideal_sensors_tell_the_truth() -> None:
+def test_ideal_sensors_report_the_truth() -> None:
     rng = np.random.default_rng(1)
     assert Encoders(Noise(), rng).read((1.0, -2.0, 0.5)) == [1.0, -2.0, 0.5]
     heading_rad, yaw_rate_rad_s = Imu(Noise(), rng).read(3.5, 0.7, 0.05)

@@ -1,4 +1,4 @@
-"""Pictures on the bus: whose, how often, how large, and exact when they are to be."""
+"""Pictures on the bus: of which camera, how often, how large, and lossless on request."""
 
 from typing import Any
 
@@ -37,7 +37,7 @@ def test_each_camera_has_its_own_rate_in_logical_time() -> None:
     assert [tick for camera, tick in sent if camera == "cyan2/image"] == [4, 9]
 
 
-def test_every_frame_if_asked_for_and_none_twice() -> None:
+def test_every_frame_on_request_and_none_twice() -> None:
     pictures = bench(rate_hz=0.0)
     for _ in range(3):
         pictures.show("image", NOISE, "cyan1")
@@ -69,7 +69,7 @@ def test_jpeg_is_smaller_with_less_quality_and_looks_alike() -> None:
     assert sizes[0] < sizes[1] < smooth.size / 2
 
 
-def test_large_pictures_are_scaled() -> None:
+def test_large_pictures_are_scaled_down() -> None:
     pictures = bench(longest_px=40)
     pictures.show("image", NOISE, "cyan1")
     pictures.iterate()
@@ -85,7 +85,7 @@ def test_lost_frame_gives_no_picture() -> None:
     assert "frame 7 was overwritten before it was read" in pictures.logged[0].text
 
 
-def test_one_component_has_the_cameras_of_all_robots() -> None:
+def test_one_component_serves_the_cameras_of_all_robots() -> None:
     run = MemorySystem(
         {
             "world/world": World,

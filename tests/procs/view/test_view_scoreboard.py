@@ -32,7 +32,7 @@ def test_headline_of_a_match() -> None:
         ({"state": 77}, "state 77"),
     ],
 )
-def test_what_is_going_on(fields: dict[str, Any], words: str) -> None:
+def test_state_of_the_game_in_words(fields: dict[str, Any], words: str) -> None:
     assert headline(lambda _: state(**fields)).endswith(f"   {words}")
 
 
@@ -41,7 +41,7 @@ def test_every_state_has_a_name() -> None:
     assert set(STATES) == states
 
 
-def test_without_a_referee_there_is_nothing_to_say() -> None:
+def test_without_a_referee_there_is_no_headline() -> None:
     assert headline(lambda _: None) == ""
     assert summary(lambda _: None) == []
 
@@ -49,12 +49,12 @@ def test_without_a_referee_there_is_nothing_to_say() -> None:
 @pytest.mark.parametrize(
     ("cyan", "magenta", "words"), [(1, 0, "cyan leads"), (0, 3, "magenta leads"), (2, 2, "a draw")]
 )
-def test_summary_names_who_leads(cyan: int, magenta: int, words: str) -> None:
+def test_summary_names_the_leader(cyan: int, magenta: int, words: str) -> None:
     now = state(score_cyan=cyan, score_magenta=magenta, half=2, time_in_half_s=900.0)
     assert summary(lambda _: now) == [f"CYAN {cyan} : {magenta} MAGENTA", f"{words} after 15:00 of half 2"]
 
 
-def test_after_the_final_whistle_somebody_has_won() -> None:
+def test_after_the_final_whistle_the_summary_names_the_winner() -> None:
     now = state(score_cyan=2, score_magenta=1, half=2, state=game_state_t.FROZEN, time_in_half_s=900.0)
     assert summary(lambda _: now)[1] == "cyan wins after 15:00 of half 2"
 
@@ -63,7 +63,7 @@ def test_long_halves_keep_counting_minutes() -> None:
     assert play_time(6000.0) == "100:00"
 
 
-def test_summary_tells_the_goals_and_counts_the_whistles() -> None:
+def test_summary_lists_the_goals_and_counts_the_whistles() -> None:
     state = game_state_t()
     state.half, state.score_magenta = 1, 1
     for goal, kind, team, time_s in [

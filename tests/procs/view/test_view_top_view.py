@@ -1,4 +1,4 @@
-"""The picture from above: things are where they should be and have the right colours."""
+"""The picture from above: objects at their positions and in the right colours."""
 
 import numpy as np
 import pytest
@@ -42,14 +42,14 @@ def test_lines_are_white_and_grass_is_green() -> None:
     assert colour_at(drawn, 5.0, 5.0) in GRASS
 
 
-def test_robots_have_team_colours_and_the_ball_its_place() -> None:
+def test_robots_have_team_colours_and_ball_is_at_its_position() -> None:
     drawn = VIEW.draw(truth(("cyan1", -5.0, 1.0, 0.0), ("magenta2", 4.0, -3.0, 0.0)))
     assert colour_at(drawn, -5.0, 0.88) == pytest.approx(TEAM_COLOURS["cyan"], abs=12)
     assert colour_at(drawn, 4.0, -3.12) == pytest.approx(TEAM_COLOURS["magenta"], abs=12)
     assert colour_at(drawn, 3.0, 2.0) == pytest.approx(BALL, abs=12)
 
 
-def test_heading_shows() -> None:
+def test_heading_is_drawn() -> None:
     left, up = VIEW.draw(truth(("cyan1", 0.0, 0.0, 0.0))), VIEW.draw(truth(("cyan1", 0.0, 0.0, np.pi / 2)))
     assert sum(colour_at(left, 0.21, 0.0)) > sum(colour_at(up, 0.21, 0.0)) + 200
     assert sum(colour_at(up, 0.0, 0.21)) > sum(colour_at(left, 0.0, 0.21)) + 200
@@ -67,7 +67,7 @@ def test_bar_shows_the_score() -> None:
     assert (bar(score_cyan=1) == bar(score_cyan=1)).all()
 
 
-def test_beliefs_are_drawn_where_the_robot_sees_the_ball() -> None:
+def test_estimates_are_drawn_where_the_robot_sees_the_ball() -> None:
     belief = world_model_t()
     belief.ball.known, belief.ball.x_m, belief.ball.y_m = True, -6.0, -4.0
     belief.ball.covariance = [[0.25, 0, 0, 0], [0, 0.01, 0, 0], [0] * 4, [0] * 4]
@@ -100,6 +100,6 @@ def test_picture_of_the_newest_messages() -> None:
     assert np.ptp(columns) < 40
 
 
-def test_before_the_world_was_seen_there_is_no_picture() -> None:
+def test_before_the_first_world_message_there_is_no_picture() -> None:
     assert picture(lambda _: None) is None
     assert picture_with_beliefs(lambda _: None) is None

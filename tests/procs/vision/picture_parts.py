@@ -1,4 +1,4 @@
-"""Pictures for tests: what the simulated camera sees of a rolling ball, as files and as a stream of the network."""
+"""Pictures for tests: simulated frames of a rolling ball, as files and as a network stream."""
 
 import threading
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
@@ -49,7 +49,7 @@ def system(seed: int = 1, turns: tuple[int, int] = (1, 0), **camera: Any) -> Mem
 
 
 def frame_of(run: MemorySystem) -> Any:
-    """The pixels of the newest frame, as the detectors got them."""
+    """Returns the pixels of the newest frame, as the detectors received them."""
     if not run.ticks:
         run.tick()
     image: Any = run.runners["cyan1/omni_ball"].component
@@ -57,7 +57,7 @@ def frame_of(run: MemorySystem) -> Any:
 
 
 def simulated(count: int) -> tuple[list[Picture], MemorySystem]:
-    """Frames of the first ticks, and the system that has seen them."""
+    """Returns frames of the first ticks, and the system that has seen them."""
     run, pictures = system(), []
     for _ in range(count):
         run.tick()
@@ -66,7 +66,7 @@ def simulated(count: int) -> tuple[list[Picture], MemorySystem]:
 
 
 def shades(count: int, height_px: int = 120, width_px: int = 160) -> list[Picture]:
-    """Plain pictures, each brighter than the last by 8 of 255."""
+    """Returns plain pictures, each brighter than the one before by 8 of 255."""
     return [np.full((height_px, width_px, 3), 8 * number, np.uint8) for number in range(count)]
 
 
@@ -94,7 +94,7 @@ def read(file: Path) -> Picture:
 
 
 class Stream:
-    """A network camera: sends the same picture to every client again and again."""
+    """A network camera that sends the same picture to every client repeatedly."""
 
     def __init__(self, pixels: Picture, port: int = 0) -> None:
         jpeg = cv2.imencode(".jpg", pixels)[1].tobytes()

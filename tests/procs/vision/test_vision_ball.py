@@ -39,7 +39,7 @@ def picture(scene: Scene, rng: np.random.Generator, shake_px: float = 0.0) -> Pi
 
 
 def sightings(distance_m: float, shake_px: float, count: int = 40) -> tuple[Floats, Floats, int]:
-    """Errors (n, 2) along and across the ray, squared errors in units of the covariance, count of missed balls."""
+    """Returns errors (n, 2) along and across the ray, squared errors in units of the covariance, and missed balls."""
     rng = np.random.default_rng(round(distance_m * 100))
     errors, normed, missed = [], [], 0
     for _ in range(count):
@@ -72,11 +72,11 @@ def test_covariance_matches_the_errors_of_a_shaking_mirror(distance_m: float) ->
     errors, normed, missed = sightings(distance_m, SHAKE_PX)
     assert missed <= 1
     assert abs(errors.mean(axis=0)[0]) < errors[:, 0].std()
-    assert 1.0 < normed.mean() < 3.5  # two degrees of freedom: 2 if it were exact
+    assert 1.0 < normed.mean() < 3.5  # two degrees of freedom: 2 if the covariance were exact
 
 
 def test_error_grows_with_distance_as_cambada_assumes_at_most() -> None:
-    """CAMBADA's filter takes 0.01 d² - 0.01 d + 0.039 m for the standard deviation of a single sighting."""
+    """CAMBADA's filter uses 0.01 d² - 0.01 d + 0.039 m as the standard deviation of a single sighting."""
     deviations = [math.sqrt((sightings(d, SHAKE_PX)[0] ** 2).sum(axis=1).mean()) for d in (1.0, 2.0, 4.0, 6.0)]
     assert deviations == sorted(deviations)
     for distance_m, deviation_m in zip((1.0, 2.0, 4.0, 6.0), deviations, strict=True):
@@ -114,7 +114,7 @@ def test_nearly_every_ball_in_a_crowd_is_found() -> None:
             found += 1
             seen = angle - own.heading_rad
             error_m = math.hypot(ball.x_m - distance_m * math.cos(seen), ball.y_m - distance_m * math.sin(seen))
-            assert error_m < 0.05 + 0.1 * distance_m  # half hidden balls are off by a part of their size
+            assert error_m < 0.05 + 0.1 * distance_m  # half-hidden balls are off by a part of their size
     assert found / balls >= 0.9
 
 
@@ -134,7 +134,7 @@ def test_half_hidden_ball_is_less_certain() -> None:
 
 
 def test_ball_in_the_air_is_no_confident_ball_on_the_ground() -> None:
-    """It is larger than a ball lying that far away would be."""
+    """It appears larger than a ball on the ground at that distance would."""
     ball = FINDER.find(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), [], (-1.0, 2.0, 0.45))))
     assert ball is None or ball.confidence < 0.6
 
@@ -171,7 +171,7 @@ def test_stripe_with_a_balls_area_is_no_ball() -> None:
     frame[:] = GREEN
     side_px = round(math.sqrt(math.pi) * radius_px / 2)
     frame[top - side_px : top + side_px, centre - side_px : centre + side_px] = ORANGE
-    assert FINDER.find(frame) is not None  # so it was the shape
+    assert FINDER.find(frame) is not None  # so the shape made the difference
 
 
 def test_odd_picture_size_works_as_well() -> None:

@@ -1,4 +1,4 @@
-"""Camera and detectors as components: what they publish, also without a frame, and the same bytes every time."""
+"""Camera and detectors as components: their messages, also without a frame, and the same bytes every time."""
 
 import hashlib
 import math
@@ -27,7 +27,7 @@ def test_from_truth_to_percepts() -> None:
         run.tick()
         ball, lines = run.newest("cyan1/ball_percept"), run.newest("cyan1/line_points")
         (obstacle,) = run.newest("cyan1/obstacle_percepts").obstacles
-        dx_m, dy_m = 1.0 + 0.05 * tick, 1.0  # of the ball of this very tick
+        dx_m, dy_m = 1.0 + 0.05 * tick, 1.0  # of the ball of this tick
         assert ball.visible
         assert ball.x_m == pytest.approx(math.cos(0.5) * dx_m + math.sin(0.5) * dy_m, abs=0.01)
         assert ball.y_m == pytest.approx(math.cos(0.5) * dy_m - math.sin(0.5) * dx_m, abs=0.01)
@@ -39,7 +39,7 @@ def test_from_truth_to_percepts() -> None:
         assert ball.header.tick == lines.header.tick == tick
 
 
-def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
+def test_alternating_cameras_give_a_frame_every_other_tick() -> None:
     run = system(turns=(2, 1))
     run.tick(6)
     assert [frame_t.decode(data).header.tick for data in run.sent["cyan1/image"]] == [1, 3, 5]
@@ -48,7 +48,7 @@ def test_cameras_that_take_turns_give_a_frame_every_other_tick() -> None:
 def test_lost_frame_gives_empty_percepts() -> None:
     ball, field = Bench(OmniBall), Bench(OmniField)
     for bench in (ball, field):
-        bench.port("image").put(frame=7, width_px=400, height_px=400, channels=3)  # announced, not in the ring
+        bench.port("image").put(frame=7, width_px=400, height_px=400, channels=3)  # announced, but not in the ring
         bench.iterate()
     assert [percept.visible for percept in ball.port("ball_percept").sent] == [False]
     assert [points.n for points in field.port("line_points").sent] == [0]
@@ -70,7 +70,7 @@ def test_percepts_of_an_earlier_frame_are_not_kept() -> None:
     assert [percepts.n > 0 for percepts in field.port("obstacle_percepts").sent] == [True, False]
 
 
-def test_without_a_new_frame_nothing_is_said() -> None:
+def test_without_a_new_frame_nothing_is_published() -> None:
     bench = Bench(OmniBall)
     bench.iterate(3)
     assert bench.port("ball_percept").sent == []
@@ -166,7 +166,7 @@ def test_driving_shakes_the_picture_more_than_standing() -> None:
 
 
 def digest(seed: int) -> str:
-    """Of every frame and every message of a few ticks."""
+    """Returns a digest of every frame and every message of a few ticks."""
     run, seen = system(seed), hashlib.sha256()
     for _ in range(5):
         run.tick()
@@ -178,7 +178,7 @@ def digest(seed: int) -> str:
 
 
 def test_fresh_processes_give_the_same_bytes() -> None:
-    """Whatever the order of sets, and whichever kernels the linear algebra library would take."""
+    """The bytes depend neither on the order of sets nor on the default kernel of the linear algebra library."""
     code = "import runpy, sys; print(runpy.run_path(sys.argv[1])['digest'](1))"
     digests = [
         subprocess.run(

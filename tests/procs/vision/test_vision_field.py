@@ -66,7 +66,7 @@ def distance_to_arc(points_m: Floats, arc: Arc) -> Floats:
 
 
 def distance_to_lines(points_m: Floats) -> Floats:
-    """From points (n, 2) of the world frame to the middle of the nearest line or mark."""
+    """Returns distances from points (n, 2) in the world frame to the middle of the nearest line or mark."""
     distances = np.min(
         [distance_to_segment(points_m, segment) for segment in FIELD.segments()]
         + [distance_to_arc(points_m, arc) for arc in FIELD.arcs()]
@@ -117,14 +117,14 @@ def test_line_points_lie_on_lines_wherever_the_robot_stands() -> None:
     errors_m, away_m = np.concatenate(distances), np.concatenate(far)
     assert min(counts) >= 20
     assert np.median(counts) >= 80
-    assert np.mean(errors_m > 0.15) < 0.01  # what remains are corners, where a chord's middle is beside both lines
+    assert np.mean(errors_m > 0.15) < 0.01  # the rest are at corners, where chords end on two lines
     for near_m, most_m in ((0.0, 0.03), (1.0, 0.04), (2.0, 0.06), (4.0, 0.08)):
         band = (away_m >= near_m) & (away_m < near_m + 1.0)
         assert np.percentile(errors_m[band], 95) < most_m + 0.03
         assert math.sqrt(np.mean(np.minimum(errors_m[band], 0.15) ** 2)) < most_m
 
 
-def test_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
+def test_line_towards_the_robot_is_found_by_the_rings() -> None:
     own = Pose(0.0, 4.5, 0.0)  # on the halfway line, which no ray crosses
     points = LINES.find(to_hsv(RINGS.look_up(renderer().render(Scene(own, [], None)))), RINGS)
     on_halfway_line = np.abs(points[:, 0]) < 0.06
@@ -132,8 +132,8 @@ def test_line_that_runs_towards_the_robot_is_met_by_the_rings() -> None:
 
 
 @pytest.mark.parametrize(("width_m", "rays"), [(0.013, 0), (0.125, DEFAULTS.rays), (0.3, DEFAULTS.rays), (0.6, 0)])
-def test_only_what_is_as_wide_as_a_line_is_one(width_m: float, rays: int) -> None:
-    """White rings around the robot, which every ray meets."""
+def test_only_structures_as_wide_as_a_line_count(width_m: float, rays: int) -> None:
+    """White rings around the robot are crossed by every ray."""
     radius_px = np.hypot(*(np.indices((400, 400)) - MIRROR.centre_px))
     frame = np.full((400, 400, 3), GREEN, np.uint8)
     frame[(radius_px >= MIRROR.radius_px(0.7)) & (radius_px < MIRROR.radius_px(0.7 + width_m))] = WHITE
@@ -141,7 +141,7 @@ def test_only_what_is_as_wide_as_a_line_is_one(width_m: float, rays: int) -> Non
 
 
 def test_robots_goals_and_surroundings_give_no_line_points() -> None:
-    """A line point has green on both sides: a robot's marker, a goal post and the floor have not."""
+    """A line point has green on both sides, unlike a robot's marker, a goal post and the floor."""
     carpet_only = Field(line_width_m=0.021, mark_diameter_m=0.021)  # lines too thin to be drawn
     bare = Renderer(MIRROR, carpet_only, Bodies())
     rng = np.random.default_rng(2)
@@ -175,7 +175,7 @@ def test_robots_are_found_with_small_errors_and_without_ghosts() -> None:
         assert math.sqrt(np.mean(np.square(errors[metres]))) < most_m
 
 
-def test_robots_seen_from_afar_are_on_average_where_they_are() -> None:
+def test_robots_seen_from_afar_are_unbiased_on_average() -> None:
     rng = np.random.default_rng(4)
     errors_m = []
     for _ in range(80):
@@ -196,24 +196,24 @@ def test_obstacle_covariance_is_honest() -> None:
         (found,) = obstacles(picture(Scene(own, [robot], None), rng, shake_px=0.5))
         error = np.array([found.x_m, found.y_m]) - truth
         normed.append(error @ np.linalg.solve(found.covariance_m2, error))
-    assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if it were exact
+    assert 0.7 < np.mean(normed) < 3.0  # two degrees of freedom: 2 if the covariance were exact
 
 
-def test_two_robots_side_by_side_are_two() -> None:
+def test_two_robots_side_by_side_are_two_obstacles() -> None:
     robots = [(-1.0, 2.26, CYAN), (-1.0, 1.74, MAGENTA)]
     found = obstacles(renderer().render(Scene(Pose(-3.0, 2.0, 0.0), robots, None)))
     places = sorted((o.y_m, o.x_m) for o in found)
     assert np.allclose(places, [(-0.26, 2.0), (0.26, 2.0)], atol=0.08)
 
 
-def test_ball_before_a_robot_does_not_make_two_of_it() -> None:
+def test_ball_before_a_robot_does_not_split_it() -> None:
     scene = Scene(Pose(-3.0, 2.0, 0.0), [(-1.0, 2.0, CYAN)], (-1.37, 2.0, 0.11))
     (found,) = obstacles(renderer().render(scene))
     assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.06)
 
 
 def test_robot_straight_behind_is_one() -> None:
-    """There the rays begin and end."""
+    """The rays begin and end there."""
     for lateral_m in (-0.1, 0.0, 0.1):
         for heading_rad in (0.0, math.pi):
             robot = (-5.0 if heading_rad == 0.0 else -1.0, 2.0 + lateral_m, CYAN)

@@ -50,7 +50,7 @@ def test_ball_at_five_metres_is_several_pixels_wide() -> None:
 @pytest.mark.parametrize("mirror", [Mirror(), TILTED])
 @pytest.mark.parametrize("centre", [(0.36, 0.0, 0.11), (-2.0, 1.5, 0.11), (3.0, -3.0, 0.5)])
 def test_sphere_is_the_circle_of_its_tangent_rays(mirror: Mirror, centre: tuple[float, float, float]) -> None:
-    """Points on the sphere never appear outside the circle, and those the rays touch appear on it."""
+    """Points on the sphere never appear outside the circle; those where rays touch the sphere appear on it."""
     radius_m = 0.11
     column, row, radius_px = mirror.sphere(centre, radius_m)
     directions = np.random.default_rng(2).standard_normal((20000, 3))

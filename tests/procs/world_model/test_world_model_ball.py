@@ -1,4 +1,4 @@
-"""The ball tracker on made-up sightings: at rest, rolling, kicked, seen by many; honesty; rules of precedence."""
+"""The ball tracker on synthetic sightings: resting, rolling, kicked, seen by many; consistency and precedence."""
 
 import math
 from collections.abc import Iterator
@@ -20,7 +20,7 @@ ROLLING_NOISE_M2_S3 = 0.01
 
 
 class Eye:
-    """A robot that stands somewhere and sees the ball as an omnidirectional camera does."""
+    """A robot at a fixed pose that sees the ball like an omnidirectional camera."""
 
     def __init__(self, name: str, place_m: tuple[float, float], seed: int, recognised: float = 0.95) -> None:
         self.name = name
@@ -30,7 +30,7 @@ class Eye:
         self.last: Floats | None = None
 
     def look(self, ball_m: Floats, own: bool = False, age_s: float = 0.0) -> Sighting | None:
-        """A noisy sighting with its true covariance; sometimes none."""
+        """Returns a noisy sighting with its true covariance, or None at times."""
         ray = ball_m - self.place_m
         distance_m = float(np.hypot(*ray))
         turn = rotation(math.atan2(ray[1], ray[0]))
@@ -43,7 +43,7 @@ class Eye:
 
 
 def rolling(start_m: tuple[float, float], velocity_m_s: tuple[float, float], frames: int) -> Iterator[Floats]:
-    """True states (4) of a ball that rolls freely."""
+    """Returns true states (4) of a ball that rolls freely."""
     position, velocity = np.array(start_m), np.array(velocity_m_s)
     for _ in range(frames):
         speed = float(np.hypot(*velocity))
@@ -54,7 +54,7 @@ def rolling(start_m: tuple[float, float], velocity_m_s: tuple[float, float], fra
 
 
 def follow(eyes: list[Eye], states: Iterator[Floats]) -> Floats:
-    """Errors (frames, 4) of a tracker that gets what all see: the first eye is its own, others at 10 Hz."""
+    """Returns errors (frames, 4) of a tracker that gets all sightings: of its own robot, and of others at 10 Hz."""
     tracker = BallTracker()
     errors = []
     for frame, state in enumerate(states):
@@ -137,7 +137,7 @@ def test_fused_ball_beats_the_best_single_robot() -> None:
 
 
 def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> float:
-    """Mean normalised error squared at the end of runs whose truth follows the filter's own idea of motion."""
+    """Returns the mean normalised squared error at the end of runs whose truth follows the filter's motion model."""
     values = []
     for seed in range(runs):
         rng = np.random.default_rng(1000 + seed)
@@ -199,7 +199,7 @@ def test_own_sighting_precedes_an_equally_accurate_mate() -> None:
     assert tracker.track.state[:2] == pytest.approx(other, abs=0.1)
 
 
-def test_old_sighting_tells_where_the_ball_was() -> None:
+def test_old_sighting_is_used_for_its_own_time() -> None:
     history = list(rolling((-4.0, 0.0), (3.0, 0.0), 60))
     errors = []
     for seed in range(10):
@@ -238,7 +238,7 @@ def test_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
 
 
 def test_cameras_outrank_the_kickers_old_sighting() -> None:
-    """A mate saw the ball sharply, then kicked it; the own camera gives a frame every second tick."""
+    """A mate saw the ball sharply, then kicked it; the robot's own camera gives a frame every second tick."""
     tracker = BallTracker()
     for _ in range(6):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
@@ -269,12 +269,12 @@ def test_held_ball_is_as_uncertain_as_the_own_pose() -> None:
     covariance = np.diag((0.1**2, 0.2**2, 0.0, 0.0))
     for _ in range(3):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), covariance)  # the pose's error stays from tick to tick
+        tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), covariance)  # the pose's error persists from tick to tick
     assert np.sqrt(np.diag(tracker.track.covariance)[:2]) == pytest.approx((0.1, 0.2), rel=0.05)
 
 
 def inside_95(states: list[Floats], contacts: list[bool], runs: int = 12) -> float:
-    """Share of ticks in which the true position lies in the ellipse that holds 95 % by the filter's own covariance."""
+    """Returns the share of ticks in which the true position lies in the filter's 95 % ellipse."""
     inside = []
     for seed in range(runs):
         eyes = [Eye(f"r{number}", place, 31 * seed + number) for number, place in enumerate([(-2.0, 1.0), (3.0, -3.0)])]
@@ -291,7 +291,7 @@ def inside_95(states: list[Floats], contacts: list[bool], runs: int = 12) -> flo
 
 
 def carried(frames: int) -> list[Floats]:
-    """True states (4) of a ball in the mouth of a robot that drives a circle of 1 m with 2 m/s."""
+    """Returns true states (4) of a ball in the mouth of a robot that drives a circle of 1 m radius at 2 m/s."""
     angles = np.arange(frames) * PERIOD_S * 2.0
     return [np.array((np.cos(a), np.sin(a), -2.0 * np.sin(a), 2.0 * np.cos(a))) for a in angles]
 
@@ -346,7 +346,7 @@ def test_covariance_stays_symmetric_and_positive() -> None:
 
 
 def test_sighting_from_before_a_kick_tells_nothing() -> None:
-    """A mate's camera was exposed before the own kick, its message comes after it."""
+    """A mate's camera was exposed before the robot's own kick; its message arrives after the kick."""
     tracker = BallTracker()
     for _ in range(4):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
@@ -370,7 +370,7 @@ def test_long_step_is_as_sound_as_many_short_ones() -> None:
 
 
 def test_kick_of_a_mate_begins_at_its_mouth() -> None:
-    """Cameras have shown a part of the flight already, which does not count twice."""
+    """Cameras have already shown a part of the flight, which must not count twice."""
     tracker = BallTracker()
     for frame in range(8):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=True)

@@ -1,4 +1,4 @@
-"""Filters in a batch give what filterpy's functions give one by one."""
+"""Filters in a batch give the same results as filterpy's functions one by one."""
 
 import numpy as np
 import pytest

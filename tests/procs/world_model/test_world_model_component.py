@@ -1,4 +1,4 @@
-"""World models of a team on the bench, joined by a radio: frames, sources, what is told on, opponents, honesty."""
+"""World models of a team on the bench, connected by radio: frames, sources, messages to mates, opponents."""
 
 import math
 from typing import Any
@@ -17,11 +17,11 @@ from procs.world_model.world_model import WorldModel
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05
 POSE_DEVIATIONS = np.array((0.015, 0.015, 0.004))
-POSE_MEMORY = 0.8  # the pose's error from frame to frame, as a localization's is
+POSE_MEMORY = 0.8  # the pose's error persists from frame to frame, as that of a localization does
 
 
 class Robot:
-    """A robot with a true pose, a pose that is a little wrong, and a camera; its world model is on the bench."""
+    """A robot with a true pose, a slightly wrong estimated pose, and a camera; its world model is on the bench."""
 
     def __init__(self, name: str, pose: tuple[float, float, float], seed: int, **settings: Any) -> None:
         self.name = name
@@ -33,18 +33,18 @@ class Robot:
         self.localized = True
 
     def deviations_m(self, distance_m: float) -> Floats:
-        """Along and across the ray."""
+        """Returns standard deviations along and across the ray."""
         return np.array((0.01 + 0.005 * distance_m**2, 0.01 + 0.003 * distance_m))
 
     def in_frame(self, point_m: Floats) -> tuple[Floats, Floats]:
-        """A noisy sighting in the robot frame, and its covariance."""
+        """Returns a noisy sighting in the robot frame, and its covariance."""
         seen_m = rotation(-self.pose[2]) @ (point_m - self.pose[:2])
         deviations_m = self.deviations_m(float(np.hypot(*seen_m)))
         turn = rotation(math.atan2(seen_m[1], seen_m[0]))
         return seen_m + turn @ (deviations_m * self.rng.standard_normal(2)), turn @ np.diag(deviations_m**2) @ turn.T
 
     def sense(self, ball_m: Floats | None, others_m: list[Floats], held: bool = False) -> None:
-        """Puts a frame on the bench: what the camera sees of ball and robots, the pose, the rest."""
+        """Puts a frame on the bench: sightings of ball and robots, the pose, and the other inputs."""
         fresh = POSE_DEVIATIONS * self.rng.standard_normal(3)
         self.pose_error = POSE_MEMORY * self.pose_error + math.sqrt(1 - POSE_MEMORY**2) * fresh
         x_m, y_m, heading_rad = (self.pose + self.pose_error).tolist()
@@ -76,7 +76,7 @@ class Robot:
 
 
 class TeamOnBench:
-    """Robots joined by a radio."""
+    """Robots connected by radio."""
 
     def __init__(self, robots: list[Robot], **radio: float) -> None:
         self.robots = robots
@@ -121,7 +121,7 @@ def test_ball_and_opponent_are_placed_from_camera_and_pose() -> None:
     assert (world.opponents[0].x_m, world.opponents[0].y_m) == pytest.approx((0.0, 1.0), abs=0.08)
 
 
-def test_robot_sends_its_own_sight_ten_times_a_second() -> None:
+def test_robot_sends_its_own_sighting_ten_times_a_second() -> None:
     pair = team()
     told: list[team_message_t] = []
     for _ in range(20):
@@ -208,7 +208,7 @@ def test_silence_makes_the_robot_forget_everything_in_time() -> None:
 
 
 def ball_errors(loss: float, blind: bool, seeds: int = 6) -> tuple[float, list[float]]:
-    """Root mean square of the ball's error: with radio (all robots together), and of each robot alone."""
+    """Returns the root mean square of the ball's error: with radio (all robots together), and of each robot alone."""
 
     def run(seed: int, loss: float) -> Floats:
         four = team(seed, loss=loss)
@@ -247,7 +247,7 @@ def test_without_any_radio_each_robot_relies_on_itself() -> None:
 
 
 def ball_nees(robots: int, runs: int = 20) -> float:
-    """Mean normalised squared error of the position (2 for an honest covariance) of a ball at rest."""
+    """Returns the mean normalised squared position error (2 if consistent) of a ball at rest."""
     values = []
     for seed in range(runs):
         four = team(1000 + seed)
@@ -344,7 +344,7 @@ def test_frames_of_every_second_tick_reach_the_message(parity: int) -> None:
 
 
 def test_mates_sight_counts_from_its_exposure() -> None:
-    """A fast ball, seen by one mate 0.1 s before its message: without the age it is half a metre behind."""
+    """A mate saw a fast ball 0.1 s before its message: without the age it is half a metre behind."""
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(12):
         now_us = robot.bench.time_us + round(PERIOD_S * 1e6)

@@ -7,7 +7,7 @@ OWNERS = ("world", "team_cyan", "cyan2", "cyan3")
 
 
 def test_robots_share_the_ball_in_odd_and_even_ticks() -> None:
-    """The launch file lets cameras take turns; no robot's turn may fall between its messages."""
+    """The launch file lets cameras alternate; no robot's tick may fall between its messages."""
     system = system_of("soccer.yaml", lambda name: name.partition("/")[0] in OWNERS)
     system.tick(60)
     for robot in ("cyan2", "cyan3"):

@@ -1,4 +1,4 @@
-"""Tracks of other robots: accuracy, association, ghosts, and the team subtracted from what is seen."""
+"""Tracks of other robots: accuracy, association, ghosts, and the exclusion of mates."""
 
 import numpy as np
 import pytest

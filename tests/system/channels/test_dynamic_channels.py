@@ -111,7 +111,7 @@ def test_last_messages_on_a_dynamic_channel_are_recorded(tmp_path: Path, ports: 
     gateway, writer = run.launched.gateway(), run.component("a/writer")["pid"]
     os.kill(gateway, signal.SIGSTOP)
     run.ask("set", changes=["a/writer.wants=true"])
-    pause(0.3)  # ticks go on until the gateway is wanted
+    pause(0.3)  # ticks go on until the main loop needs the gateway
     os.kill(writer, signal.SIGKILL)
     os.kill(gateway, signal.SIGCONT)
     run.ticks_pass(3)

@@ -1,4 +1,4 @@
-"""Rubbish, forgeries and other people's messages on every port: refused by name, and the run is as without them."""
+"""Garbage, forgeries and foreign messages on every port are refused by name and change nothing."""
 
 import contextlib
 import socket
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.system
 HOSTS, CHANNELS = 9, 14  # of the orchestra
 RUN = ("launch/orchestra.yaml", "--ticks", "60", "--seed", "7", "--record", "log.lcm")
 
-UNHURRIED = ("--speed", "1")  # strangers that share its processors have their say before it ends
+UNHURRIED = ("--speed", "1")  # foreign processes that share its processors get time before it ends
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ class Stranger:
         self._socket.close()
 
     def send(self, datagram: bytes, port: int, group: str = GROUP) -> None:
-        with contextlib.suppress(ConnectionRefusedError):  # of an earlier one, to a process that was not there yet
+        with contextlib.suppress(ConnectionRefusedError):  # of an earlier stranger, to a process that was not there yet
             self._socket.sendto(datagram, (group, port))
 
     def say(self, channel: str, data: bytes, port: int, group: str = GROUP) -> None:
@@ -80,7 +80,7 @@ RUBBISH = [
 
 
 def plausible(run: int) -> list[tuple[str, bytes]]:
-    """Messages that would do harm if they came from the right port, whole and cut off; `run` may be the real one."""
+    """Returns harmful messages for the right ports, whole and cut off; `run` may be the real run number."""
     done, actual, fetch, gone, tick, record = done_t(), actual_t(), fetch_t(), gone_t(), tick_t(), tick_record_t()
     for each in (done, actual, fetch, gone, tick, record):
         each.run = run
@@ -109,7 +109,7 @@ def plausible(run: int) -> list[tuple[str, bytes]]:
 
 
 def all_ports(ports: Ports) -> list[tuple[str, int]]:
-    """Every address of a run: what is sent to all, and what is sent to one process."""
+    """Returns every address of a run: multicast ports, and ports of one process."""
     shared = [(GROUP, port) for port in (ports.sync, ports.record, ports.log, ports.status)]
     shared += [(GROUP, ports.stage(stage)) for stage in range(10)]
     shared += [(GROUP, ports.channel(channel)) for channel in range(CHANNELS)]
@@ -118,7 +118,7 @@ def all_ports(ports: Ports) -> list[tuple[str, int]]:
 
 
 class Ears:
-    """Listens to ticks, as anybody on this machine can; `run` is the run's number once it is known, else 0."""
+    """Listens to ticks, as any process of this machine can; `run` is the run's number once it is known, else 0."""
 
     def __init__(self, ports: Ports) -> None:
         self.run = 0
@@ -139,7 +139,7 @@ class Ears:
 
 
 def assert_unharmed(run: Launched, folder: Path, reference: Path) -> None:
-    """The run ends well, with the messages of an undisturbed run, and without a process that failed."""
+    """Asserts that the run ends well, with the messages of an undisturbed run, and without a failed process."""
     assert run.wait() == 0, run.text
     assert difference(reference, folder / "log.lcm") == ""
     assert "Traceback" not in run.text
@@ -166,13 +166,13 @@ def test_foreign_datagrams_on_inner_ports_change_nothing(
     assert "refused" in run.text
     assert "times)" in run.text  # counted, not repeated each time
     assert run.text.count("refused") < 1000
-    text_log = (run.run_dir / "fwk.log").read_text()  # the console holds floods back
+    text_log = (run.run_dir / "fwk.log").read_text()  # the console throttles floods
     for port_of in ("fwk/sync", "fwk/tick", "fwk/record", "fwk/log", "fwk/fetch", "d/note"):
         assert f"{port_of}: " in text_log
 
 
 def requests() -> list[done_t]:
-    """Dones with a request that the plan cannot have, or that would stop everything."""
+    """Returns dones with requests that the plan does not allow, or that would stop everything."""
     main_loop, plugins, lost, channels = done_t(), done_t(), done_t(), done_t()
     main_loop.main_loop = [main_loop_request(10**6, [77])]
     plugins.plugins = [plugin_request(5, "stop", ["*"])]
@@ -182,7 +182,7 @@ def requests() -> list[done_t]:
 
 
 def mean(run: int) -> list[tuple[str, bytes]]:
-    """Dones, ticks and records that would end a run or spoil it."""
+    """Returns dones, ticks and records that would end or damage a run."""
     made = []
     for asking in (done_t(), *requests()):
         stages = [(done_t.STAGE, step) for step in range(10)]
@@ -202,7 +202,7 @@ def mean(run: int) -> list[tuple[str, bytes]]:
 def test_own_ports_at_another_address_are_foreign(
     launch: Launch, folder: Path, ports: PortBlock, reference: Path
 ) -> None:
-    """The whole of 127.0.0.0/8 is this machine, so every port is free there once more."""
+    """All of 127.0.0.0/8 is this machine, so every port is free at another address."""
     inner = Ports(ports.bus, HOSTS, CHANNELS)
     disguised = [Stranger("127.0.0.2", port) for port in inner.members]
     ears = Ears(inner)
@@ -219,7 +219,7 @@ def test_own_ports_at_another_address_are_foreign(
         stranger.close()
     assert_unharmed(run, folder, reference)
     assert ears.run
-    text_log = (run.run_dir / "fwk.log").read_text()  # the console holds floods back
+    text_log = (run.run_dir / "fwk.log").read_text()  # the console throttles floods
     for port_of in ("fwk/sync", "fwk/tick", "fwk/record", "fwk/log", "fwk/fetch", "d/note"):
         assert f"{port_of}: datagram from 127.0.0.2, port " in text_log
 
@@ -239,7 +239,7 @@ def test_foreign_datagrams_on_the_public_bus_change_nothing(
         pause()
     assert_unharmed(run, folder, reference)
     assert "d/note: another program (port " in run.text
-    assert "somebody/else" not in run.text  # other programs may talk there
+    assert "somebody/else" not in run.text  # other programs may send there
     assert run.text.count("not taken") < 100
 
 

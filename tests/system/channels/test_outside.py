@@ -1,4 +1,4 @@
-"""Programs outside write a run's channels: stamped, seen once, repaired, recorded, and replayed byte for byte."""
+"""Programs outside write channels of a run: stamped, seen once, fetched, recorded, and replayed byte for byte."""
 
 import os
 import signal
@@ -24,7 +24,7 @@ SIMULATED, WALL = "period_s: 0.01", "period_s: 0.02\nclock: wall\nstage_time_s: 
 
 
 class Joystick:
-    """A program with nothing but LCM and the type; counts what the run has taken of it."""
+    """A program with nothing but LCM and the type; counts its messages that the run has taken."""
 
     def __init__(self, ports: PortBlock, run: Steered) -> None:
         self._bus = lcm.LCM(ports.public_url)
@@ -33,7 +33,7 @@ class Joystick:
         self.published = 0
 
     def wish(self, times: int = 1) -> None:
-        """Publishes a wish, waits until the run has recorded it, and again."""
+        """Publishes a value, waits until the run has recorded it, and repeats."""
         for _ in range(times):
             self.published += 1
             self.publish(float(self.published))
@@ -51,7 +51,7 @@ class Joystick:
 
 
 def checked(run: Steered, log: Path, published: int) -> Recording:
-    """The recording of a run that has taken that much, and replays."""
+    """Returns the recording of a run that has taken that many values, after a replay."""
     recording = Recording(log)
     assert recording.gaps() == {}
     headers = recording.headers("r/wish")
@@ -73,7 +73,7 @@ def test_every_outside_message_is_recorded_once_and_replayed(
     joystick.wish(WISHES)
     run.ticks_pass(5)
     recording = checked(run, run.end(), WISHES)
-    for name in ("r", "s") if time == SIMULATED else ():  # in real time who is away for long sees the newest alone
+    for name in ("r", "s") if time == SIMULATED else ():  # in real time an absence costs messages
         assert recording.decoded(f"{name}/total")[-1].heading_rad == WISHES * (WISHES + 1) / 2
         assert recording.decoded(f"{name}/recent")[-1].heading_rad == WISHES + WISHES - 1 + WISHES - 2
     assert [wish.vx_m_s for wish in recording.decoded("r/wish")] == [float(n) for n in range(1, WISHES + 1)]
@@ -99,7 +99,7 @@ def test_a_flood_from_outside_is_bounded_and_reported(launch: Launch, tmp_path: 
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)
     joystick = Joystick(ports, run)
-    os.kill(run.launched.process.pid, signal.SIGSTOP)  # no tick can take anything meanwhile
+    os.kill(run.launched.process.pid, signal.SIGSTOP)  # no tick can take anything in between
     for _ in range(64 + 100):
         joystick.publish(1.0)
     run.launched.until("64 messages wait for the next tick already; not taken (100 times)")

@@ -30,7 +30,7 @@ def _types(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 @pytest.fixture
 def folder(tmp_path: Path, ports: PortBlock) -> Path:
-    """A user's folder with a lifter and an adder, and nobody who wants anything of them."""
+    """A user's folder with a lifter and an adder, but without clients."""
     files = command_system(ports.public_url)
     lines = [line for line in files["launch/lift.yaml"].splitlines() if "worker" not in line and "speed" not in line]
     write_files(tmp_path, {**files, "launch/lift.yaml": "\n".join(lines) + "\n"})
@@ -80,7 +80,7 @@ def test_lost_datagrams_change_nothing(launch: Launch, folder: Path, ports: Port
 
 
 def encoded(**fields: object) -> str:
-    """A lift command in hexadecimal digits."""
+    """Returns a lift command in hexadecimal digits."""
     message: Any = type_named("lift.lift_t")()
     for name, value in fields.items():
         setattr(message, name, value)

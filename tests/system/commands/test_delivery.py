@@ -1,4 +1,4 @@
-"""Commands and requests between real processes: carried out once at most, whatever is lost and whoever dies."""
+"""Commands and requests between real processes: carried out at most once, despite losses and crashes."""
 
 import os
 import signal
@@ -39,17 +39,17 @@ def folder(tmp_path: Path, ports: PortBlock) -> Path:
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The log of an undisturbed run, a process a component."""
+    """The log of an undisturbed run with one process for each component."""
     return played(tmp_path_factory.mktemp("reference"), command_system, *RUN)
 
 
 def begun(recording: Recording) -> list[tuple[str, int]]:
-    """Sender and number of the lifts that were begun, in order."""
+    """Returns sender and number of the lifts that began, in order."""
     return [(lifted.sender, lifted.sequence) for lifted in recording.decoded("r/lifted")]
 
 
 def sent(recording: Recording) -> list[tuple[int, str, int]]:
-    """Tick, sender and number of the lifts that were wanted."""
+    """Returns tick, sender and number of the lifts that were sent."""
     return [
         (header.tick, f"{worker}/worker", header.sequence)
         for worker in WORKERS
@@ -58,7 +58,7 @@ def sent(recording: Recording) -> list[tuple[int, str, int]]:
 
 
 def restart(run: Launched, name: str) -> None:
-    """Kills a component's process and waits for its successor; under losses the log may say nothing of it."""
+    """Kills a component's process and waits for its successor; under losses the log may not mention it."""
     pid = run.host(name)
     os.kill(pid, signal.SIGKILL)
     run.until_true(lambda: run.host(name) != pid, f"another {name}")
@@ -125,7 +125,7 @@ def test_a_killed_service_repeats_no_command_and_tells_senders(launch: Launch, f
         tally = recording.decoded(f"{worker}/tally")[-1]
         assert "failed: r/lifter was started after it had been sent" in tally.reasons
         assert tally.sent - tally.ended < 64 + 10
-    if loss == "0":  # otherwise the dead take along what was lost on its way
+    if loss == "0":  # otherwise messages lost on their way die with their writer
         assert recording.gaps() == {}
         replayed(folder)
 
@@ -145,7 +145,7 @@ def test_commands_of_a_killed_sender_are_executed_once(launch: Launch, folder: P
     writers = {header.writer for header in recording.headers("r/lift@one/worker")}
     assert writers == {"one/worker", "one/worker#2", "one/worker#3"}, run.text
     assert recording.decoded("one/tally")[-1].done > 0
-    if loss == "0":  # otherwise the dead take along what was lost on its way
+    if loss == "0":  # otherwise messages lost on their way die with their writer
         assert recording.gaps() == {}
         replayed(folder)
 
@@ -166,7 +166,7 @@ def test_futures_end_when_the_service_stays_away(launch: Launch, folder: Path) -
 
 @pytest.fixture
 def wall(folder: Path) -> Path:
-    """The system by the clock on the wall."""
+    """The system in real time."""
     file = folder / FILE
     file.write_text(file.read_text().replace("speed: max", "clock: wall\nperiod_s: 0.02\nstage_time_s: 0.1"))
     return folder

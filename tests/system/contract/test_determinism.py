@@ -1,4 +1,4 @@
-"""The same launch with the same seed gives the same messages: whatever the layout, the load and the losses."""
+"""The same launch with the same seed gives the same messages, whatever the layout, the load and the losses."""
 
 import multiprocessing
 import subprocess
@@ -25,7 +25,7 @@ RECORD = ("--record", "log.lcm")
 
 @pytest.fixture(scope="module")
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The log of an undisturbed run, a process a component."""
+    """The log of an undisturbed run with one process for each component."""
     return played(tmp_path_factory.mktemp("reference"), orchestra, *RUN, *RECORD)
 
 

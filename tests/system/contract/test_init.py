@@ -1,4 +1,4 @@
-"""What components write in `init` is a message like all others: seen, stamped, recorded and replayed."""
+"""Messages written in `init` are like all others: visible, stamped, recorded and replayed."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What a boundary decides may be larger than a datagram: the run goes on, and replays."""
+"""Decisions of a boundary may be larger than a datagram: the run goes on, and replays."""
 
 import signal
 import subprocess

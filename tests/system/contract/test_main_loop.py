@@ -37,7 +37,7 @@ def taken(tmp_path: Path, ports: PortBlock) -> Path:
 
 
 def orders(recording: Recording) -> dict[int, list[str]]:
-    """Tick to the stages that it ran."""
+    """Returns the stages that each tick ran."""
     names = (*STAGES, "act_exec", "post_loop")
     return {
         record.tick: [names[event.stage] for event in events_of(record.events) if isinstance(event, StageBegun)]

@@ -1,4 +1,4 @@
-"""The iteration contract on real processes, checked against its own words."""
+"""The iteration contract on real processes, checked against its definition."""
 
 import os
 import random
@@ -27,7 +27,7 @@ def test_every_iteration_sees_what_the_contract_says(launch: Launch, folder: Pat
     recording = Recording(folder / "log.lcm")
     assert contradictions(recording) == []
     assert recording.gaps() == {}
-    assert "repeated" in run.text  # ticks were lost, and yet nobody ran twice:
+    assert "repeated" in run.text  # ticks were lost, and yet no component ran twice:
     for player in PLAYERS:
         at = [(header.tick, header.stage) for header in recording.headers(f"{player}/note")]
         assert at == [(tick, stage) for tick in range(1, 41) for stage in STAGES[player]]
@@ -95,7 +95,7 @@ def test_kills_at_any_time_duplicate_and_lose_no_message(launch: Launch, folder:
     luck = random.Random(1)
     for kills in range(KILLS):
         run.until_count(" runs again", kills)
-        # Two ticks without a death: a message that its writer took along before a newcomer could ask for it is lost.
+        # Two ticks without a death: a message that died with its writer before a newcomer could fetch it is lost.
         run.until_ticks("f/player", 3)
         pause(luck.uniform(0.0, 0.1))
         os.kill(run.host(f"{luck.choice(PLAYERS)}/player"), signal.SIGKILL)

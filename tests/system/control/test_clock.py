@@ -1,4 +1,4 @@
-"""The clock of a real run is paused, stepped and set to other speeds, and nothing that components do changes."""
+"""The clock of a real run is paused, stepped and set to other speeds without a change to any message."""
 
 import json
 from collections.abc import Callable

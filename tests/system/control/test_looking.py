@@ -1,4 +1,4 @@
-"""A real run is looked at from another terminal, and its settings are changed."""
+"""A real run is inspected from another terminal, and its settings are changed."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""The common interface of every component, as people and programs reach it: from the command line."""
+"""The common interface of every component, from the command line."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -41,7 +41,7 @@ def test_state_period_stages_time_awake_and_parameters(run: Steered) -> None:
     assert "(int, default, fixed)" in run.fwk("status", "r/counter")
 
 
-def test_set_refuses_fixed_parameters_and_reload_reads_files(run: Steered, tmp_path: Path) -> None:
+def test_set_refuses_fixed_settings_and_reload_reads_files(run: Steered, tmp_path: Path) -> None:
     assert "r/counter.step = 3.0 since tick" in run.fwk("config", "set", "r/counter.step=3")
     assert "'size' stays as it is while the run goes on" in run.fwk("config", "set", "r/counter.size=6", code=2)
     file = tmp_path / "small.yaml"

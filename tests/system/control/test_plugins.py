@@ -1,4 +1,4 @@
-"""A component that starts and stops others does so between two ticks, the same way each time, and it replays."""
+"""A component starts and stops others between two ticks, in the same ticks each time, and the recording replays."""
 
 from collections.abc import Callable
 from pathlib import Path

@@ -25,7 +25,7 @@ def run(tmp_path: Path, ports: PortBlock, launch: Callable[..., object]) -> Stee
 
 
 def events(recording: Recording, kind: type[HostLost | HostStarted | HostStopped], host: int) -> list[int]:
-    """Ticks of these events of a host."""
+    """Returns the ticks of these events of a host."""
     return [tick for tick, each in recording.events if isinstance(each, kind) and each.host == host]
 
 
@@ -129,7 +129,7 @@ def test_code_that_needs_another_plan_is_refused(run: Steered, old: str, new: st
     own = PARTS.replace("import Component,", "import Clock, Component,").replace(
         "config: C", "time: Clock\n    config: C"
     )
-    file.write_text(own)  # what it wants for itself needs no other plan
+    file.write_text(own)  # an aspect that the component needs for itself requires no other plan
     run.steer("reload", "r/counter")
     assert run.component("r/counter")["state"] == "running"
     run.end()

@@ -1,4 +1,4 @@
-"""One component under pdb in a real terminal: the world waits, and the recording shows nothing of it."""
+"""One component under pdb in a real terminal: all processes wait, and the recording shows no trace of it."""
 
 from collections.abc import Callable, Iterator
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""One component under debugpy, as an editor would attach to it: the world waits at its breakpoint."""
+"""One component under debugpy, attached as by an editor: all processes wait at its breakpoint."""
 
 import itertools
 import json
@@ -21,7 +21,7 @@ NAME = "r/world_model"
 
 
 class Editor:
-    """As much of the debug adapter protocol as an editor needs for a breakpoint."""
+    """The part of the debug adapter protocol that an editor needs for a breakpoint."""
 
     def __init__(self, port: int) -> None:
         self._socket = socket.create_connection(("127.0.0.1", port), TIMEOUT_S)
@@ -38,7 +38,7 @@ class Editor:
         self._answer(attaching)
 
     def stopped(self) -> int:
-        """Waits for the breakpoint; the thread that stands there."""
+        """Waits for the breakpoint; returns the thread that stopped there."""
         return int(self.event("stopped")["body"]["threadId"])
 
     def evaluate(self, thread: int, expression: str) -> str:
@@ -46,7 +46,7 @@ class Editor:
         return str(self._ask("evaluate", expression=expression, frameId=frame)["body"]["result"])
 
     def go_on(self, file: Path, thread: int) -> None:
-        """Takes the breakpoint away and leaves."""
+        """Removes the breakpoint and disconnects."""
         self._ask("setBreakpoints", source={"path": str(file)}, breakpoints=[])
         self._ask("continue", threadId=thread)
         self._ask("disconnect")
@@ -90,7 +90,7 @@ class Editor:
 
 @pytest.fixture
 def port() -> int:
-    """A port that is free now."""
+    """Returns a free port."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

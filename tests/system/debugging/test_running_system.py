@@ -1,4 +1,4 @@
-"""`fwk debug NAME` on a system that runs: the component comes into a terminal, the world waits, and it goes back."""
+"""`fwk debug NAME` on a running system: the component moves into a terminal, all processes wait, and it returns."""
 
 import os
 import signal
@@ -45,12 +45,12 @@ def debug(tmp_path: Path, ports: PortBlock) -> Iterator[Debug]:
 
 
 def lives(pid: int) -> bool:
-    """Whether a process has not ended, though nobody may have asked how."""
+    """Returns whether a process has not ended, even if its parent has not waited for it."""
     return psutil.pid_exists(pid) and psutil.Process(pid).status() != psutil.STATUS_ZOMBIE
 
 
 def until_starts(run: Steered, number: int) -> None:
-    """Waits until the component runs as that start, in the run's own hands."""
+    """Waits until that incarnation of the component runs, started by the run itself."""
 
     def there() -> bool:
         component = run.component(NAME)
@@ -97,7 +97,7 @@ def test_a_breakpoint_in_a_running_system_shows_only_a_restart(
     undisturbed = Recording(tmp_path / "free.log")
     assert recording.messages["r/imu"][:last] == undisturbed.messages["r/imu"]
     for stopped, never in zip(recording.decoded("r/pose"), undisturbed.decoded("r/pose"), strict=False):
-        stopped.header.writer = NAME  # the one thing that a restart changes
+        stopped.header.writer = NAME  # the only thing that a restart changes
         assert stopped.encode() == never.encode()
 
 
@@ -157,7 +157,7 @@ def test_a_paused_run_can_be_debugged_step_by_step(start: Callable[..., Steered]
     tick = run.tick
     terminal = debug(NAME)
     terminal.child.expect("under pdb")
-    with pytest.raises(ControlError, match="not answered within"):  # it is done when the breakpoint has been left
+    with pytest.raises(ControlError, match="not answered within"):  # the command ends when the breakpoint has been left
         run.ask("step", timeout_s=0.5, ticks=1)
     terminal.prompt()
     assert str(tick + 1) in terminal.ask("p self.imu.value.header.tick")

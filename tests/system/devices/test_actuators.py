@@ -1,4 +1,4 @@
-"""Actuators in a running match: a driver that is stopped leaves them stopped, one that is killed lets them time out."""
+"""Actuators in a running match: a stopped driver leaves them at rest, a killed one lets them time out."""
 
 import math
 import os
@@ -27,7 +27,7 @@ STANDING_M_S = 0.02
 
 @pytest.fixture
 def match(launch: Launch, ports: PortBlock, tmp_path: Path) -> Steered:
-    """One robot on the field, under way; its base is not started again when it dies."""
+    """One moving robot on the field; its base is not restarted when it dies."""
     robot = (LAUNCH / "msl-robot.yaml").read_text()
     (tmp_path / "msl-robot.yaml").write_text(
         robot.replace("use: procs.drivers.base\n", "use: procs.drivers.base\n      restart: {when: never}\n")
@@ -48,13 +48,13 @@ def drive(match: Steered, ports: PortBlock) -> None:
 
 
 def speeds_m_s(recording: Recording) -> dict[int, float]:
-    """Of the robot, by tick."""
+    """Returns the speeds of the robot by tick."""
     truths = recording.decoded("world/ground_truth")
     return {each.header.tick: math.hypot(each.robots[0].vx_m_s, each.robots[0].vy_m_s) for each in truths}
 
 
 def tick_of(recording: Recording, event: HostLost | HostStopped) -> int:
-    """The tick of an event that happened once."""
+    """Returns the tick of an event that happened once."""
     (tick,) = [tick for tick, each in recording.events if each == event and type(each) is type(event)]
     return tick
 
@@ -123,10 +123,10 @@ def test_messages_of_finalize_are_seen_recorded_and_replayed(
     assert recording.gaps() == {}
     stops = [tick for tick, each in recording.events if isinstance(each, HostStopped) and each.host == 0]
     last = [each.header for each in recording.decoded("r/imu") if each.heading_rad == -1.0]
-    assert [header.stage for header in last] == [header_t.FINAL] * 2  # that of the end nobody would see
+    assert [header.stage for header in last] == [header_t.FINAL] * 2  # no component would see that of the end
     seen = [each.header.tick for each in recording.decoded("r/pose") if each.heading_rad == -1.0]
     if clock == "simulated":
         assert [header.tick for header in last] == [tick - 1 for tick in stops]
-        assert stops[0] in seen  # in the very tick from which on the writer is missing
+        assert stops[0] in seen  # in the first tick without the writer
     assert seen
     replayed(log.parent, log=log)

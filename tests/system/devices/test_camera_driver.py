@@ -22,7 +22,7 @@ TICKS = 12
 
 @pytest.fixture(scope="module")
 def film(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, dict[str, list[bytes]]]:
-    """A folder and a video of what the simulated camera saw, and what its detectors said."""
+    """A folder and a video of simulated frames, and the detectors' messages about them."""
     pictures, live = simulated(TICKS)
     folder = tmp_path_factory.mktemp("film")
     return write_folder(folder / "pictures", pictures), write_video(folder / "film.mp4", pictures), live.sent
@@ -82,7 +82,7 @@ def test_a_missing_source_is_named_before_anything_starts(launch: Launch) -> Non
 
 @pytest.fixture
 def with_pictures(tmp_path: Path) -> tuple[Path, list[Picture]]:
-    """A launch file with exact pictures of all cameras on the bus, and what its camera sees, again and again."""
+    """A launch file with lossless pictures of all cameras on the bus, and its camera's frames, repeated."""
     pictures = shades(5)
     folder = write_folder(tmp_path / "seen", pictures)
     camera = f"{{use: procs.drivers.camera_driver, config: {{source: {folder}, at_end: loop}}}}"

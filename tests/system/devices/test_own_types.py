@@ -1,4 +1,4 @@
-"""Devices with LCM types of their own, a C program among them: heard, obeyed, recorded and replayed byte for byte."""
+"""Devices with LCM types of their own, one of them a C program: heard, obeyed, recorded and replayed byte for byte."""
 
 import json
 import os
@@ -42,7 +42,7 @@ def _device_types(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 @pytest.fixture(scope="session")
 def build(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
-    """Builds the device from its own types alone when first asked."""
+    """Builds the device from its own types alone on first use."""
     folder = tmp_path_factory.mktemp("device")
 
     def built() -> str:
@@ -70,7 +70,7 @@ def started(launch: Launch, tmp_path: Path, ports: PortBlock, time: str = SIMULA
 
 
 def obeyed(run: Steered, device: str, ports: PortBlock) -> None:
-    """The device at work beside a run, until its last wish was obeyed."""
+    """The device beside a run, until the run has obeyed its last message."""
     with process([device, ports.public_url, str(COUNT)]) as running:
         run.launched.until_true(lambda: running.poll() is not None, "the device's end")
         assert running.stdout
@@ -82,7 +82,7 @@ def headers(log: Path, channel: str) -> list[Header]:
 
 
 def plain(log: Path, channel: str, name: str) -> list[Any]:
-    """The messages as any LCM program finds them in the log."""
+    """Returns the messages as any LCM program finds them in the log."""
     return [type_named(name).decode(event.data) for event in LogReader(log) if event.channel == channel]
 
 
@@ -127,7 +127,7 @@ def test_a_killed_reader_goes_on_and_the_recording_replays(
 
 @pytest.fixture
 def alone(launch: Launch, tmp_path: Path, ports: PortBlock) -> Callable[..., Launched]:
-    """Runs the system without its device for 40 ticks, into that log."""
+    """Runs the system without its device for 40 ticks into that log."""
     write_files(tmp_path, device_system(ports.public_url))
 
     def run(log: str, *arguments: str) -> Launched:

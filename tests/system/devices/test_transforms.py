@@ -1,4 +1,4 @@
-"""An aspect that a component provides, in real processes: a robot's transforms, from its own localization."""
+"""An aspect that a component provides, in real processes: a robot's transforms from its own localization."""
 
 import math
 from pathlib import Path

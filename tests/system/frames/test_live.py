@@ -1,4 +1,4 @@
-"""Frames in real runs: whole under load, losses noticed in real time, no shared memory left whatever is killed."""
+"""Frames in real runs: whole under load, losses noticed in real time, no shared memory left after any kill."""
 
 import os
 import signal
@@ -33,18 +33,18 @@ def frames(tmp_path: Path, ports: PortBlock) -> Path:
 
 
 def wall(frames: Path, period_s: float) -> None:
-    """By the clock on the wall; a stage may take long, so that nobody is late by accident."""
+    """A run in real time; a stage may take long, so that no host is late by accident."""
     with (frames / "frames.yaml").open("a") as file:
         file.write(f"clock: wall\nperiod_s: {period_s}\nstage_time_s: 0.2\n")
 
 
 def seen(log: Path, finder: str) -> list[tuple[int, int]]:
-    """Numbers of the frames that a finder saw, and 1 for whole, 0 for torn, -1 for lost."""
+    """Returns the numbers of the frames that a finder saw, and 1 for whole, 0 for torn, -1 for lost."""
     return [(int(pose.x_m), int(pose.y_m)) for pose in Recording(log).decoded(f"{finder}/pose")]
 
 
 def holders(ring: str) -> list[int]:
-    """Processes that have the shared memory of a ring open or mapped."""
+    """Returns the processes that have the shared memory of a ring open or mapped."""
     found = []
     for process in psutil.process_iter():
         try:
@@ -80,7 +80,7 @@ def test_an_overwritten_frame_in_real_time_is_counted_and_logged(
     log = frames / "log.lcm"
     assert [state for _, state in seen(log, "b")].count(-1) == 1
     assert {state for finder in "abc" for _, state in seen(log, finder)} == {1, -1}
-    assert seen(log, "b")[-1][1] == 1  # it goes on with the next
+    assert seen(log, "b")[-1][1] == 1  # it continues with the next frame
 
 
 def test_killed_readers_and_cameras_return_to_whole_frames(launch: Launch, frames: Path, ports: PortBlock) -> None:

@@ -1,4 +1,4 @@
-"""Replay of readers of camera frames: in real time they get late what the camera has overwritten, and lose it again."""
+"""Replay of readers that in real time come too late for a frame: the same frames are lost again."""
 
 import os
 import signal
@@ -38,7 +38,7 @@ def watch(request: pytest.FixtureRequest, tmp_path: Path, ports: PortBlock) -> P
 
 
 def lost(folder: Path, watcher: str) -> int:
-    """How many iterations of a watcher found their frame overwritten."""
+    """Returns how many iterations of a watcher found their frame overwritten."""
     return [pose.y_m for pose in Recording(folder / "log.lcm").decoded(f"{watcher}/pose")].count(-1.0)
 
 
@@ -48,7 +48,7 @@ def test_frames_lost_by_a_slow_reader_are_lost_in_replay(launch: Launch, watch: 
         run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost")
         os.kill(int((watch / "b-watcher.pid").read_text()), signal.SIGKILL)
         run.launched.until(f"runs again, start number {start}")
-        run.ticks_pass(60)  # so that the figures are those of the new start
+        run.ticks_pass(60)  # the figures are those of the new incarnation
     run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost again")
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text

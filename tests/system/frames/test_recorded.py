@@ -1,4 +1,4 @@
-"""Recorded frames: components on the frames of a device that cannot be run again; without them, a clear refusal."""
+"""Recorded frames: replay of the readers of a device's frames; without recorded frames, a clear refusal."""
 
 import os
 import re
@@ -54,7 +54,7 @@ def test_replay_without_frames_skips_device_and_its_readers(launch: Launch, eyes
     said = replayed(eyes)
     assert "not replayed: r/camera: 'the eye' is a device" in said
     assert "not replayed: a/watcher: it reads r/image, whose frames are not recorded" in said
-    assert "equal: 120 messages" in said  # of the grey camera, who looks at it, and the follower
+    assert "equal: 120 messages" in said  # the grey camera, its viewer, and the follower
     assert "cannot be replayed: a/watcher" in fwk(eyes, "replay", "log.lcm", "--only", "a/watcher", code=2)
     assert "is a device" in fwk(eyes, "replay", "log.lcm", "--only", "r/camera", code=2)
     assert "equal" in replayed(eyes, "--only", "a/follower")
@@ -113,7 +113,7 @@ def test_a_frame_missing_in_the_recording_is_named(launch: Launch, eyes: Path) -
     record(launch)
     data = (eyes / "log.lcm").read_bytes()
     frames = [event.data for event in LogReader(eyes / "log.lcm") if event.channel == FRAME]
-    at = data.index(frames[39])  # the one that is seen in tick 20
+    at = data.index(frames[39])  # the frame that is seen in tick 20
     (eyes / "log.lcm").write_bytes(data[: at + 8] + bytes(len(frames[39]) - 8) + data[at + len(frames[39]) :])
     said = replayed(eyes, "--only", "a/watcher", code=2)
     assert "frame 40 of r/image is not in the recording" in said

@@ -1,4 +1,4 @@
-"""Files of a run that are deleted while it goes on are named, and the run does not end well."""
+"""Deleted files of a running system are named, and the run ends with an error."""
 
 import shutil
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Life and death of processes: everything that goes wrong is named, nothing hangs, nothing is left behind."""
+"""Failures of processes are named, leave nothing behind, and never hang the run."""
 
 import os
 import signal
@@ -19,13 +19,13 @@ ORPHAN_S = 2.0
 
 @pytest.fixture
 def traced(folder: Path) -> Path:
-    """The orchestra's folder; players leave their numbers of process and tick in it."""
+    """The orchestra's folder, in which players write their process ids and ticks."""
     (folder / "traces").mkdir()
     return folder
 
 
 def trouble(what: str, tick: int = 5, again: bool = False) -> list[str]:
-    """Settings that let `d/player` make trouble."""
+    """Returns settings that give `d/player` a fault."""
     settings = {"trouble": what, "trouble_tick": tick, "trouble_again": str(again).lower()}
     return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
 

@@ -1,4 +1,4 @@
-"""What a component does to its process is seen from outside: where its time goes, how it crashed, how much it took."""
+"""Resource use of a component seen from outside: profile, crashes, memory."""
 
 import json
 import re
@@ -89,7 +89,7 @@ def test_a_component_beyond_its_memory_limit_is_restarted(parts: Launch, tmp_pat
     log = log_of(run)
     assert "r/glutton ended: MemoryError: more memory than its memory_limit_mb of 60 (" in log
     said = log.partition("r/glutton ended: MemoryError")[2].splitlines()[0]
-    assert "in loop, tick" in said or "in its process" in said, said  # it may run out while messages are sent, too
+    assert "in loop, tick" in said or "in its process" in said, said  # memory may also run out while messages are sent
     assert "starting it again" in log
     assert "r/worker ended" not in log
     ticks = [header.tick for header in Recording(tmp_path / "log.lcm").headers("r/pose")]

@@ -1,4 +1,4 @@
-"""Components start in the order of their needs, or later, or not at all; each time it is said who waits for whom."""
+"""Components start in the order of their needs, or later, or not at all; waiting components are named."""
 
 import os
 import re

@@ -1,4 +1,4 @@
-"""A disk that is full, and processes that are killed while they write: what was acknowledged stays, the run goes on."""
+"""A full disk, and processes killed while they write: acknowledged data stays, the run goes on."""
 
 import json
 import os
@@ -122,7 +122,7 @@ def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock,
 
 
 def _when_it_is_about_to_write(setting: subprocess.Popen[str], folder: Path, later_s: float) -> None:
-    """Waits until the folder is locked for writing or the process has ended, and then a random moment."""
+    """Waits until the folder is locked for writing or the process has ended, and then for a random moment."""
     while setting.poll() is None:
         if str(folder) in _open_files(setting.pid):
             sleep_s(later_s)
@@ -132,5 +132,5 @@ def _when_it_is_about_to_write(setting: subprocess.Popen[str], folder: Path, lat
 def _open_files(pid: int) -> list[str]:
     try:
         return [os.readlink(link) for link in Path(f"/proc/{pid}/fd").iterdir()]
-    except OSError:  # closed or ended this moment
+    except OSError:  # closed or ended in between
         return []

@@ -1,4 +1,4 @@
-"""Real processes that log and print too much, at other levels, to other targets, and fail where nobody looks."""
+"""Real processes that log and print too much, at other levels, to other targets, and that fail in unusual places."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""All that can happen to a run happens to one: it is replayed exactly, and a changed component is found."""
+"""A run with every kind of event is replayed exactly, and a changed component is found."""
 
 import json
 import random
@@ -41,7 +41,7 @@ STRIKES = (
 
 
 def each_alone(folder: Path) -> dict[str, tuple[int, list[str]]]:
-    """Of each component how many messages were compared, and what differed."""
+    """Returns for each component how many messages were compared, and which differed."""
     done = subprocess.run(
         [sys.executable, "-m", "tests.harness.each_alone"],
         cwd=folder,

@@ -1,4 +1,4 @@
-"""Whatever happens in a run, real components fed with its recording do the same again, byte for byte."""
+"""Real components fed with the recording of any run write the same messages, byte for byte."""
 
 import random
 import re
@@ -123,7 +123,7 @@ def test_a_component_that_fails_in_replay_can_be_debugged(recorded: Path) -> Non
 
 
 def line_of(text: str) -> int:
-    """Where it stands in the player's file."""
+    """Returns the line of a text in the player's file."""
     return 1 + next(number for number, line in enumerate(source("player.py").splitlines()) if text in line)
 
 

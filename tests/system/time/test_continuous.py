@@ -1,4 +1,4 @@
-"""Continuous components in real processes: at their own pace, never waited for, and replayed exactly."""
+"""Continuous components in real processes: their own rates, no waiting, and exact replay."""
 
 import os
 import signal
@@ -70,11 +70,11 @@ def test_the_main_loop_goes_on_and_no_message_is_missed(start: Start, loss: str)
     assert [pose.header.stage for pose in poses] == [1] * len(poses)
     assert any(after.header.tick > before.header.tick + 1 for before, after in pairwise(poses))
     heard = [(pose.y_m, pose.heading_rad) for pose in poses if pose.heading_rad]
-    first_tick = poses[0].header.tick  # who comes to its first iteration later hears the newest only
+    first_tick = poses[0].header.tick  # a component whose first iteration is later hears only the newest message
     assert heard[0][0] == max(1, first_tick - 1)
     assert all(after[0] == before[1] + 1 for before, after in pairwise(heard))  # each message once, in order
     ticks = {record.tick for record in recording.records}
-    assert len(recording.headers("r/imu")) >= len(ticks) - 1  # the counter has run in each
+    assert len(recording.headers("r/imu")) >= len(ticks) - 1  # the counter has run in each tick
 
 
 def test_a_killed_and_restarted_planner_replays(start: Start, folder: Path) -> None:

@@ -1,4 +1,4 @@
-"""Real time: the loop keeps its pace whoever is late or dies, and says so."""
+"""Real time: the loop keeps its pace despite late or dead hosts, and names them."""
 
 import os
 import re
@@ -19,7 +19,7 @@ RUN = ("launch/orchestra.yaml", "--record", "log.lcm")
 
 @pytest.fixture
 def wall(folder: Path, ports: PortBlock) -> Path:
-    """The orchestra by the clock on the wall, without a conductor; players leave traces."""
+    """The orchestra in real time, without a conductor; players leave traces."""
     file = folder / "launch/orchestra.yaml"
     lines = [line for line in file.read_text().splitlines() if "conductor" not in line and "speed" not in line]
     file.write_text("\n".join([*lines, "clock: wall", "period_s: 0.05", "stage_time_s: 0.3", ""]))
@@ -28,7 +28,7 @@ def wall(folder: Path, ports: PortBlock) -> Path:
 
 
 def late_ticks(recording: Recording) -> dict[int, int]:
-    """Ticks in which somebody was late, with the tick in which the answer came."""
+    """Returns the ticks with a late host, with the tick in which its answer came."""
     found: dict[int, int] = {}
     for tick, event in recording.events:
         if isinstance(event, HostLate):
@@ -58,7 +58,7 @@ def test_a_late_host_is_counted_and_its_outputs_follow_its_done(launch: Launch, 
     answered = late_ticks(recording)[late]
     assert answered >= late + 10
     ticks = [header.tick for header in recording.headers("d/note")]
-    assert ticks[ticks.index(late) + 1] >= answered  # what it missed it does not run later
+    assert ticks[ticks.index(late) + 1] >= answered  # a missed iteration is not run later
     for note in recording.decoded("f/note"):
         heard = next(heard for heard in note.heard if heard.channel == "d/note")
         if late <= note.header.tick < answered:
@@ -76,9 +76,9 @@ def test_the_loop_keeps_its_pace_and_late_hosts_return(launch: Launch, wall: Pat
     times = [record.time_us for record in recording.records]
     assert len(times) == 40
     assert times == sorted(set(times))
-    assert times[-1] >= 39 * 50_000  # never faster than the wall
+    assert times[-1] >= 39 * 50_000  # never faster than wall time
     for player in "abcdef":
-        assert max(header.tick for header in recording.headers(f"{player}/note")) > 20  # whoever was late came back
+        assert max(header.tick for header in recording.headers(f"{player}/note")) > 20  # late hosts came back
 
 
 def test_the_loop_does_not_wait_for_a_killed_component(launch: Launch, wall: Path) -> None:
@@ -94,7 +94,7 @@ def test_the_loop_does_not_wait_for_a_killed_component(launch: Launch, wall: Pat
     recording = Recording(wall / "log.lcm")
     assert recording.gaps() == {}
     ticks = {player: [header.tick for header in recording.headers(f"{player}/note")] for player in "cf"}
-    assert set(ticks["f"]) - set(ticks["c"])  # the others went on
+    assert set(ticks["f"]) - set(ticks["c"])  # the other hosts went on
 
 
 def test_a_host_that_stood_still_takes_part_again(launch: Launch, wall: Path) -> None:
