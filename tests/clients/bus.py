@@ -40,7 +40,7 @@ class Bus:
             self._lcm.publish(channel, data)
             return heard()
 
-        wait_until(asked, f"nobody reacts to '{channel}'")
+        wait_until(asked, f"no program reacts to '{channel}'")
 
     @contextmanager
     def logger(self, log: Path) -> Iterator[None]:

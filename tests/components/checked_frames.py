@@ -35,7 +35,7 @@ class Camera(Component):
 
 class FinderConfig(Config):
     dawdle_tick: int = 0
-    """From this tick on, once, it reads its frame only when the camera has overwritten it."""
+    """From this tick on, once, it reads its frame only after the camera has overwritten it."""
 
 
 class Finder(Component):

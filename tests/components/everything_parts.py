@@ -12,9 +12,9 @@ from lcmtypes.robot import imu_t, motor_command_t
 
 class PlannerConfig(Config):
     takes_s: float = 0.01
-    """How long a plan takes."""
+    """Duration of a plan."""
     gain: float = 1.0
-    """Goes into each plan."""
+    """Part of each plan."""
 
 
 class Planner(Component):

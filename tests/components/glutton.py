@@ -33,7 +33,7 @@ class GluttonConfig(Config):
     objects: int = 0
     """Taken and kept in each iteration."""
     crash_tick: int = 0
-    """At which it falls over, in its first life."""
+    """Tick in which its first incarnation crashes."""
 
 
 class Glutton(Component):

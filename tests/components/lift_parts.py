@@ -22,7 +22,7 @@ class LifterConfig(Config):
     at_once: int = 2
     """Most commands of an iteration."""
     ticks: int = 2
-    """How long one takes."""
+    """Duration of a lift."""
 
 
 class Lifter(Component):
@@ -79,7 +79,7 @@ class Adder(Component):
 
 class WorkerConfig(Config):
     timeout_s: float = 3.0
-    """How long it waits for a lift."""
+    """Timeout of a lift."""
     flood: int = 0
     """Commands of an iteration, instead of one now and then."""
 

@@ -21,15 +21,15 @@ class PlayerConfig(Config):
     work: int = 0
     """Rounds of pointless work in an iteration."""
     tone: int = 0
-    """Goes into the digest."""
+    """Part of the digest."""
     trouble: str = ""
-    """What goes wrong, see trouble.py."""
+    """The fault, see trouble.py."""
     trouble_tick: int = 0
-    """From when on, if not in init or finalize."""
+    """First tick of the fault, unless it is in init or finalize."""
     trouble_stage: str = ""
-    """In which stage; the first if empty."""
+    """Stage of the fault; the first if empty."""
     trouble_again: bool = False
-    """Also when the player was started again."""
+    """The fault also occurs after a restart."""
 
 
 class Player(Component):

@@ -12,7 +12,7 @@ class CounterConfig(Config):
     step: float = 1.0
     """Added in each iteration."""
     hang: bool = False
-    """Whether an iteration never ends."""
+    """An iteration never ends."""
 
 
 class Counter(Component):

@@ -18,11 +18,11 @@ class TalkerConfig(Config):
     long: int = 0
     """Letters of a long line."""
     asks: bool = False
-    """Whether it prints a line without an end."""
+    """It prints a line without an end."""
     thread: bool = False
-    """Whether a thread ends by an exception."""
+    """A thread ends by an exception."""
     thinks: bool = False
-    """Whether a plain module thinks for it."""
+    """It uses a plain module that logs."""
     fails_at: int = 0
     """Tick in which it raises."""
     leaves_at: int = 0

@@ -25,9 +25,9 @@ class Camera(Component):
 
 class WatcherConfig(Config):
     slow: bool = False
-    """Whether it dawdles now and then before it looks."""
+    """It is slow now and then before it looks."""
     looks_first: bool = False
-    """Whether it dawdles now and then after it has looked."""
+    """It is slow now and then after it has looked."""
 
 
 class Watcher(Component):

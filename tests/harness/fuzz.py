@@ -56,7 +56,7 @@ HOSTILE_TEXT = [
     "%s",
     "{}",
 ]
-"""Values that people type by mistake, or to hurt."""
+"""Values that people type by mistake or with bad intent."""
 
 COUNTS = some.one_of(some.sampled_from([0, 1, -1, 2**31 - 1, -(2**31), 2**16]), some.integers(-(2**31), 2**31 - 1))
 

@@ -16,7 +16,7 @@ class Page:
         self.files: dict[str, str] = dict(_FILE.findall(text))
         """Contents by path."""
         self.steps: list[tuple[str, list[str]]] = []
-        """The commands in order, each with the lines that it prints; `...` stands for anything."""
+        """The commands in order, each with its output; `...` stands for any lines."""
         for line in "".join(_CONSOLE.findall(text)).splitlines():
             if line.startswith("$ "):
                 self.steps.append((line[2:], []))

@@ -26,7 +26,7 @@ class Failure:
     """A promise that a history breaks."""
 
     promise: str
-    """Which one, in a word: stuck, error, oracle, single, lost, settings, replay, faults, hosting, end."""
+    """The promise in a word: stuck, error, oracle, single, lost, settings, replay, faults, hosting, end."""
     text: str
 
     def __str__(self) -> str:

@@ -41,7 +41,7 @@ class PlayerConfig(Config):
     """Actions of a player besides hearing all others."""
 
     tune: int = 0
-    """Stands in every note: shows which settings were in force."""
+    """Part of every note: shows which settings were in force."""
     work_us: int = 0
     """Longest wall time of an iteration."""
     bursts: int = 1
@@ -53,9 +53,9 @@ class PlayerConfig(Config):
     crash_in: str = "loop"
     """Where it fails: init, loop or finalize."""
     eager: float = 0.3
-    """How often the component asks for something, from 0 to 1."""
+    """Probability of a request in an iteration."""
     early: bool = False
-    """Whether it writes in `init`."""
+    """It writes in `init`."""
 
 
 class Player(Component):

@@ -29,10 +29,10 @@ class Action:
     delay_us: int
     """Wall time after that."""
     target: str = ""
-    """Component whose process is meant; or `supervisor`, `gateway`."""
+    """Component whose process is affected; or `supervisor`, `gateway`."""
     amount: int = 0
     word: str = ""
-    """Of `steer`: what is asked for."""
+    """Of `steer`: the requested action."""
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class Weather:
     slow_start_us: int = 0
     """Longest additional time that a process takes to start."""
     hiccup: float = 0.0
-    """How often a process stands still for a moment before it goes on."""
+    """Probability that a process stops for a moment before it continues."""
     hiccup_us: int = 0
     disk_us: int = 0
     """Longest time that the recorder takes for a tick."""

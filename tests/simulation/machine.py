@@ -25,7 +25,7 @@ class Machine:
     process: Callable[[], str] = _no_process
     """Returns the name of the running process."""
     iterations: list[tuple[str, str, int, int]] = field(default_factory=list)
-    """Every iteration so far: process, component, tick, place of the stage in the tick."""
+    """Every iteration so far: process, component, tick, step of the tick."""
     marks: set[str] = field(default_factory=set)
 
     def enter(self, work: Callable[[int], None], process: Callable[[], str]) -> None:

@@ -1,4 +1,4 @@
-"""Deliberate violations of the contract: each mutation replaces one method of the engine, and histories must find it."""
+"""Deliberate violations of the contract: each mutation replaces one method of the engine; histories must find it."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
@@ -26,13 +26,13 @@ class Mutation:
 
     name: str
     breaks: str
-    """What does not hold any more."""
+    """The broken promise."""
     owner: Any
     attribute: str
     replacement: Callable[[Any], Any]
     """Makes the broken method from the right one."""
     also: "Mutation | None" = None
-    """What has to be broken besides: two places sort, and one alone repairs the other."""
+    """A second method to break: two parts of the engine sort, and each repairs the other."""
 
     @contextmanager
     def applied(self) -> Iterator[None]:

@@ -27,7 +27,7 @@ class _Process:
 
     incarnation: int
     seen: dict[str, Counts] = field(default_factory=dict)
-    """By component: what its newest iteration could see."""
+    """By component: the messages visible to its newest iteration."""
     ticks: dict[str, int] = field(default_factory=dict)
     """By component: the tick of its newest iteration."""
 

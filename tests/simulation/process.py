@@ -15,7 +15,7 @@ from tests.simulation.world import World
 STEP_US = 10
 """Wall time that a process takes at least between waking up and waiting again."""
 SPINS_MAX = 100
-"""A process that wakes up so often without reading or sending anything goes round in circles."""
+"""A process that wakes up so often without reading or sending anything is in an endless loop."""
 KILLED = -9
 _NEVER_US = 1 << 62
 
@@ -34,7 +34,7 @@ class Process:
         self.stopping = False
         """Whether the process has been asked to end."""
         self.error = ""
-        """Traceback of what a participant must not raise."""
+        """Traceback of an exception that a participant must not raise."""
         self.signals: list[int] = []
         self._world = world
         self._ether = ether

@@ -13,7 +13,7 @@ from fwk.model import plain_values, tick_events
 from lcmtypes.core import log_t, plan_t, tick_record_t
 
 Event = tuple[str, int, int, int]
-"""What happened, and up to three numbers that belong to it; see `_KINDS`."""
+"""Kind of the event, and up to three numbers; see `_KINDS`."""
 
 _KINDS: dict[type[Any], tuple[str, tuple[str, ...]]] = {
     tick_events.StageBegun: ("stage", ("stage", "step")),

@@ -46,15 +46,15 @@ class Outcome:
     """The recording."""
     stuck: str = ""
     reason: str = ""
-    """Why the run ended, as the supervisor says."""
+    """Reason for the end of the run, from the supervisor."""
     failed: bool = False
     errors: list[str] = field(default_factory=list)
-    """What participants raised although they must not."""
+    """Exceptions that participants must not raise."""
     iterations: list[tuple[str, str, int, int]] = field(default_factory=list)
     acknowledged: list[tuple[str, int, int]] = field(default_factory=list)
-    """Component, value and tick of every setting that a tool was told to be in force."""
+    """Component, value and tick of every acknowledged setting."""
     lost: int = 0
-    """Messages that the gateway says it never got."""
+    """Messages that the gateway reports as never received."""
     calls: list[int] = field(default_factory=list)
     """Numbers that the gateway took in from programs outside."""
     ticks: int = 0

@@ -8,7 +8,7 @@ from fwk.lcm.messages import Header, to_dict
 from lcmtypes.core import actual_t, fetch_t, gone_t, log_t, status_t
 
 Line = tuple[int, str, str, bytes | None]
-"""Wall time, process, what happened, and the datagram if it was about one."""
+"""Wall time, process, text, and the datagram if there is one."""
 
 _TYPES: dict[bytes, Callable[[bytes], object]] = {
     sync.TICK: sync.decode_tick,

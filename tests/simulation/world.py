@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 START_US = 1_000_000_000
 """Wall time at which every world begins."""
 EVENTS_MAX = 2_000_000
-"""No history needs more events; a world that does goes round in circles."""
+"""No history needs more events; a world that does is in an endless loop."""
 
 
 class StuckError(Exception):

@@ -26,7 +26,7 @@ class SimulatedZygote:
     def __init__(self, plan: Plan, run: int, world: World, ether: Ether) -> None:
         self._progress = CrashMarker(len(plan.hosts))
         self.processes: dict[int, Process] = {}
-        """By pid, all that ever were."""
+        """All processes so far, by pid."""
         self._plan = plan
         self._run = run
         self._world = world

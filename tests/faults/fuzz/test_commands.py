@@ -102,7 +102,7 @@ def commands(path: tuple[str, ...], command: Any) -> Iterator[tuple[tuple[str, .
 
 
 COMMANDS = {" ".join(path): command for path, command in commands((), get_command(fwk)) if path != ("spy",)}
-"""Without the one that starts a program of somebody else."""
+"""Without the command that starts another program."""
 
 
 def places(command: Any) -> Iterator[tuple[str, ...]]:

@@ -15,12 +15,12 @@ from lcmtypes.robot import imu_t
 
 class Inner(Config):
     deep: int = 1
-    """How deep."""
+    """Depth."""
 
 
 class TurnerConfig(Config):
     gain: float = 0.3
-    """How fast."""
+    """Speed."""
     inner: Inner = Inner()
     names: list[str] = []
     fixed: Inner = Field(Inner(), frozen=True)
@@ -72,12 +72,12 @@ def test_a_row_has_all_columns(settings: RunSettings) -> None:
             "value": 0.3,
             "origin": "soccer.yaml:4",
             "type": "float",
-            "meaning": "How fast.",
+            "meaning": "Speed.",
             "editable": True,
         }
     ]
     (deep,) = settings.rows(["b/turner.inner"])
-    assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "How deep.")
+    assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "Depth.")
 
 
 def test_new_values_show_their_origin_once_in_force(settings: RunSettings) -> None:

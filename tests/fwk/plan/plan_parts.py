@@ -28,7 +28,7 @@ class WheelsConfig(Config):
     label: str = ""
     """For people."""
     limits: Limits = Limits()
-    """What it may do."""
+    """Permitted actions."""
 
 
 class Wheels(Component):
@@ -50,7 +50,7 @@ class Pilot(Component):
 
 class KeyedConfig(Config):
     key: str
-    """Has to be said."""
+    """Has no default."""
 
 
 class Keyed(Component):

@@ -68,7 +68,7 @@ ROWS = [
     ("o/one: {use: plan_parts:Watcher}", ""),
     ("o/two: {use: plan_parts:Watcher, start: false}", ""),
 ]
-"""A component, and what is said of it; the numbers of lines are put in."""
+"""A component, and the message about it with the line number left open."""
 MODULE = """
 from fwk import Aspect, Component
 from plan_parts import Way

@@ -37,7 +37,7 @@ STOPPED = HostStopped(COUNTER)
 
 class GainConfig(Config):
     gain: float = 1.0
-    """Of what is heard."""
+    """Factor of what is heard."""
 
 
 class Sensor(Component):
