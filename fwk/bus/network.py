@@ -78,9 +78,7 @@ class UdpNetwork:
         self._waiting = Waiting()
         self._held = held or {}
 
-    def now_us(self) -> int:
-        """Returns the wall time in microseconds, from an arbitrary origin."""
-        return monotonic_us()
+    now_us = staticmethod(monotonic_us)
 
     def group_socket(self, port: int) -> DatagramSocket:
         """Opens a socket that hears the multicast group on `port`."""

@@ -119,6 +119,8 @@ class Visibility:
 
     def voids_since(self, since: int) -> list[Void]:
         """Returns the voids that a host whose last tick was of step `since` may not know."""
+        if not self.voids:
+            return []
         return self.voids[bisect_left(self.voids, since, key=lambda void: void.since) :]
 
     def sequences(self, host: int) -> dict[str, int]:

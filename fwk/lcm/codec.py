@@ -16,12 +16,31 @@ Encoder = Callable[[Any], bytes]
 Decoder = Callable[[bytes], Any]
 
 _CODES = {"int8_t": "b", "int16_t": "h", "int32_t": "i", "int64_t": "q", "float": "f", "double": "d", "byte": "B"}
+_COUNT_BYTES = 4
 _ENCODED = {**_CODES, "boolean": "b"}
 _DECODED = {**_CODES, "boolean": "?"}
 
 Dimensions = list[int | str]
 Member = tuple[str, str, Dimensions]
 """Name, type name and dimensions; without dimensions a single value."""
+
+
+class _ByLength(dict[int, Callable[..., Any]]):
+    """Packs or unpacks arrays of numbers: one method of a `struct.Struct` for each length that has occurred."""
+
+    def __init__(self, code: str, method: str) -> None:
+        super().__init__()
+        self._code, self._method = code, method
+
+    def __missing__(self, length: int) -> Callable[..., Any]:
+        method: Callable[..., Any] = getattr(struct.Struct(f">{length}{self._code}"), self._method)
+        if length <= _CACHED_LENGTH:
+            self[length] = method
+        return method
+
+
+_CACHED_LENGTH = 256
+"""Longer arrays take longer to convert than a format takes to read, and there may be arrays of any length."""
 
 
 class RareShape(Exception):  # noqa: N818 - not an error: the type is left to lcm-gen's code
@@ -75,6 +94,12 @@ class _Source(ABC):
         self._names[name] = value
         return name
 
+    def _by_length(self, code: str, method: str) -> str:
+        """Returns the name of the methods that convert arrays of a kind of number, by length."""
+        name = f"{method}_{'bool' if code == '?' else code}"
+        self._names.setdefault(name, _ByLength(code, method))
+        return name
+
     def _number(self, code: str, value: str) -> None:
         self._format += code
         self._values.append(value)
@@ -100,7 +125,7 @@ class _Source(ABC):
 class _EncoderSource(_Source):
     def __init__(self, message_type: type[Any]) -> None:
         super().__init__("def encode(message):")
-        self._names["join"], self._names["pack"] = b"".join, struct.pack
+        self._names["join"] = b"".join
         self._chunks = [self._constant("fingerprint", message_type._get_packed_fingerprint())]
         self._listed = False  # whether some chunks are in a list already, because there are loops
         self._struct(message_type, "message")
@@ -117,6 +142,23 @@ class _EncoderSource(_Source):
         for name, _, dimensions in members:
             if dimensions and isinstance(dimensions[0], str):
                 self._count(f"{owner}.{name}", f"{owner}.{dimensions[0]}", counts)
+        before, run = _split_at_run(members)
+        self._write(before, owner, counts)
+        if run:
+            self._flush_numbers()
+            self._flush_chunks()
+            lengths = [counts[f"{owner}.{name}"] for name, _, dimensions in run if not dimensions]
+            self._line(f"if {' or '.join(lengths)}:")
+            self._indent += 1
+            self._write(run, owner, counts)
+            self._flush_numbers()
+            self._flush_chunks()
+            self._indent -= 1
+            self._line("else:")
+            self._line(f"    made.append({self._constant('zeros', bytes(_COUNT_BYTES * len(lengths)))})")
+            self._fields(members[len(before) + len(run) :], owner)
+
+    def _write(self, members: list[Member], owner: str, counts: dict[str, str]) -> None:
         for name, kind, dimensions in members:
             if dimensions:
                 self._array(kind, dimensions, f"{owner}.{name}", counts)
@@ -158,7 +200,7 @@ class _EncoderSource(_Source):
             if isinstance(first, int):
                 self._number(f"{first}{_ENCODED[kind]}", f"*{values}")
             else:
-                self._chunk(f"pack('>%d{_ENCODED[kind]}' % {length}, *{values})")
+                self._chunk(f"{self._by_length(_ENCODED[kind], 'pack')}[{length}](*{values})")
             return
         if isinstance(first, int):
             self._line(f"if len({values}) != {first}:")
@@ -197,7 +239,7 @@ class _EncoderSource(_Source):
 class _DecoderSource(_Source):
     def __init__(self, message_type: type[Any]) -> None:
         super().__init__("def decode(data):")
-        self._names["new"], self._names["unpack_from"] = object.__new__, struct.unpack_from
+        self._names["new"] = object.__new__
         fingerprint = self._constant("fingerprint", message_type._get_packed_fingerprint())
         self._line(f"if data[:8] != {fingerprint}:")
         self._line("    raise ValueError('wrong fingerprint')")
@@ -220,11 +262,35 @@ class _DecoderSource(_Source):
         return made
 
     def _fields(self, members: list[Member], owner: str) -> None:
+        before, run = _split_at_run(members)
+        self._read(before, owner)
+        if run:
+            self._run(run, owner)
+            self._fields(members[len(before) + len(run) :], owner)
+
+    def _read(self, members: list[Member], owner: str) -> None:
         for name, kind, dimensions in members:
             if dimensions:
                 self._array(kind, dimensions, owner, f"{owner}.{name}")
             else:
                 self._single(kind, f"{owner}.{name}")
+
+    def _run(self, members: list[Member], owner: str) -> None:
+        self._flush_numbers()
+        self._move(self._place)
+        size = _COUNT_BYTES * sum(not dimensions for _, _, dimensions in members)
+        self._line(f"if data[at:at + {size}] == {self._constant('zeros', bytes(size))}:")
+        self._indent += 1
+        for name, kind, dimensions in members:
+            self._line(f"{owner}.{name} = {_empty(kind) if dimensions else 0}")
+        self._line(f"at += {size}")
+        self._indent -= 1
+        self._line("else:")
+        self._indent += 1
+        self._read(members, owner)
+        self._flush_numbers()
+        self._move(self._place)
+        self._indent -= 1
 
     def _single(self, kind: str, target: str) -> None:
         if kind in _DECODED:
@@ -256,7 +322,7 @@ class _DecoderSource(_Source):
         elif kind in _DECODED and isinstance(first, int):
             self._line(f"{target} = {self._row(kind, first)}")
         elif kind in _DECODED:
-            values = f"unpack_from('>%d{_DECODED[kind]}' % {length}, data, {self._place})"
+            values = f"{self._by_length(_DECODED[kind], 'unpack_from')}[{length}](data, {self._place})"
             self._line(f"{target} = {_listed(kind, values)}")
             self._move(f"{self._place} + {struct.calcsize('>' + _DECODED[kind])} * {length}")
         else:
@@ -303,6 +369,36 @@ class _DecoderSource(_Source):
             self._line(f"{', '.join(self._values)}, = {unpack}(data, {self._place})")
             self._offset += made.size
         self._format, self._values = "", []
+
+
+def _split_at_run(members: list[Member]) -> tuple[list[Member], list[Member]]:
+    """Returns the members before the first run of lists that often are empty together, and the run.
+
+    It has two lists or more, each right behind its count; the first list of all is not part of it.
+    """
+    counts = [
+        index
+        for index, (name, kind, dimensions) in enumerate(members)
+        if kind == "int32_t"
+        and not dimensions
+        and [shape for _, _, shape in members[index + 1 : index + 2]] == [[name]]
+    ]
+    for index in counts[1:]:
+        end = index
+        while end in counts:
+            name, end = members[end][0], end + 1
+            while end < len(members) and members[end][2] == [name]:
+                end += 1
+        if sum(index <= count < end for count in counts) > 1:
+            return members[:index], members[index:end]
+    return members, []
+
+
+def _empty(kind: str) -> str:
+    """Returns the expression of an array without members, as the decoder has it."""
+    if kind == "byte":
+        return "b''"
+    return "()" if kind in _CODES else "[]"
 
 
 def _listed(kind: str, values: str) -> str:

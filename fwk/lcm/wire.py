@@ -26,7 +26,7 @@ def datagrams(number: int, channel: bytes, data: bytes) -> list[bytes]:
         raise MessageError(f"{channel.decode()}: a channel has at most 63 bytes, a message at most {_MESSAGE_MAX}")
     size = len(channel) + 1 + len(data)
     if size <= _SHORT_MAX:
-        return [b"%b%b\0%b" % (_SHORT.pack(_SHORT_MAGIC, number), channel, data)]
+        return [in_one(number, channel, data)]
     count = -(-size // _FRAGMENT)
     first = _FRAGMENT - len(channel) - 1
     made = [b"%b%b\0%b" % (_LONG.pack(_LONG_MAGIC, number, len(data), 0, 0, count), channel, data[:first])]
@@ -39,7 +39,7 @@ def datagrams(number: int, channel: bytes, data: bytes) -> list[bytes]:
 
 def in_one(number: int, channel: bytes, data: bytes) -> bytes:
     """Returns a message as one datagram of any size, for receivers in the same process."""
-    return b"%b%b\0%b" % (_SHORT.pack(_SHORT_MAGIC, number), channel, data)
+    return b"".join((_SHORT.pack(_SHORT_MAGIC, number), channel, b"\0", data))
 
 
 def is_short(datagram: bytes) -> bool:

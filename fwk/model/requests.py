@@ -26,7 +26,14 @@ _CHANNEL_KIND_NUMBERS = {kind: number for number, kind in _CHANNEL_KINDS.items()
 
 def clear_requests(done: done_t) -> None:
     """Empties the lists of requests and losses of a done that is sent again with other content."""
+    if not has_requests(done):
+        return
     done.main_loop, done.plugins, done.channels, done.lost, done.lost_frames = [], [], [], [], []
+
+
+def has_requests(done: done_t) -> bool:
+    """Returns whether a done has requests or losses; most have none."""
+    return bool(done.main_loop or done.plugins or done.channels or done.lost or done.lost_frames)
 
 
 def main_loop_request(component: int, schedule: Sequence[int]) -> main_loop_request_t:

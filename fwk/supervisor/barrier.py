@@ -47,6 +47,8 @@ class Barrier(ABC):
         """Hosts that have not answered the running stage."""
         self.turn = Turn(-1, -1, [])
         """The newest stage."""
+        self.place = (0, -1)
+        """Tick and step of the newest stage."""
         self.ledger_step = 0
         """Step of the ledger at which it began."""
         self.sender = TickSender(core)
@@ -62,7 +64,7 @@ class Barrier(ABC):
     def run(self, tick: Tick, turn: Turn) -> Steps[None]:
         """Runs one stage of a tick to its end."""
         core, stage = self._core, turn.stage
-        self._tick, self.turn = tick, turn
+        self._tick, self.turn, self.place = tick, turn, (tick.number, turn.step)
         self.ledger_step = core.ledger.begin()
         self.outstanding = self._participants(turn.hosts)
         self._tick_log.event(StageBegun(stage, turn.step))
@@ -123,7 +125,7 @@ class Barrier(ABC):
         turn = self.turn
         for host in turn.hosts:
             if host.index in self.outstanding:
-                host.late_with, host.answered_step = (self._tick.number, turn.step), self.ledger_step
+                host.late_with, host.answered_step = self.place, self.ledger_step
                 self.sender.keep_for(host, turn)
                 self._tick_log.event(HostLate(host.index))
                 self.late += not host.held

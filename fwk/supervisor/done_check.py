@@ -1,11 +1,12 @@
 """Checks the content of a done before it counts."""
 
 from fwk.lcm.messages import MessageError
-from fwk.model.requests import mistake_in
+from fwk.model.requests import has_requests, mistake_in
 from fwk.supervisor.core import Core
 from lcmtypes.core import done_t, recorded_t
 
-_SEQUENCES = range(1 << 62)
+_SEQUENCE_END = 1 << 62
+_KINDS = (done_t.STAGE, done_t.ITERATION, done_t.FINAL)
 
 
 class DoneCheck:
@@ -29,7 +30,10 @@ class DoneCheck:
         Raises:
             MessageError: the done names channels, components or stages that its host does not have.
         """
-        mistake = self._foreign_mark(done, self._may_write[done.host]) or mistake_in(done, *self._sizes)
+        mistake = self._foreign_mark(done, self._may_write[done.host])
+        if not mistake and not (has_requests(done) or done.kind not in _KINDS):
+            return
+        mistake = mistake or mistake_in(done, *self._sizes)
         if not mistake:
             asking = {each.component for asked in (done.main_loop, done.plugins, done.channels) for each in asked}
             asking |= {each.component for each in done.lost_frames}
@@ -51,6 +55,7 @@ class DoneCheck:
     def _foreign_mark(self, message: done_t | recorded_t, may_write: set[int]) -> str:
         if not may_write.issuperset(message.channel):
             return f"a mark of channel {min(set(message.channel) - may_write)}, which it does not write"
-        if any(sequence not in _SEQUENCES for sequence in message.sequence):
-            return "a mark that is not a sequence number"
+        for sequence in message.sequence:
+            if not 0 <= sequence < _SEQUENCE_END:
+                return "a mark that is not a sequence number"
         return ""

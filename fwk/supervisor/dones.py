@@ -5,12 +5,13 @@ from collections.abc import Callable
 from fwk.bus import sync
 from fwk.engine.boundary import BoundaryRequests
 from fwk.lcm.messages import MessageError
+from fwk.model.requests import has_requests
 from fwk.model.tick_events import FinalDone, FrameLost, IterationDone, MessageLost, OutsideTaken, StageDone
 from fwk.supervisor.barrier import Barrier
 from fwk.supervisor.continuous import ContinuousHosts
 from fwk.supervisor.core import Core
 from fwk.supervisor.done_check import DoneCheck
-from fwk.supervisor.host_process import HostProcess, HostState
+from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.tick_log import TickLog
 from lcmtypes.core import done_t, recorded_t, taken_t
@@ -78,11 +79,12 @@ class Dones:
             return self._counts_as_final(host, done)
         if host.continuous:
             return self._continuous.counts(host, done)
-        if done.kind == done_t.STAGE and host.late_with == (done.tick, done.step):
-            return host.alive or host.state is HostState.STOPPING
-        newest = (self._core.clock.tick, self._barrier.turn.step)
-        answers = done.kind == done_t.STAGE and (done.tick, done.step) == newest
-        return host.alive and answers and host.index in self._barrier.outstanding
+        if done.kind != done_t.STAGE:
+            return False
+        answered = (done.tick, done.step)
+        if answered == host.late_with:
+            return host.alive or host.stopping
+        return answered == self._barrier.place and host.alive and host.index in self._barrier.outstanding
 
     def _counts_as_final(self, host: HostProcess, done: done_t) -> bool:
         """Whether a final done is new; a host that was late has its last iteration taken first, if it ran it."""
@@ -108,8 +110,9 @@ class Dones:
             self._tick_log.mark(channel, sequence)
         if done.next_time_us >= 0:
             self._core.clock.source(done.next_time_us)
-        self._record_losses(done)
-        self._collect(done)
+        if has_requests(done):
+            self._record_losses(done)
+            self._collect(done)
         self._tick_log.event(_event_of(done))
 
     def _record_losses(self, done: done_t) -> None:

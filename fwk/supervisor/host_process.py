@@ -36,6 +36,8 @@ class HostState(StrEnum):
 
 IDLE = frozenset({HostState.LOADED, HostState.WAITING, HostState.STOPPED, HostState.FAILED})
 """States without a process."""
+JOINING = frozenset({HostState.LOADED, HostState.WAITING, HostState.STARTING, HostState.RUNNING})
+"""States of a host that takes part in the loop or will."""
 UNSETTLED = frozenset({HostState.WAITING, HostState.STARTING, HostState.STOPPING})
 """States that time alone may end."""
 NEXT_STATES = {
@@ -125,6 +127,7 @@ class HostProcess:
         """Whether it takes part in the loop."""
         self.unsettled = False
         """Whether time alone may change its state."""
+        self._joins = True
         self._state = HostState.LOADED
         self._starts_us: deque[int] = deque()
         self._earlier_frames: dict[str, int] = {}  # lost ones of the processes before this one, by component
@@ -153,9 +156,7 @@ class HostProcess:
     @property
     def expected(self) -> bool:
         """Whether it takes part in the loop now or will when it is ready."""
-        if self._state is HostState.STOPPING:
-            return self.wanted
-        return self._state in (HostState.LOADED, HostState.STARTING, HostState.RUNNING, HostState.WAITING)
+        return self._joins or (self.wanted and self._state is HostState.STOPPING)
 
     @property
     def settled(self) -> bool:
@@ -311,6 +312,7 @@ class HostProcess:
         self.running = state is HostState.RUNNING
         self.alive = self.running or state is HostState.STARTING
         self.unsettled = state in UNSETTLED
+        self._joins = state in JOINING
 
 
 def host_processes(plan: Plan) -> list[HostProcess]:

@@ -96,7 +96,17 @@ class Supervisor:
         self.log = Logger("supervisor", clock.clock, lambda line: sender.publish(b"fwk/log", line.encode(), ports.log))
         events, table = EventLoop(network), host_processes(plan)
         self._core = core = Core(
-            plan, number, ports, events, sender, clock, Visibility(plan), table, self.log, self._interrupted
+            plan,
+            number,
+            ports,
+            events,
+            sender,
+            clock,
+            Visibility(plan),
+            table,
+            self.log,
+            self._interrupted,
+            network.now_us,
         )
         self._starter = machine.starter
         self._signals = machine.signals

@@ -41,7 +41,8 @@ class TickSender:
         made.time_us, made.main_loop = tick.time_us, tick.main_loop
         made.channel, made.sequence = ledger.news(turn.stage, since)
         made.voids = void_messages(ledger, since)
-        made.absent = [host.index for host in turn.hosts if host not in told]
+        if len(told) < len(turn.hosts):
+            made.absent = [host.index for host in turn.hosts if host not in told]
         changes = {change.number: change for host in told for change in host.changes}
         put_changes(made, [changes[number] for number in sorted(changes)])
         self._sent = sync.encode_tick(made)

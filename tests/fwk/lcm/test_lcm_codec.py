@@ -26,12 +26,16 @@ struct varied_t {
   int32_t n; int32_t m; boolean b[n]; byte y[n]; string s[n]; float f[m]; double d[m]; int8_t i[n]; inner_t inner[m];
   inner_t one; int64_t last;
 }
+struct lists_t {
+  int32_t a; int32_t i[a]; int32_t b; byte y[b]; int32_t c; boolean t[c]; double d[c]; int32_t e; string s[e];
+  int32_t f; inner_t inner[f]; int64_t last; int32_t g; int8_t k[g]; int32_t h; inner_t m[h];
+}
 struct deep_t { int32_t n; varied_t varied[n]; fixed_t fixed; string end; }
 struct rare_t { int32_t n; int32_t m; double d[n][m]; }
 struct tree_t { int32_t n; tree_t kids[n]; }
 struct empty_t { }
 """
-NAMES = ("plain_t", "fixed_t", "varied_t", "deep_t", "empty_t", "rare_t", "tree_t")
+NAMES = ("plain_t", "fixed_t", "varied_t", "lists_t", "deep_t", "empty_t", "rare_t", "tree_t")
 Draw = Callable[[some.SearchStrategy[Any]], Any]
 RANGES = {"int8_t": 8, "int16_t": 16, "int32_t": 32, "int64_t": 64}
 
@@ -112,7 +116,7 @@ def test_the_bytes_are_those_of_lcm_gen(name: str, data: some.DataObject) -> Non
 
 
 @given(some.data())
-@pytest.mark.parametrize("name", NAMES[:4])
+@pytest.mark.parametrize("name", NAMES[:5])
 def test_bytes_that_end_too_early_are_refused(name: str, data: some.DataObject) -> None:
     message_type = shape(name)
     message = filled(data.draw, message_type)
@@ -123,7 +127,7 @@ def test_bytes_that_end_too_early_are_refused(name: str, data: some.DataObject) 
 
 
 @given(some.binary(max_size=200))
-@pytest.mark.parametrize("name", NAMES[:4])
+@pytest.mark.parametrize("name", NAMES[:5])
 def test_any_bytes_give_a_message_or_a_clear_error(name: str, rest: bytes) -> None:
     message_type = shape(name)
     with suppress(MessageError):
@@ -145,6 +149,17 @@ def test_counts_are_set_to_the_lengths_of_lists() -> None:
     message.s = ["s", "t"]
     with pytest.raises(MessageError, match="the lists counted by 'n' differ in length"):
         messages.encode(message, "channel")
+
+
+def test_lists_that_are_empty_together_are_those_of_lcm_gen() -> None:
+    message_type = shape("lists_t")
+    message = message_type()
+    message.a, message.i, message.e, message.h = 2, [1, 2], 5, 7
+    decoded = messages.decode(message_type, messages.encode(message, "channel"), "channel")
+    assert (message.e, message.h) == (0, 0)
+    for name in ("i", "y", "t", "d", "s", "inner", "k", "m"):
+        own, expected = getattr(decoded, name), getattr(message_type.decode(message.encode()), name)
+        assert (type(own), own) == (type(expected), expected)
 
 
 def test_arrays_of_a_fixed_size_have_that_size() -> None:
