@@ -22,16 +22,30 @@ def told(address: Address) -> str:
 
 
 def multicast_receiver(port: int, buffer_bytes: int = BUFFER_BYTES) -> socket.socket:
-    """Opens a non-blocking socket that hears the group on `port`, together with others on this machine."""
-    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    """Opens a non-blocking socket that hears the group on `port`, together with others of this user."""
+    made = multicast_holder(port)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, buffer_bytes)
-    # Otherwise the socket would hear the network, too, as soon as any program here joins the group there.
-    made.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
-    made.bind((GROUP, port))
     membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
     made.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
     made.setblocking(False)
+    return made
+
+
+def multicast_holder(port: int) -> socket.socket:
+    """Opens a socket that keeps `port` of the group for this user, and hears nothing.
+
+    Raises:
+        OSError: another program has the port.
+    """
+    made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+    made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEPORT, 1)  # SO_REUSEADDR would share the port with other users
+    # Otherwise the socket would hear the network, too, as soon as any program here joins the group there.
+    made.setsockopt(socket.IPPROTO_IP, _IP_MULTICAST_ALL, 0)
+    try:
+        made.bind((GROUP, port))
+    except OSError:
+        made.close()
+        raise
     return made
 
 
@@ -41,6 +55,10 @@ def own_socket(port: int) -> socket.socket:
     made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
     made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
     made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
-    made.bind((LOOPBACK, port))
+    try:
+        made.bind((LOOPBACK, port))
+    except OSError:
+        made.close()
+        raise
     made.setblocking(False)
     return made

@@ -118,28 +118,34 @@ class Connection:
             self._socket.close()
 
 
-class Server:
-    """Listens on an abstract unix socket; `fileno` is readable when `handle` has something to do.
+def listen(address: str) -> socket.socket:
+    """Opens an abstract unix socket that takes connections.
 
     Raises:
         ControlNameError: another process has bound the address.
     """
+    listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    try:
+        listener.bind(address)
+    except OSError as error:
+        listener.close()
+        if error.errno != errno.EADDRINUSE:
+            raise
+        name = address.lstrip("\0")
+        raise ControlNameError(
+            f"another process has the control socket @{name}; end it, or start this run with another --bus-port"
+        ) from error
+    listener.listen()
+    listener.setblocking(False)
+    return listener
 
-    def __init__(self, address: str, answer: Answer) -> None:
+
+class Server:
+    """Serves a listening unix socket; `fileno` is readable when `handle` has something to do."""
+
+    def __init__(self, listener: socket.socket, answer: Answer) -> None:
         self._answer = answer
-        self._listener = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        try:
-            self._listener.bind(address)
-        except OSError as error:
-            self._listener.close()
-            if error.errno != errno.EADDRINUSE:
-                raise
-            name = address.lstrip("\0")
-            raise ControlNameError(
-                f"another process has the control socket @{name}; end it, or start this run with another --bus-port"
-            ) from error
-        self._listener.listen()
-        self._listener.setblocking(False)
+        self._listener = listener
         self._epoll = select.epoll()
         self._epoll.register(self._listener, select.EPOLLIN)
         self._connections: dict[int, Connection] = {}

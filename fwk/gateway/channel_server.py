@@ -1,12 +1,12 @@
 """Answers tools that list channels, show their newest messages and watch them."""
 
 import contextlib
+import socket
 from collections.abc import Callable
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import requests
-from fwk.control.address import gateway_address
 from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.lcm import envelope, messages
@@ -25,9 +25,16 @@ class ChannelServer:
         plan: the plan of the run.
         channels: the channels that exist, including the dynamic ones.
         call: takes requests for components.
+        listener: the gateway's control socket.
     """
 
-    def __init__(self, plan: Plan, channels: ChannelTable, call: Callable[[requests.Call, Connection], None]) -> None:
+    def __init__(
+        self,
+        plan: Plan,
+        channels: ChannelTable,
+        call: Callable[[requests.Call, Connection], None],
+        listener: socket.socket,
+    ) -> None:
         self._plan = plan
         self._table = channels
         self._call = call
@@ -36,7 +43,7 @@ class ChannelServer:
         self._arrived_us: dict[str, int] = {}
         self._counts = dict.fromkeys(self._channels, 0)
         self._watching: dict[str, list[Connection]] = {}
-        self._server = Server(gateway_address(plan.bus_port), self._take)
+        self._server = Server(listener, self._take)
 
     def fileno(self) -> int:
         """Returns the descriptor that is readable when `handle` has something to do."""

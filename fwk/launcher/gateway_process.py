@@ -12,6 +12,7 @@ from fwk.gateway.channel_server import ChannelServer
 from fwk.gateway.command_bridge import CommandBridge
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.unwrap import Unwrap, plain_channels
+from fwk.launcher.reservations import Reservations
 from fwk.launcher.run_files import RunFiles
 from fwk.lcm.event_log import LogError
 from fwk.logs import targets
@@ -31,16 +32,17 @@ def run_gateway(
     control: socket.socket,
     display: socket.socket,
     rings: Mapping[str, Ring],
+    reservations: Reservations,
 ) -> int:
     """Serves until the supervisor closes `control`; returns the exit code."""
     # The gateway ends when the supervisor's end of `control` is closed, also by the supervisor's death.
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
-    network = UdpNetwork()
+    network = UdpNetwork(reservations.keep_for_gateway())
     gateway = Gateway(plan, run, network, control, public)
     bridge = CommandBridge(plan, gateway.take_in, gateway.clock)
-    channel_server = ChannelServer(plan, gateway.channels, bridge.call)
+    channel_server = ChannelServer(plan, gateway.channels, bridge.call, reservations.gateway)
     gateway.watch(channel_server.fileno(), channel_server.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # what came from the public bus stands there already

@@ -12,6 +12,7 @@ from fwk.display.display import run_display
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
 from fwk.host.process_title import name_process
 from fwk.launcher.gateway_process import DELETED, run_gateway
+from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan
 from fwk.recording import sinks
 from fwk.supervisor.options import RunOptions
@@ -27,7 +28,9 @@ class HelperProcesses:
     them if they were stopped.
     """
 
-    def __init__(self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring]) -> None:
+    def __init__(
+        self, plan: Plan, run: int, options: RunOptions, rings: Mapping[str, Ring], reservations: Reservations
+    ) -> None:
         self.gave_up = ""
         """Process that did not end in time, and the consequence; empty: all did."""
         self.lost = 0
@@ -42,6 +45,7 @@ class HelperProcesses:
             self.control.close()
             gateway_control.close()
             display_feed.close()
+            reservations.release()
             die_with_parent(parent, signal.SIGCONT)
             name_process(plan.name, "display")
             run_forked(lambda _: _display(plan, display_end, options.plain))
@@ -52,12 +56,13 @@ class HelperProcesses:
             os.setsid()
             die_with_parent(parent, signal.SIGCONT)
             name_process(plan.name, "gateway")
-            run_forked(lambda _: run_gateway(plan, run, options, gateway_control, display_feed, rings))
+            run_forked(lambda _: run_gateway(plan, run, options, gateway_control, display_feed, rings, reservations))
         gateway_control.close()
         display_feed.close()
         self._watcher = os.fork() if options.watch else 0
         if options.watch and self._watcher == 0:
             self.control.close()
+            reservations.release()
             os.setsid()
             die_with_parent(parent)
             name_process(plan.name, "watcher")

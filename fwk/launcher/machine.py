@@ -6,8 +6,9 @@ import resource
 import socket
 from pathlib import Path
 
+from fwk.bus.port_owner import port_owner
 from fwk.bus.public import PublicBus
-from fwk.bus.sockets import GROUP, LOOPBACK
+from fwk.bus.sockets import GROUP, LOOPBACK, multicast_holder, own_socket
 from fwk.control.address import gateway_address, supervisor_address
 from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
@@ -56,7 +57,8 @@ def check_ports(plan: Plan) -> None:
     if used:
         more = ", ..." if len(used) > _PORTS_NAMED else ""
         raise MachineError(
-            f"{plan.name}: another program uses UDP port {', '.join(map(str, used[:_PORTS_NAMED]))}{more}; end it, "
+            f"{plan.name}: another program uses UDP port {', '.join(map(str, used[:_PORTS_NAMED]))}{more}"
+            f"{port_owner(used[0])}; end it, "
             f"or start this run with another --bus-port"
         )
 
@@ -119,17 +121,12 @@ def _check_names(plan: Plan) -> None:
                 ) from error
 
 
-def _is_free(port: int, alone: bool) -> bool:
-    """Whether a port can be bound: of a process that sends (`alone`), or of a multicast channel, which may be shared
-    with other groups.
-    """
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
-        try:
-            if not alone:
-                probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-            probe.bind((LOOPBACK if alone else GROUP, port))
-        except OSError as error:
-            return error.errno != errno.EADDRINUSE
+def _is_free(port: int, own: bool) -> bool:
+    """Whether a port can be bound: one that a process sends from (`own`), or one of the group."""
+    try:
+        (own_socket if own else multicast_holder)(port).close()
+    except OSError as error:
+        return error.errno != errno.EADDRINUSE
     return True
 
 

@@ -1,54 +1,60 @@
 """Runs a plan in the foreground: composes supervisor, zygote, gateway and display."""
 
 import secrets
-import socket
+from functools import partial
 
 from fwk.bus.network import UdpNetwork
-from fwk.bus.port_lock import PortLock, PortsInUseError
-from fwk.bus.sockets import own_socket
+from fwk.bus.port_lock import PortsInUseError
 from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
-from fwk.control.address import supervisor_address
-from fwk.control.server import Answer, Server
+from fwk.control.server import ControlNameError, Server
 from fwk.host.debugger import DebuggerMissingError, DebugRequest, check
 from fwk.host.process import raise_file_limit
 from fwk.host.process_title import name_process
 from fwk.host.profile import ProfileRequest, ProfilerMissingError, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
+from fwk.launcher.reservations import Reservations
 from fwk.launcher.signals import Signals
 from fwk.lcm import envelope, messages
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
-from fwk.model.ports import Ports
 from fwk.supervisor.barrier import WINDOW
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.processes.zygote import Zygote
 from fwk.supervisor.supervisor import Machine, Supervisor
 
-__all__ = ["DebuggerMissingError", "Outcome", "PortsInUseError", "ProfilerMissingError", "RunOptions", "run"]
+__all__ = [
+    "ControlNameError",
+    "DebuggerMissingError",
+    "Outcome",
+    "PortsInUseError",
+    "ProfilerMissingError",
+    "RunOptions",
+    "run",
+]
 
 
 def run(plan: Plan, options: RunOptions) -> Outcome:
     """Runs a plan in the foreground until it is done, interrupted or broken.
 
     Raises:
-        PortsInUseError: another run on this machine has the ports.
+        PortsInUseError: another run or another program on this machine has a port.
+        ControlNameError: another process has the name of a control socket.
         DebuggerMissingError: debugpy is asked for and not installed.
         ProfilerMissingError: a profile is asked for and pyinstrument is not installed.
     """
-    ports = Ports.of(plan)
     debug = _debug_request(plan, options)
     profile = _profile_request(plan, options)
-    lock = PortLock(ports, plan.file or plan.name, plan.public_url)
     raise_file_limit()
-    sockets = _host_sockets(plan, ports)
+    reservations = Reservations(plan)
     number = secrets.randbits(62)
     rings = _rings(plan, options)
-    zygote = Zygote(plan, number, rings, sockets, debug, profile)
-    helpers = HelperProcesses(plan, number, options, rings)
-    network = UdpNetwork(sockets)
+    zygote = Zygote(plan, number, rings, reservations.hosts, debug, profile, reservations.not_for_hosts)
+    helpers = HelperProcesses(plan, number, options, rings, reservations)
+    reservations.gateway.close()  # the gateway's process has it
+    network = UdpNetwork(reservations.own)
     name_process(plan.name, "supervisor")
-    machine = Machine(zygote, Signals(), lambda answer: _control_server(plan, answer), rings, sockets, debug)
+    machine = Machine(zygote, Signals(), partial(Server, reservations.supervisor), rings, reservations.hosts, debug)
     supervisor = Supervisor(plan, options, number, network, machine)
     reason, failed = network.run(supervisor.work(helpers))
     status, failures = network.run(supervisor.stop())
@@ -60,7 +66,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     if helpers.deleted and not failed:
         reason, failed = f"broken: {helpers.deleted}", True
     zygote.close()
-    lock.release()
+    reservations.release()
     return Outcome(
         1 if failed else 0,
         supervisor.loop.tick,
@@ -72,31 +78,6 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
         helpers.lost,
         helpers.deleted,
     )
-
-
-def _host_sockets(plan: Plan, ports: Ports) -> dict[int, socket.socket]:
-    """Opens the hosts' own sockets, so that no other process can take the port of a host that ended.
-
-    Raises:
-        PortsInUseError: another program has one of the ports.
-    """
-    opened: dict[int, socket.socket] = {}
-    for host in plan.hosts:
-        port = ports.host(host.index)
-        try:
-            opened[port] = own_socket(port)
-        except OSError as error:
-            for each in opened.values():
-                each.close()
-            raise PortsInUseError(
-                f"{plan.file or plan.name}: port {port} of {host.name} cannot be opened: {error.strerror}; "
-                "start this run with another --bus-port"
-            ) from error
-    return opened
-
-
-def _control_server(plan: Plan, answer: Answer) -> Server:
-    return Server(supervisor_address(plan.bus_port), answer)
 
 
 def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:

@@ -13,11 +13,10 @@ from pathlib import Path
 from typing import Any
 
 from fwk.bus.network import Steps, UdpNetwork
-from fwk.bus.sockets import own_socket
 from fwk.host.process import raise_file_limit
 from fwk.launcher.helper_processes import HelperProcesses
+from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan
-from fwk.model.ports import Ports
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.hosts import StartFailedError
@@ -78,11 +77,10 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     options = RunOptions(
         Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
     )
-    ports = Ports.of(plan)
-    sockets = {port: own_socket(port) for port in map(ports.host, range(len(plan.hosts)))}
-    zygote = Zygote(plan, number, {}, sockets)
-    children = HelperProcesses(plan, number, options, {}) if recorded else None
-    network = UdpNetwork(sockets)
+    reservations = Reservations(plan)
+    zygote = Zygote(plan, number, {}, reservations.hosts, not_for_hosts=reservations.not_for_hosts)
+    children = HelperProcesses(plan, number, options, {}, reservations) if recorded else None
+    network = UdpNetwork(reservations.own)
     supervisor = MeasuredSupervisor(plan, options, number, network, Machine(zygote))
     if not recorded:
         supervisor.loop.tick_log.taken = _NEVER  # there is no gateway to wait for

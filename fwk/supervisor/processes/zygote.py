@@ -4,7 +4,7 @@ import gc
 import os
 import signal
 import socket
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from fwk.component.images import Ring
 from fwk.engine.assignment import Start
@@ -39,6 +39,7 @@ class Zygote:
         sockets: Mapping[int, socket.socket],
         debug: DebugRequest | None = None,
         profile: ProfileRequest | None = None,
+        not_for_hosts: Iterable[socket.socket] = (),
     ) -> None:
         own, other = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         self._progress = CrashMarker(len(plan.hosts))
@@ -48,6 +49,8 @@ class Zygote:
         self.pid = os.fork()
         if self.pid == 0:
             own.close()
+            for each in not_for_hosts:
+                each.close()
             name_process(plan.name, "zygote")
             os.setsid()  # Ctrl-C in the terminal goes to the supervisor alone
             die_with_parent(parent)

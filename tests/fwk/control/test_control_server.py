@@ -14,7 +14,7 @@ from hypothesis import strategies as some
 from fwk.control import address, server
 from fwk.control.client import Client, ControlError, RefusedError
 from fwk.control.requests import RequestError, SetSettings, parsed, to_gateway, to_supervisor
-from fwk.control.server import Connection, Server
+from fwk.control.server import Connection, Server, listen
 
 Connect = Callable[[], socket.socket]
 ADDRESS = f"\0fwk-test-control-{os.getpid()}"
@@ -31,7 +31,7 @@ def echo(line: bytes, connection: Connection) -> None:
 
 @pytest.fixture
 def listening() -> Iterator[Server]:
-    made = Server(ADDRESS, echo)
+    made = Server(listen(ADDRESS), echo)
     yield made
     made.close()
 
@@ -198,7 +198,7 @@ def test_idle_connections_give_way(listening: Server, connect: Connect) -> None:
 
 def test_a_name_that_is_taken_is_refused_with_advice(listening: Server) -> None:
     with pytest.raises(server.ControlNameError, match="another process has the control socket @fwk-test-control"):
-        Server(ADDRESS, echo)
+        listen(ADDRESS)
 
 
 @pytest.mark.parametrize("brackets", ["[", "{", "[{", "[[]"])

@@ -12,6 +12,7 @@ import pytest
 
 from fwk import Component, Reads, Writes
 from fwk.control.address import gateway_address
+from fwk.control.server import listen
 from fwk.gateway.channel_server import ChannelServer, plain
 from fwk.lcm import messages
 from fwk.logs.json_lines import JsonLog
@@ -41,7 +42,8 @@ PORT = 100_000 + os.getpid()  # names a socket that does not exist
 @pytest.fixture
 def board() -> Iterator[ChannelServer]:
     plan = plan_of({"a/turner": Turner, "a/reader": Reader}, bus_port=PORT)
-    made = ChannelServer(plan, ChannelTable(plan), lambda request, connection: None)
+    listener = listen(gateway_address(plan.bus_port))
+    made = ChannelServer(plan, ChannelTable(plan), lambda request, connection: None, listener)
     yield made
     made.close()
 

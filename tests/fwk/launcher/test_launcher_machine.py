@@ -1,5 +1,6 @@
 """Requirements of a run on the machine are checked before any process starts, with advice."""
 
+import os
 import resource
 import socket
 from dataclasses import replace
@@ -36,7 +37,9 @@ def test_a_port_of_another_program_is_named(plan: Plan) -> None:
     port = Ports.of(plan).supervisor
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind((LOOPBACK, port))
-        with pytest.raises(MachineError, match=f"uses UDP port {port}; .* --bus-port"):
+        with pytest.raises(
+            MachineError, match=rf"uses UDP port {port} \(pid {os.getpid()}: .*\); end it, .* --bus-port"
+        ):
             check_ports(plan)
     check_ports(plan)
 

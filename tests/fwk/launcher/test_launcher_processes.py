@@ -1,18 +1,27 @@
 """Processes of a run as other programs see them: their names, and ports that no other process can take."""
 
-import errno
+import contextlib
 import json
 import os
 import signal
 import socket
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import psutil
 import pytest
 
+from fwk import Component, Writes
+from fwk.bus.port_lock import PortsInUseError
+from fwk.bus.sockets import GROUP, LOOPBACK
+from fwk.control.address import gateway_address, supervisor_address
+from fwk.control.server import ControlNameError
+from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan
 from fwk.model.plan_document import plan_from
 from fwk.model.ports import Ports
+from fwk.testing import plans
+from lcmtypes.soccer import pose_t
 from tests.harness.fixtures import Launch, folder, launch, orchestra_types
 from tests.harness.runs import Launched, PortBlock
 
@@ -27,6 +36,11 @@ pytestmark = pytest.mark.system
 def traced(folder: Path) -> Path:
     (folder / "traces").mkdir()
     return folder
+
+
+class Talker(Component):
+    stage = "think"
+    pose: Writes[pose_t]
 
 
 def titles(run: Launched) -> dict[str, str]:
@@ -51,21 +65,50 @@ def test_processes_are_named_by_plan_and_role(launch: Launch, traced: Path) -> N
     assert run.wait() == 0, run.text
 
 
-def test_port_of_a_killed_host_cannot_be_taken(launch: Launch, traced: Path, ports: PortBlock) -> None:
+def test_no_port_can_be_taken_while_a_host_restarts(launch: Launch, traced: Path, ports: PortBlock) -> None:
     file = traced / FILE
-    file.write_text(file.read_text().replace("d/player: {", "d/player: { restart: {backoff_s: 0.5},"))
+    file.write_text(file.read_text().replace("f/player: {", "f/player: { restart: {backoff_s: 0.5},"))
     run = launch(FILE)
     run.until_ticks("f/player", 3)
-    port = ports_of(run).host(host_index(run, "d/player"))
-    os.kill(run.host("d/player"), signal.SIGKILL)
-    run.until("d/player ended: killed by signal 9")
-    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as thief:
-        thief.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        assert errno.errorcode[bound(thief, port)] == "EADDRINUSE"
-    run.until("d/player runs again, start number 2")
+    used = ports_of(run)
+    os.kill(run.host("f/player"), signal.SIGKILL)  # the only host of its stage
+    run.until("f/player ended: killed by signal 9")
+    with contextlib.ExitStack() as thieves:
+        taken = [
+            (port, address, options)
+            for port in range(used.base, used.end)
+            for address in (LOOPBACK if port in used.members else GROUP, "")
+            for options in ((), (socket.SO_REUSEADDR,))
+            if bound(thieves, address, port, options) == 0
+        ]
+        run.until("f/player runs again, start number 2")
+    assert taken == []
     run.until_ticks("f/player", 3)
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
+    assert "Traceback" not in run.text
+
+
+@pytest.mark.parametrize("at", ["host", "gateway", "stage", "channel"])
+def test_port_that_is_taken_late_is_named_with_its_owner(at: str, ports: PortBlock) -> None:
+    plan = plan_of_one(ports.bus)
+    port = {"host": Ports.of(plan).host(0), "gateway": Ports.of(plan).host(1)}.get(at)
+    port = port or {"stage": Ports.of(plan).stage(3), "channel": Ports.of(plan).channel(0)}[at]
+    with contextlib.ExitStack() as thieves:
+        assert bound(thieves, "", port, ()) == 0
+        with pytest.raises(PortsInUseError, match=rf"UDP port {port} .* \(pid {os.getpid()}: .*another --bus-port"):
+            Reservations(plan)
+    Reservations(plan).release()  # the first attempt kept nothing
+
+
+@pytest.mark.parametrize("address", [supervisor_address, gateway_address])
+def test_control_name_that_is_taken_late_is_named(address: Callable[[int], str], ports: PortBlock) -> None:
+    plan = plan_of_one(ports.bus)
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as thief:
+        thief.bind(address(ports.bus))
+        with pytest.raises(ControlNameError, match=f"control socket @fwk-.*-{ports.bus}; end it"):
+            Reservations(plan)
+    Reservations(plan).release()
 
 
 def test_a_used_port_is_named_before_any_process_starts(launch: Launch, traced: Path, ports: PortBlock) -> None:
@@ -79,21 +122,24 @@ def test_a_used_port_is_named_before_any_process_starts(launch: Launch, traced: 
     assert not [process for process in run.processes() if process.status() != psutil.STATUS_ZOMBIE]
 
 
-def bound(thief: socket.socket, port: int) -> int:
-    """Tries to take a port; returns the system's error number, 0 if the port was free."""
+def bound(thieves: contextlib.ExitStack, address: str, port: int, options: Sequence[int]) -> int:
+    """Tries to take a port and to keep it; returns the system's error number, 0 if the port was free."""
+    thief = thieves.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
+    for option in options:
+        thief.setsockopt(socket.SOL_SOCKET, option, 1)
     try:
-        thief.bind(("127.0.0.1", port))
+        thief.bind((address, port))
     except OSError as error:
         return error.errno or 0
     return 0
 
 
+def plan_of_one(bus_port: int) -> Plan:
+    return plans.plan_of({"a/talker": Talker}, bus_port=bus_port, public_url="")
+
+
 def ports_of(run: Launched) -> Ports:
     return Ports.of(plan_of(run))
-
-
-def host_index(run: Launched, name: str) -> int:
-    return next(host.index for host in plan_of(run).hosts if host.name == name)
 
 
 def plan_of(run: Launched) -> Plan:
