@@ -69,7 +69,7 @@ _FORMER = (
     *("CallsEach", "Command", "CommandError", "CommandState", "Commands", "CommandsEach", "Future", "ImagesEach"),
     *("NotOpen", "ReadsEach", "Sends", "SendsEach", "ServesEach", "WritesEach"),
 )
-"""Former names, which earlier components and recordings of them use."""
+"""Former names, which earlier components and their recordings use."""
 
 __all__ = [
     "Aspect",

@@ -4,8 +4,8 @@ import operator
 import time
 
 US_PER_S = 1_000_000
-_SILENT_ITERATIONS = 20  # of a time source that has never set the time, before it is reported
-_TIME_MAX_US = 10**18  # of logical time: 30,000 years, so that periods can be added
+_SILENT_ITERATIONS = 20  # iterations of a time source without a time, before it is reported
+_TIME_MAX_US = 10**18  # of logical time: 30,000 years, which leaves room to add periods
 SECONDS_MAX = 1e9
 """The longest duration that can be requested, 30 years."""
 SPEED_MIN, SPEED_MAX = 1e-6, 1e6
@@ -23,9 +23,9 @@ class Clock:
         self.tick = 0
         self.stage = ""
         self.period_us = period_us
-        """Nominal time from tick to tick."""
+        """Nominal time between ticks."""
         self.every = 1
-        """Ticks from one iteration of the component to its next."""
+        """Number of ticks from one iteration of the component to the next."""
 
     @property
     def now_s(self) -> float:
@@ -34,7 +34,7 @@ class Clock:
 
     @property
     def period_s(self) -> float:
-        """Nominal time from tick to tick in seconds."""
+        """Nominal time between ticks in seconds."""
         return self.period_us / US_PER_S
 
     def since_s(self, time_us: int) -> float:
@@ -70,7 +70,7 @@ class TimeSource:
         self._next_us = said_us
 
     def _mistake(self, now_us: int) -> str:
-        """Returns what is wrong with `next_us` after an iteration at `now_us`, to be logged; mostly empty.
+        """Returns the mistake in `next_us` after an iteration at `now_us`, to be logged; mostly empty.
 
         A time that is not after `now_us` is reported the 1st, 10th, 100th time; a time that is never set is reported
         once, after some iterations.
@@ -81,11 +81,11 @@ class TimeSource:
             self._wrong += 1
             if str(self._wrong).strip("0") == "1":
                 said = f"next_us = {self._next_us} is not after this tick's time, {now_us} us"
-                return f"time source: {said}; time goes on by the period instead ({self._wrong} times so far)"
+                return f"time source: {said}; time advances by the period instead ({self._wrong} times so far)"
         elif not self._was_right:
             self._silent += 1
             if self._silent == _SILENT_ITERATIONS:
-                return f"time source: next_us was not set in {self._silent} iterations; time goes on by the period"
+                return f"time source: next_us was not set in {self._silent} iterations; time advances by the period"
         return ""
 
 
@@ -100,7 +100,7 @@ def turns_word(every: int, offset: int) -> str:
 
 
 def speed_word(speed: float) -> str:
-    """Returns a speed as it is typed; 0 is as fast as possible."""
+    """Returns a speed in the form in which it is typed; 0 is as fast as possible."""
     return f"{speed:g}" if speed else "max"
 
 

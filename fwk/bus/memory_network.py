@@ -38,7 +38,7 @@ class MemorySocket:
         return self.queue.popleft()
 
     def sendto(self, data: bytes, address: Address, /) -> int:
-        """Hands a datagram to the driver."""
+        """Passes a datagram to the driver."""
         self._sent(data, address)
         return len(data)
 
@@ -76,11 +76,11 @@ class MemoryNetwork:
         return self.clock_us
 
     def group_socket(self, port: int) -> MemorySocket:
-        """Opens a socket that hears the multicast group on `port`."""
+        """Opens a socket that receives from the multicast group on `port`."""
         return self._open(GROUP, port)
 
     def own_socket(self, port: int) -> MemorySocket:
-        """Opens the socket that sends from `port` and hears what is sent to `port` alone."""
+        """Opens the socket that sends from `port` and receives what is sent to `port` alone."""
         return self._open(LOOPBACK, port)
 
     def watch(self, source: Source) -> None:
@@ -119,7 +119,7 @@ class MemoryNetwork:
         return until_us
 
     def run_once(self, steps: Steps[T], until_us: int) -> int:
-        """Lets the time pass until which a participant waits, and resumes it.
+        """Advances the time to the end of a participant's wait, and resumes the participant.
 
         Returns:
             The wall time until which it waits then.

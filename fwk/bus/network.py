@@ -40,7 +40,7 @@ class DatagramSocket(Protocol):
         ...
 
     def close(self) -> None:
-        """Gives the socket back."""
+        """Releases the socket."""
         ...
 
 
@@ -52,11 +52,11 @@ class Network(Protocol):
         ...
 
     def group_socket(self, port: int) -> DatagramSocket:
-        """Opens a socket that hears the multicast group on `port`, as do others on this machine."""
+        """Opens a socket that receives from the multicast group on `port`, like others on this machine."""
         ...
 
     def own_socket(self, port: int) -> DatagramSocket:
-        """Opens the socket that sends from `port` and hears what is sent to `port` alone."""
+        """Opens the socket that sends from `port` and receives what is sent to `port` alone."""
         ...
 
     def watch(self, source: Source) -> None:
@@ -81,11 +81,11 @@ class UdpNetwork:
     now_us = staticmethod(monotonic_us)
 
     def group_socket(self, port: int) -> DatagramSocket:
-        """Opens a socket that hears the multicast group on `port`."""
+        """Opens a socket that receives from the multicast group on `port`."""
         return multicast_receiver(port)
 
     def own_socket(self, port: int) -> DatagramSocket:
-        """Opens the socket that sends from `port` and hears what is sent to `port` alone, or shares a held one."""
+        """Opens the socket that sends from `port` and receives what is sent to `port` alone, or shares a held one."""
         held = self._held.get(port)
         return own_socket(port) if held is None else held.dup()
 
@@ -108,5 +108,5 @@ class UdpNetwork:
             return result
 
     def close(self) -> None:
-        """Gives the descriptor for waiting back."""
+        """Releases the descriptor for waiting."""
         self._waiting.close()

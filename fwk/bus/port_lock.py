@@ -15,7 +15,7 @@ class PortsInUseError(Exception):
 
 
 class PortLock:
-    """Holds the ports of a run as long as the process lives; other processes can find out which process that is."""
+    """Holds the ports of a run as long as the process lives; other processes can find that process."""
 
     def __init__(self, ports: Ports, name: str, public_url: str = "") -> None:
         self._sockets: list[socket.socket] = []

@@ -13,7 +13,7 @@ from fwk.lcm import wire
 from fwk.model.public_url import parse_url
 
 _SO_ATTACH_FILTER = 26
-_DATAGRAMS_AT_ONCE = 5000  # more than the largest message has
+_DATAGRAMS_AT_ONCE = 5000  # more fragments than the largest message has
 
 
 class PublicBus:
@@ -33,7 +33,7 @@ class PublicBus:
         self._receiver.bind((group, port))
         self._receiver.setblocking(False)
         try:
-            self._sender.sendto(b"", (group, port))  # an empty datagram: finds out whether there is a way, and binds
+            self._sender.sendto(b"", (group, port))  # an empty datagram: tests for a route, and binds
             self._join(group, "0.0.0.0")
         except OSError:  # no multicast route: the loopback interface is always there
             self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
@@ -54,7 +54,7 @@ class PublicBus:
         self._listeners.close()
 
     def publish(self, channel: str, data: bytes) -> None:
-        """Sends a message; on this bus loss is not repaired."""
+        """Sends a message; lost messages are not sent again on this bus."""
         for datagram in self.datagrams(channel, data):
             self.send(datagram)
 
@@ -63,7 +63,7 @@ class PublicBus:
         return wire.datagrams(next(self._number) & 0xFFFFFFFF, channel.encode(), data)
 
     def send(self, datagram: bytes) -> None:
-        """Sends one datagram; one that the system does not take is lost."""
+        """Sends one datagram; a datagram that the system does not take is lost."""
         with contextlib.suppress(OSError):
             self._sender.sendto(datagram, self._address)
 
@@ -98,7 +98,7 @@ class PublicBus:
 
 
 def _ignore_source(receiver: socket.socket, port: int) -> None:
-    """Lets the kernel drop datagrams from one source port: those that the gateway itself sent."""
+    """Makes the kernel drop datagrams from one source port: those that the gateway itself sent."""
     program = struct.pack(
         "HBBI" * 4,
         *(0x28, 0, 0, 0),  # load half word 0 of the UDP header: the source port

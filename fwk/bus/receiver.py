@@ -17,7 +17,7 @@ class Receiver:
     Args:
         socket: where the datagrams arrive.
         senders: ports of this machine from which datagrams are accepted.
-        owner: whose ports these are, as a complaint says: "the supervisor's", "of this run".
+        owner: owner of these ports in a complaint: "the supervisor's", "of this run".
         topic: channel that complaints name.
         complain: takes each refused datagram.
     """
@@ -41,7 +41,7 @@ class Receiver:
         while True:
             try:
                 datagram, address = self.socket.recvfrom(wire.DATAGRAM_MAX)
-            except OSError:  # no datagram, or the news that an earlier one found no receiver
+            except OSError:  # no datagram, or an error report about an earlier one without a receiver
                 return None
             host, port = address
             try:

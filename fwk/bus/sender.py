@@ -10,13 +10,13 @@ from fwk.lcm import wire
 FRAGMENT_INTERVAL_US = 1_000
 """Wall time between two fragments of a paced message."""
 NEVER_US = 1 << 62
-"""A wall time that does not come."""
+"""A wall time that never comes."""
 
 
 class Sender:
-    """Sends LCM messages from a port of its own, by which receivers know the process; `socket` hears that port.
+    """Sends LCM messages from a port of its own, by which receivers identify the process.
 
-    A paced message needs `send_due` to be called again at the time that `due_us` names.
+    `socket` receives from that port. A paced message needs further calls of `send_due`, at the time of `due_us`.
     """
 
     def __init__(self, port: int, network: Network) -> None:
@@ -28,7 +28,7 @@ class Sender:
         """Wall time at which the next fragment of a paced message is due."""
         self._network = network
         # The next process on this port must not seem to continue a message that this one left incomplete. A process
-        # sends less than a message a microsecond, so the numbers of two lives do not meet.
+        # sends less than one message a microsecond, so the numbers of two incarnations do not meet.
         self._number = itertools.count(network.now_us())
         self._paced: deque[tuple[bytes, Address]] = deque()
 
@@ -37,7 +37,7 @@ class Sender:
         self._send(channel, data, (GROUP, port))
 
     def publish_paced(self, channel: bytes, data: bytes, port: int) -> None:
-        """As `publish`, with a millisecond between fragments: a small receive buffer has room for one at a time."""
+        """Sends like `publish`, a millisecond between fragments: a small receive buffer holds one at a time."""
         datagrams = wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data)
         if len(datagrams) == 1 or not self._paced:
             self._put(datagrams.pop(0), (GROUP, port))
@@ -64,11 +64,11 @@ class Sender:
         try:
             for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
                 self.socket.sendto(datagram, address)
-        except OSError:  # as in `_put`; readers fetch the whole message
+        except OSError:  # readers fetch the whole message, as in `_put`
             self.refused += 1
 
     def _put(self, datagram: bytes, address: Address) -> None:
         try:
             self.socket.sendto(datagram, address)
-        except OSError:  # a full buffer, a firewall, no receiver: the same as a datagram lost on its way
+        except OSError:  # a full buffer, a firewall, no receiver: equivalent to a datagram lost on its way
             self.refused += 1

@@ -5,7 +5,7 @@ import socket
 GROUP = "239.255.76.67"  # LCM's default group
 LOOPBACK = "127.0.0.1"
 BUFFER_BYTES = 4 << 20
-_IP_MULTICAST_ALL = 49  # Python has no name for it
+_IP_MULTICAST_ALL = 49  # not named by Python
 
 
 Address = tuple[str, int]
@@ -17,7 +17,7 @@ def port_of(address: Address) -> int:
 
 
 def told(address: Address) -> str:
-    """Returns the origin of a datagram as text for people."""
+    """Returns the origin of a datagram as text."""
     return f"port {address[1]}" if address[0] == LOOPBACK else f"{address[0]}, port {address[1]}"
 
 
@@ -50,7 +50,7 @@ def multicast_holder(port: int) -> socket.socket:
 
 
 def own_socket(port: int) -> socket.socket:
-    """Opens a non-blocking socket that sends from `port`, to this machine only, and hears what is sent to `port`."""
+    """Opens a non-blocking socket that sends from `port` to this machine only, and receives what is sent to `port`."""
     made = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     made.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
     made.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))

@@ -38,7 +38,7 @@ decode_fetch_records = decoder(fetch_records_t, "fwk/fetch_records")
 
 
 def place_of(done: done_t) -> int:
-    """Returns what the headers of the messages that a done speaks for have as `stage`."""
+    """Returns the value of `stage` in the headers of the messages that a done covers."""
     if done.kind == done_t.FINAL:
         return header_t.FINAL
     return done.iteration if done.kind == done_t.ITERATION else done.step

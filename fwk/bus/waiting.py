@@ -3,9 +3,9 @@
 import select
 from typing import Protocol
 
-_SELECT_MAX = 1024  # select() takes no descriptors beyond
+_SELECT_MAX = 1024  # select() accepts no descriptors beyond
 _FINE_US = 10_000
-_LONGEST_US = 3_600_000_000  # the system takes some weeks at most
+_LONGEST_US = 3_600_000_000  # the system accepts some weeks at most
 
 
 class HasDescriptor(Protocol):
@@ -42,5 +42,5 @@ class Waiting:
         return [descriptor for descriptor, _ in self._ready.poll(0)]
 
     def close(self) -> None:
-        """Closes its own descriptor."""
+        """Closes the descriptor for waiting."""
         self._ready.close()

@@ -1,1 +1,1 @@
-"""What component authors use: Component, Config and the aspects that a component asks for."""
+"""The API for component authors: Component, Config and the aspects that a component declares."""

@@ -25,7 +25,7 @@ class OpenReads(ReadsHistory[T]):
 
     is_open = False
     refused = ""
-    """Why the channel was not opened; empty if it was, and while the request is not decided."""
+    """Reason for which the channel was not opened; empty if it was, and while the request is not decided."""
 
     def __init__(self, channel: str, message_type: type[T], length: int = 0) -> None:
         super().__init__(channel, message_type, max(1, length))
@@ -36,7 +36,7 @@ class OpenWrites(Writes[T]):
 
     is_open = False
     refused = ""
-    """Why the channel was not opened; empty if it was, and while the request is not decided."""
+    """Reason for which the channel was not opened; empty if it was, and while the request is not decided."""
 
     def write(self) -> None:
         """Stamps and encodes `value` as it is now; the message is sent at the end of the iteration.
@@ -103,7 +103,7 @@ class Blackboard:
         self._begun = False
 
     def open_for_reading(self, message_type: type[T], channel: str, *, history: int = 0) -> Reads[T]:
-        """Opens a channel for reading, whether the plan has it or a component opens it now or later.
+        """Opens a channel for reading; it may be a channel of the plan, or one that a component opens now or later.
 
         If the class declares a reader of the channel, that reader is returned. The first iteration with the open
         channel sees its newest value; from then on the newest `history` messages are kept.
@@ -156,14 +156,14 @@ class Blackboard:
         return each
 
     def close(self, handle: Reads[Any] | Writes[Any] | Each[Reads[Any]]) -> None:
-        """Closes what was opened: readers at the next tick, a writer at this component's next iteration.
+        """Closes a dynamic channel: readers at the next tick, a writer at this component's next iteration.
 
         Raises:
             ValueError: the handle is declared in the class, already closed, or of another component.
         """
         number = self._numbers.pop(id(handle), None)
         if number is None:
-            raise ValueError(f"{self._name}: this was not opened by this component, or is already closed")
+            raise ValueError(f"{self._name}: this channel was not opened by this component, or is already closed")
         self._request(["close", number])
         if isinstance(handle, OpenWrites):
             self._closing.append(handle)
@@ -231,7 +231,7 @@ class Blackboard:
             self._numbers.pop(id(handle), None)
             _forget(self._writing if isinstance(handle, OpenWrites) else self._reading, handle)
         elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.opening:
-            if id(handle) in self._numbers:  # not closed meanwhile
+            if id(handle) in self._numbers:  # not closed in the same iteration
                 handle.is_open, handle.sequence = True, fact.opening.sequence
                 self._writers[name] = handle
         elif fact.kind == "read" and not isinstance(handle, OpenWrites):

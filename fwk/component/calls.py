@@ -1,4 +1,4 @@
-"""Services, the side that uses them: sends requests and follows what becomes of each."""
+"""Services, the client's side: sends requests and follows their answers."""
 
 from typing import Any, Generic
 
@@ -18,12 +18,12 @@ def state_of(answer: answer_t) -> RequestState:
 
 
 class Call(Generic[R]):
-    """A request as its client sees it; nothing of it changes during an iteration."""
+    """A request as its client sees it; none of it changes during an iteration."""
 
     def __init__(self, sequence: int, timeout_us: int, empty: R) -> None:
         self.state = RequestState.SENT
         self.reason = ""
-        """Why the request was rejected or failed; otherwise empty."""
+        """Reason for which the request was rejected or failed; otherwise empty."""
         self.reply = empty
         """The reply; the type's zero until the request is done."""
         self.sequence = sequence
@@ -77,10 +77,10 @@ class Calls(Generic[Q, R]):
 
         Args:
             timeout_s: Logical time after which the call ends without a final answer, in s.
-            expires_s: Logical time after which the request is not to be begun, in s; by default `timeout_s`.
+            expires_s: Logical time after which the request must not begin, in s; by default `timeout_s`.
 
         Returns:
-            What becomes of the request. It is rejected at once while too many requests are unfinished.
+            The call, which shows the answers. It is rejected at once while too many requests are unfinished.
 
         Raises:
             MessageError: a field holds a value that its type cannot.
@@ -105,7 +105,7 @@ class Calls(Generic[Q, R]):
     send = call  # the name of `call` in components that declare commands as `Sends`
 
     def _begin(self) -> None:
-        """Begins an iteration: takes in what the frozen inputs hold."""
+        """Begins an iteration: takes in the answers of the frozen inputs."""
         if not self._open:
             return
         for message in self._answers.fresh:

@@ -68,7 +68,7 @@ class Reads(Generic[T]):
 
     @property
     def value(self) -> T:
-        """The newest message; a copy that belongs to this reader."""
+        """Newest message; a copy that belongs to this reader."""
         if self._value is None:
             self._value = self.message_type() if self._raw is None else self._decode(self._raw)
         return self._value
@@ -104,7 +104,7 @@ class ReadsHistory(Reads[T]):
 
     @property
     def value(self) -> T:
-        """The newest message; a copy that belongs to this reader, and the last of the history."""
+        """Newest message; a copy that belongs to this reader, and the last of the history."""
         return self._history[-1] if self._history else super().value
 
     @property

@@ -45,7 +45,7 @@ class Component:
     stage: ClassVar[str | tuple[str, ...]]
     """Stages in which the component iterates."""
     every: ClassVar[int] = 1
-    """Iterates in one of so many ticks: when `tick % every == offset % every`. Messages of the ticks between wait."""
+    """Iterates in one of `every` ticks: when `tick % every == offset % every`. Messages of the ticks between wait."""
     offset: ClassVar[int] = 0
     """Shifts these ticks, so that components can take turns."""
     rate_hz: ClassVar[float | None] = None

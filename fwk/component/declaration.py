@@ -103,7 +103,7 @@ def _read(component: type[Component]) -> Declaration:
             aspects |= inner_aspects
         elif isinstance(annotation, type) and issubclass(annotation, Config):
             if attribute != "config":
-                raise DeclarationError(f"{where}.{attribute}: the attribute of the settings is called 'config'")
+                raise DeclarationError(f"{where}.{attribute}: the attribute for settings has to be called 'config'")
             if LOG_LEVEL in annotation.model_fields:
                 raise DeclarationError(f"{where}: every component has a setting '{LOG_LEVEL}'; choose another name")
             config = annotation
@@ -142,7 +142,7 @@ def _stages(component: type[Component], where: str) -> tuple[str, ...]:
 
 
 def _check_methods(component: type[Component], where: str) -> None:
-    """Refuses a method that the class probably means to override, but misspells, such as `lop`."""
+    """Refuses a method whose name looks like a misspelt method of `Component`, such as `lop`."""
     for base in component.__mro__[: component.__mro__.index(Component)]:
         for name, value in vars(base).items():
             if not callable(value) or name.startswith("_") or hasattr(Component, name):
@@ -199,7 +199,7 @@ def _provided(component: type[Component], where: str, ports: list[Port]) -> tupl
             if not port.each and (own not in written or written[own].message_type is not port.message_type):
                 right = "VisionMaster" if port.images else f"Writes[{port.message_type.__name__}]"
                 raise DeclarationError(
-                    f"{where}: it provides {aspect.__name__}, which reads '{own}' of it; add {own}: {right}"
+                    f"{where}: it provides {aspect.__name__}, which reads its channel '{own}'; add {own}: {right}"
                 )
     return provided
 

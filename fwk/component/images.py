@@ -17,8 +17,8 @@ from lcmtypes.core import frame_t
 SLOTS = 4
 """Frames in a ring; a vision master may publish one less in an iteration."""
 SLOT_BYTES = 8 << 20  # size of the largest frame; only written parts take up memory
-_MARKS = struct.Struct("=qq")  # frame number before and after the pixels: different while a frame is being written
-_SHAPE = struct.Struct("=3i")  # height, width, channels; behind the marks
+_MARKS = struct.Struct("=qq")  # frame number before and after the pixels; they differ during a write
+_SHAPE = struct.Struct("=3i")  # height, width, channels; after the marks
 _PAGE = mmap.PAGESIZE
 _TRIES = 100  # attempts to read the newest frame while the camera writes
 
@@ -61,7 +61,7 @@ class Ring:
             try:
                 if os.readlink(link).startswith(f"/memfd:{name} "):
                     return cls(os.open(link, os.O_RDONLY), mmap.ACCESS_READ)
-            except FileNotFoundError:  # closed meanwhile
+            except FileNotFoundError:  # closed in between
                 continue
         return None
 
@@ -133,7 +133,7 @@ class VisionMaster:
             raise FrameError(f"{self._announcement.channel}: at most {SLOTS - 1} frames in one iteration")
         frame = self._announcement.value
         frame.frame = self._announcement.sequence + pending + 1  # continues when the master is restarted
-        frame.slot = frame.frame % SLOTS  # the same in every run, however many slots the ring has
+        frame.slot = frame.frame % SLOTS  # the same in every run, for any number of slots
         self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
         frame.channels = _channels(pixels)

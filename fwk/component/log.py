@@ -21,7 +21,7 @@ _BEGIN, _END = 12_000, 4_000  # characters kept of a text that is too long for o
 _BREATH_S = 0.001
 _LIBRARIES = [sysconfig.get_path(name) + "/" for name in ("stdlib", "purelib", "platlib")]
 _NOT_OWN = ("<", str(Path(__file__).parent.parent) + "/", *_LIBRARIES)
-"""Path prefixes of code that is not a component's own: generated code, the framework, libraries."""
+"""Path prefixes of code that belongs to no component: generated code, the framework, libraries."""
 
 
 def own_frame(error: BaseException) -> traceback.FrameSummary | None:
@@ -98,7 +98,7 @@ class Logger:
         self._emit(level, text, file, line_number)
 
     def named(self, component: str) -> "Logger":
-        """Returns a logger without a limit for another component, which has none of its own."""
+        """Returns a logger without a limit for another component that has no logger."""
         return Logger(component, self._clock, self._sink)
 
     def _report_dropped(self, at_the_end: bool = False) -> None:

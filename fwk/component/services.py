@@ -16,7 +16,7 @@ from lcmtypes.core import acknowledgement_t, answer_t
 Q = TypeVar("Q")
 R = TypeVar("R", default=acknowledgement_t)
 ANSWERS = "answers"
-"""Stands where other channels of a service have the client's name: the channel of the replies."""
+"""Takes the place of the client's name in the name of the channel of replies."""
 QUEUE_MAX = 64
 """Unfinished requests of one client to one service; further ones are rejected."""
 
@@ -81,7 +81,7 @@ class Request(Generic[Q, R]):
 
     @property
     def expires_us(self) -> int:
-        """Logical time after which the request is not to be begun; 0: never."""
+        """Logical time after which the request must not begin; 0: never."""
         return int(cast(Any, self.value).command.expires_us)
 
     @property
@@ -163,7 +163,7 @@ class Serves(Generic[Q, R]):
         return len(self._waiting)
 
     def _begin(self) -> None:
-        """Begins an iteration: takes in what the frozen inputs hold."""
+        """Begins an iteration: takes in the requests of the frozen inputs."""
         arrived = [(source, Header.of(data), data) for source in self._sources for data in source.arrived]
         if self._fresh_start:
             self._fresh_start = False
@@ -201,7 +201,7 @@ class Serves(Generic[Q, R]):
         self.open = [each for each in self.open if each is not request]
 
     def _report_missing(self, source: RequestReader[Q], sequence: int) -> None:
-        """Answers requests that did not arrive: the owner was away for too long, or they were lost for good."""
+        """Answers requests that did not arrive: the owner was absent for too long, or they were lost for good."""
         newest, self._newest[source.client] = self._newest[source.client], sequence
         for missing in range(max(newest + 1, sequence - QUEUE_MAX), sequence):
             reason = f"it did not reach {self._owner}"

@@ -163,13 +163,13 @@ class TransformTree:
         if edge is None:
             if child in [parent, *self._ancestors(parent)]:
                 way = " in ".join([child, parent, *self._ancestors(parent)])
-                raise TransformError(f"frames would stand in each other in a ring: {way}")
+                raise TransformError(f"frames would form a cycle: {way}")
             edge = self._edges[child] = _Edge(parent, fixed)
         if edge.parent != parent:
-            raise TransformError(f"frame '{child}' stands in '{edge.parent}' and cannot stand in '{parent}' as well")
+            raise TransformError(f"frame '{child}' has the parent '{edge.parent}' and cannot also have '{parent}'")
         if edge.times_us and time_us < edge.times_us[-1]:
             raise TransformError(
-                f"frame '{child}' is known at {_seconds(edge.times_us[-1])} and cannot be told of {_seconds(time_us)}"
+                f"frame '{child}' is known at {_seconds(edge.times_us[-1])} and cannot be set at {_seconds(time_us)}"
             )
         edge.put(time_us, transform)
 
@@ -196,7 +196,7 @@ class TransformTree:
         common = next((name for name in up if name in down), None)
         if common is None:
             ways = f"{' in '.join(up)}, but {' in '.join(down)}"
-            raise DisconnectedError(f"no way leads from frame '{source}' to '{target}': {ways}")
+            raise DisconnectedError(f"no path from frame '{source}' to '{target}': {ways}")
         rising, falling = up[: up.index(common)], down[: down.index(common)]
         if time_us is None:
             moving = [edge for name in (*rising, *falling) if not (edge := self._edges[name]).fixed]

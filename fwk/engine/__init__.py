@@ -1,1 +1,1 @@
-"""The iteration contract: visibility, inputs, iterations, boundary decisions. Without sockets, clock or processes."""
+"""The iteration contract: visibility, inputs, iterations, boundary decisions; without sockets, clock or processes."""

@@ -1,4 +1,4 @@
-"""The assignment of a host: plan, place in it, and the state of the run when the host starts."""
+"""The assignment of a host: plan, its host in it, and the state of the run when the host starts."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -31,7 +31,7 @@ class Start:
     blackboard: str = "[]"
     """The dynamic channels that are open, as facts in JSON."""
     newest_change: int = 0
-    """Number of the newest change of settings or of the blackboard that is included; older ones are not told again."""
+    """Number of the newest change of settings or of the blackboard that is included; older ones are not sent again."""
     tick: int = 0
     """The newest tick when the host is started; lines that it logs before its own first tick carry it."""
     time_us: int = 0
@@ -40,7 +40,7 @@ class Start:
 
 @dataclass(frozen=True)
 class Assignment:
-    """Everything that a host is given when it starts."""
+    """Data that a host is given when it starts."""
 
     plan: Plan
     host: int

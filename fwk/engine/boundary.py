@@ -1,4 +1,4 @@
-"""Boundary requests: what components and tools ask of the run, collected during a tick and taken in one order."""
+"""Boundary requests of components and tools, collected during a tick and taken in one order."""
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class BoundaryRequest:
 
     @property
     def key(self) -> tuple[int, int, str, int]:
-        """The order of all requests, which does not depend on the order in which different senders' dones arrive."""
+        """Position in the order of all requests, which does not depend on the order in which dones arrive."""
         return (self.tick, self.step, self.sender, self.order)
 
 

@@ -1,17 +1,17 @@
-"""The catch-up rule: who joins a run that goes on sees of each channel the newest message only."""
+"""The catch-up rule: a component that joins a run sees only the newest message of each channel."""
 
 import sys
 
 AWAY_TICKS = 16
-"""Writers keep what readers need of so many ticks; who took no part for longer joins anew."""
+"""Writers keep messages for so many ticks; a component that took no part for longer joins anew."""
 
 
 class CatchUp:
-    """Decides whether the next iteration of a component, or of a host, is one that joins or was away.
+    """Decides whether the next iteration of a component, or of a host, joins the run or follows an absence.
 
-    The first life of a component joins before tick 1 and sees everything. Every later life catches up, and so does who
-    took no part for more than `AWAY_TICKS` ticks. A continuous component is never away: its host takes in what comes
-    between its iterations.
+    The first incarnation of a component joins before tick 1 and sees everything. Every later incarnation catches up,
+    and so does a component that took no part for more than `AWAY_TICKS` ticks. A continuous component is never
+    absent: its host takes in messages between its iterations.
     """
 
     def __init__(self, incarnation: int = 1, continuous: bool = False) -> None:

@@ -5,14 +5,14 @@ from fwk.model.plan import ChannelPlan
 
 
 class ChannelBuffer:
-    """Messages of one channel, in order of their sequence numbers, up to and beyond what is visible."""
+    """Messages of one channel, in order of their sequence numbers, visible and not yet visible."""
 
     def __init__(self, plan: ChannelPlan) -> None:
         self.plan = plan
         self.mark = 0
         """Highest visible sequence number."""
         self.floor = 0
-        """Messages up to this number were taken or are not wanted any more."""
+        """Messages up to this number were taken or are no longer wanted."""
         self.missed: list[int] = []
         """Sequence numbers of messages that were visible and never came."""
         self._held: dict[int, bytes] = {}
@@ -58,7 +58,7 @@ class ChannelBuffer:
         return taken
 
     def keep_newest(self) -> None:
-        """Drops every visible message but the newest, as the catch-up rule wants it."""
+        """Drops every visible message but the newest, as the catch-up rule demands."""
         self.floor = max(self.floor, self.mark - 1)
         for number in [number for number in self._held if number <= self.floor]:
             del self._held[number]

@@ -33,8 +33,8 @@ class ChannelGrants:
         self._types = {channel.name: channel.type_name for channel in plan.channels}
         self._frames = {channel.name for channel in plan.channels if channel.images}
         self._wishes: list[tuple[tuple[int, int, int, int], _Wish]] = []
-        self._patterns: list[_Wish] = []  # of components that want every instance that fits
-        self._came: dict[int, int] = {}  # component to the number of the start that came
+        self._patterns: list[_Wish] = []  # of components that want every channel that fits
+        self._came: dict[int, int] = {}  # component to the number of the incarnation that came
         self._going: set[int] = set()
         self._there: dict[int, int] = {}
 
@@ -54,7 +54,7 @@ class ChannelGrants:
         self._came[component] = incarnation
 
     def left(self, component: int) -> None:
-        """Notes that a component takes no part any more and drops its requests."""
+        """Notes that a component takes no part any more, and drops its requests."""
         self._came.pop(component, None)
         self._going.add(component)
         self._wishes = [wish for wish in self._wishes if wish[1].component != component]
@@ -115,18 +115,18 @@ class ChannelGrants:
         return Opening(wish.component, wish.handle, number, wish.name, wish.type_name, wish.fingerprint)
 
     def _against(self, wish: _Wish) -> str:
-        """Returns the reason why a request is refused; empty: it is granted."""
+        """Returns the reason for which a request is refused; empty: it is granted."""
         instance = self.instances.find(wish.name)
         asking = self._plan.components[wish.component].name
         if instance is None:
             if self.instances.index_of(wish.name, wish.fingerprint) is None and self.instances.known >= self._last:
                 return (
-                    f"{wish.name}: {self._plan.spare_channels} channels were opened at run time already; "
-                    "say 'spare_channels: N' in the launch file for more"
+                    f"{wish.name}: all {self._plan.spare_channels} spare channels are in use; "
+                    "set 'spare_channels: N' in the launch file for more"
                 )
             return ""
         if wish.name in self._frames:
-            return f"{wish.name}: frames lie beside it; annotate with Image instead"
+            return f"{wish.name}: its frames are in shared memory; annotate with Image instead"
         if self._fingerprint(instance) != wish.fingerprint:
             whose = self._whose(instance)
             return (

@@ -213,7 +213,7 @@ class ComponentGroup:
     def put_requests(self, names: Sequence[str], done: done_t) -> None:
         """Writes what the iterations of these components requested, and the frames that they lost, into a done."""
         for runner in self._requesting:
-            if runner.name not in names:  # its stage comes later, as it would in a process of its own
+            if runner.name not in names:  # its stage comes later, as it would in a separate process
                 continue
             component, asked = self._index[runner.name], runner.requests()
             if (order := asked.get("main_loop")) is not None:

@@ -1,4 +1,4 @@
-"""Failures of components: which component failed, where and why, in its state and in the log."""
+"""Failures of components: component, place and reason, in its state and in the log."""
 
 from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Mapping

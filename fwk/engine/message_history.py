@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 MESSAGES_MAX = 256
 BYTES_MAX = 64 << 20
 TICKS = 17
-"""The recorder may be 16 ticks behind."""
+"""Ticks for which messages are kept: the recorder may be 16 ticks behind."""
 
 
 def gaps(there: Iterable[int], first: int, last: int) -> Iterator[tuple[int, int]]:

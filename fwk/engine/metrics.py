@@ -49,12 +49,12 @@ class ComponentMetrics:
 
 
 def told(error: BaseException) -> str:
-    """Returns an exception as one line of text that can be sent, even if making its own text raises."""
+    """Returns an exception as one line of text that can be sent, even if its own text cannot be made."""
     try:
         text = str(error)
     except Exception as worse:
         text = f"its text cannot be made ({type(worse).__name__})"
     if len(text) > TEXT_CHARACTERS:
         text = f"{text[:TEXT_CHARACTERS]} ... ({len(text) - TEXT_CHARACTERS} characters more)"
-    plain = text.encode(errors="backslashreplace").decode().replace("\0", "\\0")  # what can travel
+    plain = text.encode(errors="backslashreplace").decode().replace("\0", "\\0")  # characters that can be sent
     return f"{type(error).__name__}: {plain}"

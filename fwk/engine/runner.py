@@ -30,7 +30,7 @@ from lcmtypes.core import header_t, log_t
 LOST_FRAMES = "lost_frames"
 """Key in what `Runner.requests` returns: frames that the component did not get."""
 NOTHING: list[bytes] = []
-"""No message came. Readers do not change what they are given."""
+"""No messages. Readers never change the messages that they are given."""
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Runner:
             if port.history:
                 longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
                 self._histories |= longest
-        self._refreshed: list[Reads[Any]] = []  # readers that the last iteration had something new for
+        self._refreshed: list[Reads[Any]] = []  # readers with new messages in the last iteration
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]
         for attribute, made in zip(declaration.asks, self._provided, strict=True):
@@ -108,7 +108,7 @@ class Runner:
         self.blackboard = Blackboard(name, self.stamp, self.readers, self.writers)
         self.has_blackboard = "blackboard" in declaration.aspects.values()
         """Whether the component may open channels while it runs."""
-        self._begin = [port._begin for port in self._services]  # what has to be done before an iteration
+        self._begin = [port._begin for port in self._services]  # actions before an iteration
         self._begin += [aspect.begin for aspect in self._provided]
         if self.has_blackboard:
             self._begin.append(self.blackboard._begin)
@@ -133,7 +133,7 @@ class Runner:
             self._services.append(written)
 
     def configure(self, settings: Mapping[str, Any]) -> None:
-        """Gives the component all its settings between two iterations and tells it which have changed."""
+        """Gives the component all its settings between two iterations and names the changed ones."""
         changed = self._config._take_over(type(self._config).model_validate(settings))
         self.log.level = self._log_level
         if changed - {LOG_LEVEL}:

@@ -1,4 +1,4 @@
-"""The ledger of marks: visible sequence numbers of all channels, and what each stage is told of them."""
+"""The ledger of marks: visible sequence numbers of all channels, and the marks that each stage has been sent."""
 
 from bisect import bisect_left, insort
 from dataclasses import dataclass
@@ -22,8 +22,8 @@ class Visibility:
     """Marks of all channels.
 
     `step` counts stages begun. Messages that dones publish while a stage runs become visible when the next stage
-    begins, and not before: a repeated tick says the same as the first time. A host is told what changed since the step
-    of the last tick that it answered.
+    begins, and not before: a repeated tick is identical to the first. A host is sent the changes since the step of
+    the last tick that it answered.
     """
 
     def __init__(self, plan: Plan) -> None:
@@ -42,7 +42,8 @@ class Visibility:
         for stage in range(len(plan.stages)):
             hosts = {component.host for component in plan.components if stage in component.stages}
             self._hosts.append(hosts)
-            # All components of these hosts, not only those of the stage: what a host was told last is one step for all.
+            # All components of these hosts, not only those of the stage: the newest marks that a host has are one step
+            # for all.
             members = {component.index for component in plan.components if component.host in hosts}
             self._interest.append([channel.index for channel in plan.channels if members & set(channel.readers)])
         self._read: list[list[int]] = [
@@ -110,10 +111,10 @@ class Visibility:
             if channel not in channels:
                 insort(channels, channel)
         if self.marks[channel]:
-            self._changed[channel] = self.step + 1  # a new reader has not been told
+            self._changed[channel] = self.step + 1  # a new reader has no marks yet
 
     def void(self, host: int, incarnation: int, tick: int) -> None:
-        """Voids what a host that died in the newest tick had sent above the marks; its next life is `incarnation`."""
+        """Voids the messages above the marks of a host that died in the newest tick; `incarnation` is its next."""
         for channel in self._written[host]:
             self.voids.append(Void(channel, self._latest[channel], tick, incarnation, self.step))
 

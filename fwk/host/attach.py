@@ -1,4 +1,4 @@
-"""External process that takes the place of a host in a run: what it needs of the run, and its life."""
+"""External process that takes the place of a host in a run: preparation and life."""
 
 import os
 import signal
@@ -27,12 +27,12 @@ REFUSED = 2
 
 
 class NoPlaceError(Exception):
-    """The run refuses an external process; gives the reason."""
+    """The run refuses an external process; the text gives the reason."""
 
 
 @dataclass(frozen=True)
 class Place:
-    """Place of a host in a run; `ask` waits until it is free and returns the supervisor's answer."""
+    """A host's place in a run; `ask` waits until it is free and returns the supervisor's answer."""
 
     plan: Plan
     component: ComponentPlan
@@ -83,7 +83,7 @@ class Place:
                 import_module(module)
             except Exception as error:
                 text = "".join(traceback.format_exception(error)).rstrip()
-                raise NoPlaceError(f"{module} cannot be imported; the run goes on with what it has\n{text}") from error
+                raise NoPlaceError(f"{module} cannot be imported; the run keeps the old code\n{text}") from error
 
     def _assignment(self, told: Mapping[str, Any]) -> Assignment:
         return Assignment(

@@ -21,7 +21,7 @@ REPEAT_US = 2_000
 REPEAT_LONGEST_US = 100_000
 TAKEN_TIMEOUT_US = US_PER_S
 """How long a host that is stopped waits until its last iteration was taken."""
-_MOST = header_t.FINAL - 1  # iterations on the same marks; numbers above mean something else
+_MOST = header_t.FINAL - 1  # iterations on the same marks; larger numbers have another meaning
 
 
 class ContinuousHost(Host):
@@ -74,7 +74,7 @@ class ContinuousHost(Host):
 
     @property
     def _idle_until_us(self) -> int:
-        """Wall time until which there is nothing to do unless a message comes."""
+        """Wall time until which the host idles unless a message arrives."""
         until_us = min(self._report_us, self._sender.due_us)
         if self._ready:
             until_us = min(until_us, self._due_us)
@@ -118,7 +118,7 @@ class ContinuousHost(Host):
                 self.inputs.keep_newest()
             for buffer in self._moved.values():
                 buffer.collect()
-            # Changes are repeated until an iteration has them.
+            # Changes are repeated until an iteration has applied them.
             self._settings |= {change.number: change for change in tick.settings}
             self._channels |= {change.number: change for change in tick.channels}
             self._tick, self._runs = tick, 0
@@ -146,7 +146,7 @@ class ContinuousHost(Host):
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         self._catch_up.took_part(tick.tick)
         self._runs += 1
-        number = self._runs  # a tick that arrives during the iteration counts anew
+        number = self._runs  # a tick that arrives during the iteration counts again
         self._due_us = self._period_us + max(self._due_us, self._now_us() - self._period_us)
         with self._hooks.background(self._own, self._serve_in_background):
             ran = self.group.run(self._names, "", tick, number)
@@ -169,7 +169,7 @@ class ContinuousHost(Host):
         self._moved = {index: buffer for index, buffer in moved.items() if index in self.inputs}
 
     def _wait_until_taken(self) -> Steps[None]:
-        """Waits for the done before the last one: without it, its messages would be seen but not its iteration."""
+        """Waits for the done before the last one: without it, its messages would be visible but not its iteration."""
         until_us = self._now_us() + TAKEN_TIMEOUT_US
         while not self._taken and self._now_us() < until_us:
             yield min(until_us, self._repeats.due_us, self._sender.due_us)
@@ -185,7 +185,7 @@ class ContinuousHost(Host):
 
 
 def host_of(assignment: Assignment, network: Network, hooks: ProcessHooks) -> Host:
-    """Returns the host that suits the components of an assignment."""
+    """Returns the participant that suits the components of an assignment."""
     plan = assignment.plan
     components = [plan.components[index] for index in plan.hosts[assignment.host].components]
     kind = Host if components[0].rate_hz is None else ContinuousHost

@@ -30,7 +30,7 @@ class DebugRequest:
 
 
 class DebuggerMissingError(Exception):
-    """debugpy was asked for and is not installed."""
+    """debugpy was requested and is not installed."""
 
 
 def check(request: DebugRequest) -> None:
@@ -63,15 +63,15 @@ def debug(
     debugger = _Pdb(nosigint=True)
     debugger.begin_at(file, line, lambda component: component.name == request.component.name and ready())
     signal.signal(signal.SIGINT, lambda _number, frame: debugger.set_trace(frame))
-    print(f"fwk: {request.component.name} under pdb; it stops where loop() begins", flush=True)
-    print(f"fwk: 'c' goes on, Ctrl-C stops again, 'q' leaves the debugger and {leaving}", flush=True)
+    print(f"fwk: {request.component.name} under pdb; it stops at the beginning of loop()", flush=True)
+    print(f"fwk: 'c' continues, Ctrl-C stops again, 'q' leaves the debugger and {leaving}", flush=True)
     try:
         debugger.run_quietly(serve)
     except bdb.BdbQuit:
         return LEFT
     except ComponentFailedError as failure:
         print(f"fwk: {failure}", flush=True)
-        print(f"fwk: you are where it was raised; 'q' leaves the debugger and {leaving}", flush=True)
+        print(f"fwk: stopped where the exception was raised; 'q' leaves the debugger and {leaving}", flush=True)
         debugger.look_back_at(failure.__cause__ or failure)
         return LEFT
     return 0
@@ -96,7 +96,7 @@ class _Pdb(pdb.Pdb):
 
     def run_quietly(self, work: Callable[[], None]) -> None:
         self.reset()
-        self.botframe = sys._getframe()  # below here nothing is stepped into
+        self.botframe = sys._getframe()  # no call below this one is stepped into
         self.set_continue()
         sys.breakpointhook = lambda *_, **__: self.set_trace(sys._getframe(1))
         sys.settrace(self.trace_dispatch)
@@ -119,7 +119,7 @@ def _debugpy(request: DebugRequest, serve: Callable[[], None]) -> int:
     debugpy.listen(("127.0.0.1", request.debugpy_port))
     where = f"127.0.0.1:{request.debugpy_port}"
     print(f"fwk: {request.component.name} (pid {os.getpid()}) waits for a debugger at {where}", flush=True)
-    on_interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing else ends the waiting
+    on_interrupt = signal.signal(signal.SIGINT, signal.SIG_DFL)  # no other event ends the wait
     debugpy.wait_for_client()
     signal.signal(signal.SIGINT, on_interrupt)
     serve()

@@ -1,4 +1,4 @@
-"""What a host uses of the process that it runs in, besides sockets and time."""
+"""Services of the process that a host runs in, besides sockets and time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

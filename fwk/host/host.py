@@ -26,7 +26,7 @@ from fwk.model.requests import clear_requests, lost_message
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, protocol_t, tick_t
 
 READY_REPORT_US = 100_000
-"""How often a host reports that it is ready until its first tick comes."""
+"""Interval of the reports that a host is ready, until its first tick comes."""
 REPORT_US = US_PER_S
 
 
@@ -190,7 +190,7 @@ class Host:
         return tick if tick.run == self._assignment.run else None
 
     def _ignore_ticks(self, ignored: bool) -> None:
-        """Leaves ticks in their sockets, where repeated ticks would end every wait at once."""
+        """Leaves ticks in their sockets; otherwise repeated ticks would end every wait at once."""
         if ignored is self._ticks_ignored:
             return
         self._ticks_ignored = ignored
@@ -254,7 +254,7 @@ class Host:
         self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _handle_own(self) -> bool:
-        """Handles what was sent to this host alone; returns False when it is time to stop."""
+        """Handles messages to this host alone; returns False when it is time to stop."""
         while message := self._own.receive():
             try:
                 self._handle_message(message[0], message[1])

@@ -1,4 +1,4 @@
-"""The channels that a host reads: collects what the marks name and fetches what was lost."""
+"""The channels that a host reads: collects the messages up to the marks and fetches lost ones."""
 
 from collections.abc import Callable, Container, Sequence
 
@@ -16,7 +16,7 @@ FIRST_WAIT_US = 200
 SECOND_WAIT_US = 2_000
 LONGEST_WAIT_US = 100_000
 WRITER_TIMEOUT_US = 500_000
-"""In real time: a writer that has not answered by then perhaps stands still, and the gateway is asked instead."""
+"""In real time: a writer that has not answered by then may have stopped, and the gateway is asked instead."""
 
 
 class Inputs:
@@ -62,7 +62,7 @@ class Inputs:
         """Messages that no process has any more."""
 
     def close(self) -> None:
-        """Gives all sockets back."""
+        """Releases all sockets."""
         for buffer in self._buffers.values():
             if isinstance(buffer, ChannelSocket):
                 buffer.close()
@@ -88,7 +88,7 @@ class Inputs:
         if writer_host is None:
             writer_host = self._host_of(channel.writer)
         self._writer_host[channel.index] = writer_host
-        # Its writer may change before this host hears of it, so every process of the run may send.
+        # Its writer may change before this host is informed, so every process of the run may send.
         buffer = self._buffers[channel.index] = self._listen(channel, self._ports.members)
         return buffer
 
@@ -133,10 +133,11 @@ class Inputs:
         return [buffer for buffer in buffers if not buffer.collect()]
 
     def fetch(self, lacking: Sequence[ChannelBuffer], serve: Callable[[], bool]) -> Steps[bool]:
-        """Fetches until everything visible in `lacking` is here; returns False if `serve` says that waiting is over.
+        """Fetches until everything visible in `lacking` is here; returns False if `serve` ends the wait.
 
-        `serve` is called at every wake-up, because a host that waits must still answer others. In real time a writer
-        that stands still is not waited for: after a while the gateway is asked, and what it does not have is lost.
+        `serve` is called at every wake-up, because a waiting host must still answer others. In real time a writer
+        that has stopped is not waited for: after a while the gateway is asked, and messages that it does not have are
+        lost.
         """
         network = self._network
         watched = [buffer for buffer in lacking if isinstance(buffer, ChannelSocket) and not buffer.closed]
@@ -165,11 +166,11 @@ class Inputs:
         return not lacking
 
     def _asks_writer(self, began_us: int, due_us: int) -> bool:
-        """Returns whether a writer still has time to answer before it is taken for one that stands still."""
+        """Returns whether a writer still has time to answer before it counts as stopped."""
         return not self._writer_timeout_us or due_us < began_us + self._writer_timeout_us
 
     def gone(self, message: gone_t) -> int:
-        """Takes the answer that messages are no longer kept; returns how many were lost by that."""
+        """Takes the answer that messages are no longer kept; returns how many are lost by it."""
         buffer = self._buffers.get(message.channel)
         lost = buffer.give_up(message.first_sequence, message.last_sequence) if buffer else 0
         self.lost += lost

@@ -43,7 +43,7 @@ class MemoryHost:
     """A host participant whose ticks and messages come from its owner.
 
     Args:
-        assignment: what the host is given.
+        assignment: data that the host is given.
         ledger: the marks of the run.
         on_log: takes each line that the host logs; None: lines are dropped.
         find_class: returns the class of a component.
@@ -60,8 +60,8 @@ class MemoryHost:
         self._run = assignment.run
         self._index = assignment.host
         self._ledger = ledger
-        self._step = -1  # of the ledger, when a tick told the marks last
-        self._settings: list[settings_change_t] = []  # changes that the next tick tells
+        self._step = -1  # step of the ledger when a tick last carried the marks
+        self._settings: list[settings_change_t] = []  # changes that the next tick carries
         self._channels: list[channels_change_t] = []
         self._components = assignment.plan.hosts[assignment.host].components
         self._on_log = on_log
@@ -75,9 +75,9 @@ class MemoryHost:
         }
         self._missing: set[tuple[int, int]] = set()  # port and sequence number of messages that never come
         self._losing: set[int] = set()  # ports whose sockets may hold such messages
-        # By port of a channel that is going to be opened: number of the change that says so, messages since then.
+        # By port of a channel that is about to open: number of the change that opens it, messages since then.
         self._expected: dict[int, tuple[int, list[bytes]]] = {}
-        self._told = 0  # number of the newest change that the host was told
+        self._told = 0  # number of the newest change that the host has
         self._network = MemoryNetwork(self._sent, self._opened)
         hooks = ProcessHooks(stopping=lambda: self._stops, find_class=find_class)
         self.host = host_of(assignment, self._network, hooks)
@@ -106,15 +106,15 @@ class MemoryHost:
 
     @property
     def has_changes(self) -> bool:
-        """Whether there are changes that no tick has told yet."""
+        """Whether there are changes that no tick has carried yet."""
         return bool(self._settings or self._channels)
 
     def set(self, change: settings_change_t) -> None:
-        """Takes settings of a component of the host, which the next tick tells."""
+        """Takes settings of a component of the host; the next tick carries them."""
         self._settings.append(change)
 
     def decide(self, change: channels_change_t, newest: Mapping[int, bytes]) -> None:
-        """Takes decisions about channels, which the next tick tells.
+        """Takes decisions about channels; the next tick carries them.
 
         Args:
             change: the decisions.
@@ -127,11 +127,11 @@ class MemoryHost:
                 port = self._ports.channel(opening.channel)
                 self._names[port] = opening.name.encode()
                 begin = [newest[opening.channel]] if opening.channel in newest else []
-                # An earlier decision that the host has not been told yet needs the messages since then.
+                # An earlier decision that the host does not have yet needs the messages since then.
                 self._expected[port] = change.number, self._expected.get(port, (0, begin))[1]
 
     def compose(self, tick: int, step: int, time_us: int, holder: int) -> tick_t:
-        """Returns the tick that a supervisor sends to this host, with the marks of now."""
+        """Returns the tick that a supervisor sends to this host, with the present marks."""
         made = tick_t()
         made.version, made.run, made.tick, made.step = protocol_t.VERSION, self._run, tick, step
         made.time_us, made.main_loop = time_us, holder
@@ -158,11 +158,11 @@ class MemoryHost:
         return self._result()
 
     def tell(self, tick: tick_t) -> None:
-        """Tells a continuous component the marks of a tick, for its next iteration."""
+        """Gives a continuous component the marks of a tick, for its next iteration."""
         self._send_tick(tick, (LOOPBACK, self._own_port))
 
     def iterate(self) -> tuple[Written, done_t]:
-        """Runs the next iteration of a continuous component on the marks that it was told.
+        """Runs the next iteration of a continuous component on its newest marks.
 
         Raises:
             ComponentFailedError: the component raised.
@@ -182,7 +182,7 @@ class MemoryHost:
         return result
 
     def close(self) -> None:
-        """Ends the host as a process ends that is killed."""
+        """Ends the host like a killed process."""
         self._steps.close()
 
     def _send_tick(self, tick: tick_t, address: Address) -> None:
@@ -205,7 +205,7 @@ class MemoryHost:
             if self._done:
                 break
         else:
-            raise HostStuckError(f"host {self._index} does not come to the end of its iteration")
+            raise HostStuckError(f"host {self._index} does not finish its iteration")
         done = self._done
         if self._expected:
             self._expected = {port: kept for port, kept in self._expected.items() if kept[0] > self._told}
@@ -215,7 +215,7 @@ class MemoryHost:
         return self._written, done
 
     def _drop_missing(self) -> None:
-        """Takes messages that never come out of the sockets that they wait in."""
+        """Removes messages that never arrive from the sockets in which they wait."""
         for port in sorted(self._losing):
             begin = len(wire.in_one(_NUMBER, self._names.get(port, b""), b""))
             unwanted = partial(self._is_missing, port, begin)
@@ -231,7 +231,7 @@ class MemoryHost:
 
     def _deliver(self, port: int, data: bytes) -> bool:
         name = self._names.get(port)
-        if name is None:  # a dynamic channel that no component here has asked for
+        if name is None:  # a dynamic channel that no component here uses
             return False
         if (port, sequence_of(data)) in self._missing:
             return True
@@ -241,7 +241,7 @@ class MemoryHost:
         return self._network.put(wire.in_one(_NUMBER, channel, data), address, port)
 
     def _opened(self, socket: MemorySocket) -> None:
-        """Fills the socket of a channel that is opened at run time."""
+        """Fills the socket of a dynamic channel."""
         for data in self._expected.get(socket.port, (0, []))[1]:
             self._deliver(socket.port, data)
 
@@ -275,7 +275,7 @@ class MemoryHost:
             self._answered, self._done = this, done
 
     def _answer(self, fetch: fetch_t) -> None:
-        """Answers that the messages are gone: what there is was delivered before."""
+        """Answers that the messages are gone: all others were delivered before."""
         gone = gone_t()
         gone.run, gone.channel = self._run, fetch.channel
         gone.first_sequence, gone.last_sequence = fetch.first_sequence, fetch.last_sequence

@@ -12,11 +12,11 @@ from lcmtypes.core import fetch_t, gone_t
 
 LARGE_BYTES = 64 << 10
 SHARED_US = 20_000
-"""A large message that was sent again serves all readers that fetch it within this time."""
+"""Time within which one repetition of a large message serves all readers that fetch it."""
 
 
 class Outputs:
-    """Sends what the components of a host write, and keeps it for readers that lose it."""
+    """Sends the messages of a host's components, and keeps them for readers that lose some."""
 
     def __init__(
         self,
@@ -31,10 +31,10 @@ class Outputs:
             name: (plan.index, name.encode(), ports.channel(plan.index), MessageHistory())
             for name, plan in written.items()
         }
-        # What earlier incarnations have sent, by channel.
+        # Messages of earlier incarnations, by channel.
         self._before = {plan.index: sequences.get(name, 0) for name, plan in written.items()}
         self._by_index = {index: (name, port, history) for index, name, port, history in self._written.values()}
-        self._repeated: dict[tuple[int, int], int] = {}  # channel, number: until when it is not sent again
+        self._repeated: dict[tuple[int, int], int] = {}  # channel, number: time until which it is not sent again
         self._sender = sender
         self._now_us = now_us
         self._ports = ports
@@ -89,9 +89,9 @@ class Outputs:
             self._sender.send(b"fwk/gone", gone.encode(), self._ports.host(fetch.host))
 
     def _answer_dynamic(self, fetch: fetch_t) -> None:
-        """Answers a fetch of a dynamic channel with what this host wrote; the gateway may have the rest.
+        """Answers a fetch of a dynamic channel with the messages of this host; the gateway may have the rest.
 
-        Other hosts may have written the channel meanwhile, and so may an earlier incarnation of this one.
+        Other hosts may also have written the channel, and so may an earlier incarnation of this one.
         """
         own = self._by_index.get(fetch.channel)
         kept = own[2].between(fetch.first_sequence, fetch.last_sequence) if own else []

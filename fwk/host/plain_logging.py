@@ -13,7 +13,7 @@ def forward_logging(current_log: Callable[[], Logger]) -> None:
     """Forwards lines from now on, as far as the `log_level` of the component allows."""
     root = logging.getLogger()
     root.addHandler(_Forward(current_log))
-    root.setLevel(logging.DEBUG)  # which of it is written is the component's setting
+    root.setLevel(logging.DEBUG)  # the component's setting decides which lines are written
 
 
 class _Forward(logging.Handler):

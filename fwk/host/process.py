@@ -1,4 +1,4 @@
-"""Life of a forked process: dies with its parent, stops politely, leaves a trace when it crashes."""
+"""Life of a forked process: it dies with its parent, stops on request, and reports a crash."""
 
 import contextlib
 import ctypes
@@ -18,7 +18,7 @@ ENDED_WELL = "exit code 0"
 
 
 def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
-    """Asks the kernel to send this process `death_signal` when `parent` ends, however that happens."""
+    """Asks the kernel to send this process `death_signal` when `parent` ends in any way."""
     ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, death_signal)
     if os.getppid() != parent:  # the parent has ended before this call
         os._exit(1)
@@ -82,7 +82,7 @@ class StopSignal:
         self._set = False
         signal.set_wakeup_fd(self._write, warn_on_full_buffer=False)
         signal.signal(signal.SIGTERM, self._on_signal)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the supervisor's business
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the supervisor handles Ctrl-C
 
     def __call__(self) -> bool:
         if self._set:

@@ -5,7 +5,7 @@ import os
 _SHORT = 15
 """Bytes that the kernel keeps of a process's short name, which `top` shows."""
 _KEEP_ENVIRONMENT = "SPT_NOENV"
-"""Tells setproctitle to leave the memory alone in which other processes look up this one's environment."""
+"""Setting of setproctitle that leaves alone the memory from which other processes read this one's environment."""
 
 
 def name_process(plan: str, role: str) -> None:

@@ -17,7 +17,7 @@ SUFFIX = ".pyisession"
 
 
 class ProfilerMissingError(Exception):
-    """A profile was asked for and pyinstrument is not installed."""
+    """A profile was requested and pyinstrument is not installed."""
 
 
 def check_profiler() -> None:
@@ -35,7 +35,7 @@ def check_profiler() -> None:
 
 
 def profile_file(run_dir: Path, component: str, incarnation: int = 1) -> Path:
-    """Returns the file for the samples of one life of a component."""
+    """Returns the file for the samples of one incarnation of a component."""
     again = f"-{incarnation}" if incarnation > 1 else ""
     return run_dir / f"profile-{component.replace('/', '-')}{again}{SUFFIX}"
 

@@ -1,4 +1,4 @@
-"""How a host leaves a run that goes on: not before supervisor and gateway have everything that it has sent.
+"""Departure of a host from a run that goes on: supervisor and gateway first get everything that it has sent.
 
 A component that failed takes its process with it, so its host leaves in the same way, but without a final done.
 """
@@ -13,13 +13,13 @@ from lcmtypes.core import done_t, leaving_t, taken_t
 
 REPEAT_US = 5_000
 TIMEOUT_US = 500_000
-"""In real time: a supervisor or gateway that has not answered by then has ended, or stands still."""
+"""In real time: a supervisor or gateway that has not answered by then has ended or stopped."""
 LOCKSTEP_TIMEOUT_US = 2_500_000
-"""In lockstep, where time is not short; less than hosts have to end when the whole run ends."""
+"""In lockstep, where time is not short; less than the time that hosts have when the whole run ends."""
 
 
 class Shutdown:
-    """Repeats what a leaving host has to say until the supervisor and the gateway have taken it.
+    """Repeats the last messages of a leaving host until the supervisor and the gateway have taken them.
 
     No process can be asked again once it has ended. Supervisor and gateway answer with a `taken_t`, each with its own
     number.
@@ -29,7 +29,7 @@ class Shutdown:
         ports: ports of the run.
         sender: the host's sender.
         leaving: names the newest message of each channel that the host has sent; the gateway takes it once it holds
-            all of them.
+        all of them.
         dones: the last two dones of the host for the supervisor; empty: the host has failed and makes no final done.
         timeout_us: wall time after which the host leaves without an answer.
     """
@@ -58,7 +58,7 @@ class Shutdown:
             self._unanswered.discard(taken.taker)
 
     def wait(self, handle_own: Callable[[], object]) -> Steps[None]:
-        """Waits for all answers; meanwhile `handle_own` answers fetches."""
+        """Waits for all answers; `handle_own` answers fetches during the wait."""
         network = self._network
         end_us = network.now_us() + self._timeout_us
         repeat_us = 0

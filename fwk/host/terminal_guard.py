@@ -19,9 +19,9 @@ def run_guarded(work: Callable[[StopSignal], int], run: int) -> int:
         if pid == 0:
             die_with_parent(parent)
             run_forked(work)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is the child's
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C belongs to the child
         _wait_for_either(pid, run)
-        os.kill(pid, signal.SIGKILL)  # nothing happens to one that has ended
+        os.kill(pid, signal.SIGKILL)  # an ended child is left alone
         return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
 
 

@@ -1,7 +1,7 @@
 """Encoders and decoders of LCM types as generated straight-line Python: the bytes of lcm-gen in half the time.
 
-They are made of what lcm-gen writes into a class about its members. Types with members of rare shapes (arrays of
-several dimensions whose sizes vary, a struct within itself) are left to the code of lcm-gen.
+They are generated from the description of the members that lcm-gen writes into each class. Types with members of rare
+shapes (arrays of several dimensions whose sizes vary, a struct within itself) are left to the code of lcm-gen.
 """
 
 import itertools
@@ -79,9 +79,9 @@ class _Source(ABC):
         self._indent = 1
         self._names: dict[str, Any] = {}
         self._numbers = itertools.count(1)
-        self._format = ""  # of neighbouring numbers, which are packed in one go
+        self._format = ""  # of adjacent numbers, which are packed in one go
         self._values: list[str] = []
-        self._within: list[type[Any]] = []  # the structs around the one that is being written
+        self._within: list[type[Any]] = []  # the enclosing structs of the one that is being written
 
     def _line(self, text: str) -> None:
         self._lines.append("    " * self._indent + text)
@@ -127,7 +127,7 @@ class _EncoderSource(_Source):
         super().__init__("def encode(message):")
         self._names["join"] = b"".join
         self._chunks = [self._constant("fingerprint", message_type._get_packed_fingerprint())]
-        self._listed = False  # whether some chunks are in a list already, because there are loops
+        self._listed = False  # whether some chunks are in a list already, because of loops
         self._struct(message_type, "message")
         self._flush_numbers()
         if self._listed:
@@ -243,7 +243,7 @@ class _DecoderSource(_Source):
         fingerprint = self._constant("fingerprint", message_type._get_packed_fingerprint())
         self._line(f"if data[:8] != {fingerprint}:")
         self._line("    raise ValueError('wrong fingerprint')")
-        self._at, self._offset = "", 8  # where the next member begins: a variable's value and so many bytes more
+        self._at, self._offset = "", 8  # where the next member begins: the value of a variable plus a number of bytes
         made = self._object(message_type)
         self._struct(message_type, made)
         self._flush_numbers()
@@ -349,7 +349,7 @@ class _DecoderSource(_Source):
         self._indent -= 1
 
     def _bytes(self, length: str) -> str:
-        """Writes lines that pass over bytes after checking that they exist; returns where they begin."""
+        """Writes lines that skip bytes after checking that they exist; returns where they begin."""
         self._flush_numbers()
         start = self._fresh("start")
         self._line(f"{start} = {self._place}")
@@ -402,7 +402,7 @@ def _empty(kind: str) -> str:
 
 
 def _listed(kind: str, values: str) -> str:
-    """Returns the expression of an array as lcm-gen has it: booleans in lists, numbers in tuples."""
+    """Returns the expression of an array as lcm-gen makes it: booleans in lists, numbers in tuples."""
     return f"list({values})" if kind == "boolean" else values
 
 

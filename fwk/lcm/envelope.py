@@ -42,12 +42,12 @@ def mistake_in(message_type: type[Message]) -> str:
     """Returns why a type cannot have a channel; empty if it can. Parts of the framework's own messages cannot."""
     name = messages.type_name(message_type)
     if name.startswith("core.") and not messages.has_header(message_type):
-        return f"{name} is the framework's own and does not begin with 'core.header_t header;'"
+        return f"{name} belongs to the framework and does not begin with 'core.header_t header;'"
     return ""
 
 
 def wrapped(plain: bytes, tick: int, sequence: int, time_us: int, stage: int, writer: str) -> bytes:
-    """Returns the envelope of a message; its header is where types with the header have theirs."""
+    """Returns the envelope of a message; its header is where types with a header have theirs."""
     name = writer.encode() + b"\0"
     return marked(plain[:8]) + _NUMBERS.pack(tick, sequence, time_us, stage, len(name)) + name + plain
 

@@ -12,7 +12,7 @@ from fwk.lcm.disk import has_room
 
 _HEAD = struct.Struct(">IqqII")  # sync word, event number, time in µs, length of the channel, length of the data
 SYNC = (0xEDA1DA01).to_bytes(4, "big")
-_CHANNEL_MAX = 999  # what LCM's own reader accepts; on the wire it is 63
+_CHANNEL_MAX = 999  # the limit of LCM's own reader; on the wire it is 63
 _DATA_MAX = 256 << 20  # LCM's largest message
 _WINDOW_BYTES = 1 << 20
 
@@ -59,7 +59,7 @@ class LogWriter:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             if path.is_fifo():  # opening it would block until a program reads
-                raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; take a file")
+                raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; use a file")
             self._file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
         except OSError as error:
             raise LogError(f"{path}: cannot write a log there: {error.strerror}") from error
@@ -72,7 +72,7 @@ class LogWriter:
         """
         name = channel.encode()
         if not 1 <= len(name) <= _CHANNEL_MAX or len(data) > _DATA_MAX:
-            raise ValueError(f"{self.path}: no LCM event: channel {channel[:80]!r}, {len(data)} bytes")
+            raise ValueError(f"{self.path}: not an LCM event: channel {channel[:80]!r}, {len(data)} bytes")
         self._buffer += _HEAD.pack(0xEDA1DA01, self.events, time_us, len(name), len(data))
         self._buffer += name
         self._buffer += data
@@ -82,11 +82,11 @@ class LogWriter:
             self.flush()
 
     def flush(self) -> None:
-        """Hands all appended events to the operating system."""
+        """Passes all appended events to the operating system."""
         if not self._buffered:
             return
         data, events = self._buffer, self._buffered
-        self._buffer, self._buffered = bytearray(), 0  # first: what is reported may be recorded itself
+        self._buffer, self._buffered = bytearray(), 0  # first, because the report may be recorded itself
         if self._full and not has_room(self.path):
             self.dropped += events
         else:
@@ -117,11 +117,11 @@ class LogWriter:
         self._good_bytes += len(data)
         if self._full:
             self._full = False
-            self._report(f"{self.path}: there is room again; {self.dropped} messages are missing in the recording")
+            self._report(f"{self.path}: the disk has room again; {self.dropped} messages are missing in the recording")
 
     def _drop(self, error: OSError, events: int) -> None:
         self.dropped += events
-        try:  # take back what was written of a torn event, so that later events follow whole ones
+        try:  # remove the torn event, so that later events follow whole ones
             self._file.truncate(self._good_bytes)
             self._file.seek(self._good_bytes)
         except OSError:
@@ -129,8 +129,8 @@ class LogWriter:
         if not self._full:
             self._full = True
             self._report(
-                f"{self.path}: cannot record: {error.strerror}; the run goes on, and so does the recording when there "
-                "is room again; until then messages are missing in it"
+                f"{self.path}: cannot record: {error.strerror}; the run goes on; messages are missing in "
+                "the recording until the disk has room again"
             )
 
 

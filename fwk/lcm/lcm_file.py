@@ -16,7 +16,7 @@ SIZES = {**INTEGERS, "float": 4, "double": 8, "byte": 1, "boolean": 1, "string":
 
 
 class LcmSyntaxError(Exception):
-    """An .lcm file cannot be read; the text names file, line and what is expected there."""
+    """An .lcm file cannot be read; the text names file, line and the expected token."""
 
 
 @dataclass(frozen=True)

@@ -113,7 +113,7 @@ def fingerprint(message_type: type[Message]) -> bytes:
 
 
 def is_same_type(one: type[Message], other: type[Message]) -> bool:
-    """Returns whether fingerprint and name agree; types with the same members have the same fingerprint."""
+    """Returns whether fingerprint and name agree; types with equal members have the same fingerprint."""
     return fingerprint(one) == fingerprint(other) and type_name(one) == type_name(other)
 
 

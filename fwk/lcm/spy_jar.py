@@ -1,4 +1,4 @@
-"""lcm-spy with the types of a run: Java classes of all .lcm files in one jar, built once for each content."""
+"""lcm-spy with the types of a run: Java classes of all .lcm files in one jar, built once for each set of files."""
 
 import hashlib
 import os
@@ -16,7 +16,7 @@ _MEMORY = "-Xmx1g"  # lcm-spy's own limit of 128 MB makes it freeze on large mes
 
 
 class SpyError(Exception):
-    """lcm-spy or its jar is not available; the text names what is missing and the command that helps."""
+    """lcm-spy or its jar is not available; the text names the missing part and the command that helps."""
 
 
 def lcm_spy() -> Path:
@@ -59,7 +59,7 @@ def build_jar(folders: Sequence[Path], cache: Path) -> Path:
         with tempfile.TemporaryDirectory(dir=cache, prefix="building-") as workshop:
             os.replace(
                 _build(list(sources.values()), Path(workshop)), jar
-            )  # atomic, as another process may build it as well
+            )  # atomic, as another process may build it too
     return jar
 
 
@@ -101,7 +101,7 @@ def _run(command: Sequence[str], below: Path, hint: str = "") -> None:
     if result.returncode:
         said = (result.stderr or result.stdout).strip().replace(f"{below}/", "")
         first = "\n".join(said.splitlines()[:3])
-        raise SpyError(f"{Path(command[0]).name} refuses:\n{first}{hint}")
+        raise SpyError(f"{Path(command[0]).name} reports:\n{first}{hint}")
 
 
 def _require(program: str, package: str) -> None:

@@ -16,7 +16,7 @@ _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
 
 
 def mistakes_in(files: Sequence[LcmFile]) -> list[str]:
-    """Returns all mistakes in the .lcm files of a folder as `FILE:LINE: what is wrong`."""
+    """Returns all mistakes in the .lcm files of a folder as `FILE:LINE: mistake`."""
     structs = {struct.full_name: struct for file in files for struct in file.structs}
     return [
         f"{struct.file}:{line}: {text}"

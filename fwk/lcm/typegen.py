@@ -121,7 +121,7 @@ def _mark(text: str) -> str:
 
 
 def _write_all(folder: Path, files: Sequence[LcmFile], packages: Mapping[Path, Path]) -> None:
-    """Generates the classes in a folder of their own and moves them into place, so that readers see whole files."""
+    """Generates the classes in a separate folder and moves them into place, so that readers see whole files."""
     with tempfile.TemporaryDirectory(dir=folder, prefix=".generating-") as made:
         root = Path(made) / _FOLDER
         for file in files:

@@ -11,7 +11,7 @@ _SHORT_MAX = 65_499  # channel, its zero byte and data of a message that goes in
 _FRAGMENT = 65_487
 _MESSAGE_MAX = 256 << 20
 _UNFINISHED_MAX = 64  # fragmented messages under way at the same time
-_UNFINISHED_BYTES_MAX = 2 * _MESSAGE_MAX  # of all of them; the oldest go first
+_UNFINISHED_BYTES_MAX = 2 * _MESSAGE_MAX  # bytes of all of them; the oldest are dropped first
 
 DATAGRAM_MAX = 65_535
 

@@ -44,7 +44,7 @@ class RotatingFile:
             return
         if self._left_out:
             missing, self._left_out = self._left_out, 0
-            self._report(f"{self._path}: there is room again; {missing} lines are missing")
+            self._report(f"{self._path}: the disk has room again; {missing} lines are missing")
 
     def close(self) -> None:
         """Closes the file; a later line opens it again."""

@@ -25,7 +25,7 @@ class BlackboardEvent:
     channel: str
     type_name: str
     component: str
-    """Component that came or went; of a created channel its first user, of a destroyed one its last."""
+    """Component that joined or left; of a created channel its first user, of a destroyed one its last."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Fact:
     """A decision or observation of the supervisor; facts are applied in their order.
 
     read, write: a component has a channel open. close: it no longer has. refuse: its request is refused. come, go: a
-    component begins or ceases to take part in the run; everything that it had opened is closed when it goes.
+    component begins or ceases to take part in the run; all channels that it has open are closed when it leaves.
     """
 
     kind: FactKind
@@ -110,9 +110,9 @@ class Instance:
     fingerprint: str = ""
     """Fingerprint of a dynamic channel's type."""
     writer: tuple[int, int] | None = None
-    """Component and handle of the opened writer."""
+    """Component and handle of the writer of a dynamic channel."""
     readers: list[tuple[int, int]] = field(default_factory=list)
-    """Component and handle of each opened reader, in order."""
+    """Component and handle of each dynamic reader, in order."""
 
 
 class ChannelTable:
@@ -126,7 +126,7 @@ class ChannelTable:
             channel.name: Instance(channel.index, channel.name, channel.type_name, channel.writer, channel.readers)
             for channel in plan.channels
         }
-        self._indices: dict[tuple[str, str], int] = {}  # name and fingerprint of all that were ever opened at run time
+        self._indices: dict[tuple[str, str], int] = {}  # name and fingerprint of all dynamic channels so far
         self._declared = len(self._by_name)
 
     def find(self, name: str) -> Instance | None:
@@ -163,7 +163,7 @@ class ChannelTable:
         return self._declared + len(self._indices)
 
     def opened_by(self, component: int) -> list[Fact]:
-        """Returns facts that close everything that a component has opened."""
+        """Returns facts that close every channel that a component has open."""
         found = []
         for instance in self._by_name.values():
             opened = [*([instance.writer] if instance.writer else []), *instance.readers]
@@ -172,7 +172,7 @@ class ChannelTable:
         return [Fact("close", component, handle, _opening(component, handle, instance)) for handle, instance in found]
 
     def snapshot(self) -> list[Fact]:
-        """Returns facts that make this table from an empty one."""
+        """Returns facts that rebuild this table from an empty one."""
         made = [Fact("come", component) for component in sorted(self.present)]
         for name in sorted(self._by_name):
             instance = self._by_name[name]
@@ -240,7 +240,7 @@ class ChannelTable:
         return events
 
     def _presence(self, component: int, how: Literal["added", "removed"]) -> list[BlackboardEvent]:
-        """Returns the events of a component that comes or goes, for the channels that it declares."""
+        """Returns the events of a component that joins or leaves, for the channels that it declares."""
         events = []
         for instance in self._by_name.values():
             if instance.declared_writer == component:
@@ -261,7 +261,7 @@ def facts_of(text: str) -> list[Fact]:
     """Returns the facts of the text that a starting host gets.
 
     Raises:
-        ValueError, TypeError, LookupError: the text is something else.
+        ValueError, TypeError, LookupError: the text does not hold facts.
     """
     return [Fact.of(each) for each in json.loads(text)]
 

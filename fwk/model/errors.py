@@ -72,7 +72,7 @@ def _position(problem: Problem) -> tuple[bool, str, int]:
 def hint(word: str, known: Iterable[str] | Mapping[str, object], otherwise: str = "") -> str:
     """Returns a hint for a wrong word: the nearest known word, otherwise `otherwise`, otherwise all known words."""
     names = sorted(known)
-    # Names share their namespace or package, which alone would make them alike.
+    # a common namespace or package alone would make names alike
     own = [name for name in names if get_close_matches(_last_part(word), [_last_part(name)], 1)]
     near = get_close_matches(word, own, 1)
     if near:

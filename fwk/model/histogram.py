@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from typing import Any
 
 _EXACT = 32  # microseconds up to which each has a bucket of its own
-_FINE_BITS = 4  # of a duration above, what tells its bucket beside the power of two
+_FINE_BITS = 4  # number of buckets for each power of two above
 
 
 class Histogram:
@@ -60,7 +60,7 @@ class Histogram:
     def since(self, before: "Histogram") -> "Histogram":
         """Returns the durations counted since `before`; its worst is the longest of the highest bucket."""
         left = {bucket: count - before.counts.get(bucket, 0) for bucket, count in self.counts.items()}
-        if min(left.values(), default=0) < 0 or self.total_us < before.total_us:  # it began anew meanwhile
+        if min(left.values(), default=0) < 0 or self.total_us < before.total_us:  # it has been reset since
             return self
         counts = {bucket: count for bucket, count in left.items() if count}
         worst_us = min(self.worst_us, longest_us(max(counts))) if counts else 0

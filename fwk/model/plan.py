@@ -67,7 +67,7 @@ class ChannelPlan:
     writer of any other channel was left out of the run, and its readers never see a value."""
     readers: tuple[int, ...]
     images: bool = False
-    """Whether frames lie in a shared-memory ring beside the channel."""
+    """Whether its frames are in a shared-memory ring."""
 
     @property
     def of_tools(self) -> bool:

@@ -84,7 +84,7 @@ def lost_frame(component: int, channel: int, frame: int) -> lost_frame_t:
 
 
 def mistake_in(done: done_t, components: int, channels: int, stages: int) -> str:
-    """Returns what is impossible in a done's requests and reports in a plan of that size; empty if nothing is."""
+    """Returns the impossible part of a done's requests and reports in a plan of that size; empty if there is none."""
     asking = [each.component for each in done.main_loop] + [each.component for each in done.plugins]
     asking += [each.component for each in done.channels] + [each.component for each in done.lost_frames]
     if any(not 0 <= component < components for component in asking):

@@ -24,7 +24,7 @@ def chosen(names: Sequence[str], only: Sequence[str], without: Sequence[str], pr
         for pattern in patterns:
             if not any(matches(name, pattern) for name in names):
                 idle = True
-                problems.add(option, "", f"'{pattern}' means no component; {nearest(pattern, names)}")
+                problems.add(option, "", f"'{pattern}' matches no component; {nearest(pattern, names)}")
     kept = [
         name
         for name in names
@@ -48,7 +48,7 @@ def groups_of(
         for pattern in patterns:
             members = [name for name in names if matches(name, pattern)]
             if not members:
-                problems.add(places[group], "", f"'{pattern}' means no component; {nearest(pattern, names)}")
+                problems.add(places[group], "", f"'{pattern}' matches no component; {nearest(pattern, names)}")
             for name in members:
                 if found.setdefault(name, group) != group:
                     problems.add(

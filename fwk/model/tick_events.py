@@ -1,4 +1,4 @@
-"""Tick events: the decisions of the main loop in one tick, as values and as they stand in a tick record."""
+"""Tick events: the decisions of the main loop in one tick, as values and as members of a tick record."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
@@ -37,7 +37,7 @@ class FinalDone(NamedTuple):
 
 
 class TickTold(NamedTuple):
-    """Continuous components are told the marks of now."""
+    """Continuous components get the present marks."""
 
 
 class OutsideTaken(NamedTuple):
@@ -83,7 +83,7 @@ class ChannelsChanged(NamedTuple):
 
 
 class MessageLost(NamedTuple):
-    """A host never got a message, as its next done says."""
+    """A host never got a message, according to its next done."""
 
     host: int
     channel: int
@@ -91,7 +91,7 @@ class MessageLost(NamedTuple):
 
 
 class FrameLost(NamedTuple):
-    """A component never got a camera frame, as the next done says."""
+    """A component never got a camera frame, according to the next done."""
 
     component: int
     channel: int
@@ -158,7 +158,7 @@ def events_of(message: tick_events_t) -> list[TickEvent]:
     """Returns the events of a tick record in their order.
 
     Raises:
-        ValueError: an unknown kind, or a list that is shorter or longer than the kinds say.
+        ValueError: an unknown kind, or a list whose length does not agree with the kinds.
     """
     rows: dict[int, Iterator[tuple[int, ...]]] = {}
     for kind, columns, name in _LISTS:

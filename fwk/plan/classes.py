@@ -22,7 +22,7 @@ from fwk.plan.packages import component_packages
 INSTALLED = Path(__file__).resolve().parents[2]
 """Folder of `fwk` and of the installed packages of components."""
 _DEPTH = 2  # folders below a folder of modules that are searched for a module to propose
-_FILES_MAX = 200  # of a folder, looked at for that
+_FILES_MAX = 200  # files of a folder that are searched
 _USE = re.compile(r"[A-Za-z_]\w*(\.\w+)*(:[A-Za-z_]\w*)?", re.ASCII)
 
 
@@ -187,7 +187,7 @@ def _only(module: ModuleType) -> type[Component]:
     if not found:
         raise UnusableError(f"module '{module.__name__}' defines no component; derive a class from fwk.Component")
     which = " or ".join(f"{module.__name__}:{name}" for name in found)
-    raise UnusableError(f"module '{module.__name__}' defines several components; say which: {which}")
+    raise UnusableError(f"module '{module.__name__}' defines several components; name one: {which}")
 
 
 def _named(module: ModuleType, wanted: str) -> type[Component]:

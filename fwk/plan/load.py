@@ -106,7 +106,7 @@ class _Loading:
         recorded = record_of(files, whole.channels, problems)
         problems.stop_if_any()
         if len(kept) < len(components):
-            # The whole has been found right, so a writer that is missing now was left out on purpose.
+            # All components are right, so a missing writer was left out on purpose.
             components = [each for each in components if each.asked.name in kept]
             whole = self._wire(components, outside, lambda _: True)
         later = {each.name for each in asked if not each.entry.start}
@@ -168,7 +168,7 @@ class _Loading:
         end = Ports.of(plan).end
         if end > _PORTS_END:
             highest = plan.bus_port - (end - _PORTS_END)
-            text = f"the run would need the ports {plan.bus_port} to {end - 1}; take --bus-port {highest} or less"
+            text = f"the run would need the ports {plan.bus_port} to {end - 1}; use --bus-port {highest} or less"
             self.problems.add("--bus-port", "", text)
 
 

@@ -115,7 +115,7 @@ def check_clock(found: Sequence[Resolved], clock: str, problems: Problems) -> No
     for owner in found if clock == "wall" else ():
         if "time_source" in owner.declaration.aspects.values():
             name = owner.asked.name
-            text = f"two time sources: the clock on the wall (clock: wall) and {name}; keep one, say 'clock: simulated'"
+            text = f"two time sources: the wall clock (clock: wall) and {name}; keep one, or set 'clock: simulated'"
             problems.add(owner.asked.node.place, name, text)
 
 

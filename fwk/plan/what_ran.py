@@ -1,4 +1,4 @@
-"""What the results of a run depend on besides its launch file: the application's modules and the BLAS kernel."""
+"""Dependencies of a run's results besides its launch file: the application's modules and the BLAS kernel."""
 
 import ctypes
 import hashlib
@@ -10,7 +10,7 @@ from pathlib import Path
 from fwk.model.plan import ModulePlan, Plan
 
 _KEPT = ("fwk", "lcmtypes")
-"""Packages of the framework and of generated types: no modules of an application."""
+"""Packages of the framework and of generated types, which belong to no application."""
 _DIGITS = 16
 _KERNEL_SYMBOLS = [f"{prefix}openblas_get_corename{suffix}" for prefix in ("scipy_", "") for suffix in ("64_", "")]
 
@@ -36,9 +36,9 @@ def imported_modules(component_modules: Iterable[str], folders: Sequence[str]) -
 
 
 def changed_modules(plan: Plan) -> dict[str, str]:
-    """Returns the modules of a recorded run that are not the same here, by name, each with what is different.
+    """Returns the modules of a recorded run that differ here, by name, each with the difference.
 
-    The folders of the plan must be in `sys.path`. A module that lies elsewhere with the same content is the same.
+    The folders of the plan must be in `sys.path`. A module with the same content in another place is the same.
     """
     changed = {}
     for name, before in plan.modules.items():

@@ -54,7 +54,7 @@ class FrameTree(Component):
     transforms: Writes[transforms_t] = channel("transforms")
 
     def init(self) -> None:
-        """Frames in a ring or with two parents are refused here."""
+        """Cycles and frames with two parents are refused here."""
         config, tree = self.config, TransformTree()
         tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
         for name, mounting in config.mounted.items():

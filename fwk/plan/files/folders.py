@@ -66,5 +66,5 @@ def _check_package(source: Path, problems: Problems) -> None:
         same = other / source.name
         if not same.is_file() or same.read_text(encoding="utf-8", errors="replace") != text:
             line = text[: package.start(1)].count("\n") + 1
-            taken = f"the package '{package[1]}' is taken by {shown(other)}; give these types a package of their own"
+            taken = f"the package '{package[1]}' is used by {shown(other)}; give these types another package"
             problems.add(f"{shown(source)}:{line}", "", taken)

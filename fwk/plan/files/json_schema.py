@@ -107,7 +107,7 @@ def _names(module: str, folders: Sequence[str]) -> list[str]:
 def _class(use: str, folders: Sequence[str]) -> Declaration | None:
     try:
         return find_class(use, folders)
-    except UnusableError:  # an editor goes on without; `fwk check` says what is wrong
+    except UnusableError:  # an editor continues without; `fwk check` reports the mistake
         return None
 
 

@@ -61,7 +61,7 @@ def find_launch_file(file: str, problems: Problems) -> Path | None:
     """Finds a launch file: as given, then in `launch/`, then among those that come with fwk."""
     places = [Path(), Path(FOLDER), INSTALLED / FOLDER]
     for place in places:
-        if os.path.isfile(place / file):  # False, too, for what can be no path or is forbidden
+        if os.path.isfile(place / file):  # also False for impossible and forbidden paths
             return (place / file).absolute()
     there = [name for place in places[1:] for name in _launch_files(place)]
     near = get_close_matches(file, there, 1)
@@ -123,12 +123,12 @@ class _Reader:
         if found is None:
             there = [*_launch_files(here), *_launch_files(INSTALLED / FOLDER)]
             near = get_close_matches(name, there, 1)
-            right = f"did you mean '{near[0]}'?" if near else f"it is looked for in {shown(here)}/"
+            right = f"did you mean '{near[0]}'?" if near else f"it would have to be in {shown(here)}/"
             self._problems.add(place, "", f"there is no '{name}' to include; {right}")
             self._files.gaps.add("*")
         elif found.resolve() in above:
             ring = [*above[above.index(found.resolve()) :], found]
-            text = f"files include each other in a ring: {' -> '.join(path.name for path in ring)}; leave one out"
+            text = f"files include each other in a cycle: {' -> '.join(path.name for path in ring)}; leave one out"
             self._problems.add(place, "", text)
         else:
             self.read(found, above)

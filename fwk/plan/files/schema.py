@@ -56,9 +56,9 @@ class ComponentEntry(_Entry):
     stage: Words | None = None
     """Stages, where they differ from those of the class."""
     every: int | None = Field(None, ge=1, le=EVERY_MAX)
-    """Iterates in one of so many ticks, where the number differs from the class."""
+    """Iterates in one of `every` ticks, where the number differs from the class."""
     offset: Scalar | None = None
-    """Shifts these ticks: it iterates when the tick and the offset leave the same remainder, divided by `every`."""
+    """Shifts these ticks: it iterates when tick and offset have the same remainder modulo `every`."""
     providers: dict[str, str] = {}
     """Attribute of an aspect to the component that provides it, where several components do."""
     rate_hz: float | None = Field(None, ge=0.0, le=RATE_MAX_HZ)

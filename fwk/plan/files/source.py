@@ -92,7 +92,7 @@ def _read(path: Path) -> bytes:
     descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     with open(descriptor, "rb") as file:
         data = file.read(BYTES_MAX + 1)
-    if data is None:  # a device or a pipe that has nothing to read now
+    if data is None:  # a device or a pipe without data now
         raise OSError(errno.EAGAIN, "it is not an ordinary file")
     return data
 
@@ -134,7 +134,7 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
             f"{shown}:{line}", "", f"this is not valid YAML: character {chr(error.character)!r} is not allowed"
         )
     except RecursionError:
-        problems.add(f"{shown}:1", "", "values lie too deep in each other; a few levels are enough")
+        problems.add(f"{shown}:1", "", "values are nested too deeply; use a few levels")
     except _TooMuch:
         problems.add(f"{shown}:1", "", f"more than {VALUES_MAX} values when its aliases are written out; use fewer")
     finally:
@@ -143,7 +143,7 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
     return None
 
 
-class _TooMuch(Exception):  # noqa: N818 - what the file holds
+class _TooMuch(Exception):  # noqa: N818 - a mistake in the file
     pass
 
 
@@ -204,12 +204,12 @@ class _Converter:
         except (KeyError, ValueError):
             self._problems.add(place, "", f"'{text}' is not a valid {kind}")
             return None
-        self._problems.add(place, "", f"the tag '{node.tag}' is not known here; leave it out")
+        self._problems.add(place, "", f"unknown tag '{node.tag}'; leave it out")
         return None
 
 
 def _joined(text: str) -> str:
-    """The text with what JSON writes as two halves, `"\\ud83e\\udd16"`, as one letter."""
+    """Returns the text with JSON's surrogate pairs, `"\ud83e\udd16"`, joined to letters."""
     if not _HALF.search(text):
         return text
     try:

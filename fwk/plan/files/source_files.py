@@ -10,7 +10,7 @@ from fwk.model.plan import ComponentPlan, Plan
 from fwk.plan.files.launch_file import shown
 
 _KEPT = ("fwk", "lcmtypes")
-"""Packages that all components have in common."""
+"""Packages that all components share."""
 
 
 class Application:
@@ -52,7 +52,7 @@ class Sources:
         return found
 
     def _imported(self, module: str, file: Path) -> list[str]:
-        """Returns what a file imports; while the file is not valid Python, what it imported before."""
+        """Returns the imports of a file; while the file is not valid Python, its former imports."""
         changed = file.stat().st_mtime_ns if file.exists() else 0
         before = self._imports.get(file, (-1, []))
         if before[0] == changed:
@@ -63,7 +63,7 @@ class Sources:
             return before[1]
         package = module if file.name == "__init__.py" else module.rpartition(".")[0]
         names = [name for node in ast.walk(tree) for name in _names(node, package)]
-        self._found.clear()  # a new import may be of a new file
+        self._found.clear()  # a new import may refer to a new file
         self._imports[file] = (changed, names)
         return names
 

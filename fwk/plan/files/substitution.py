@@ -25,6 +25,6 @@ def substitute(node: Node, values: Mapping[str, Any], report: Callable[[str, str
         return node
     for key in _MARK.findall(node.value):
         if key not in values:
-            report(node.place, f"nothing says what '{{{key}}}' in '{node.value}' stands for; {hint(key, values)}")
+            report(node.place, f"'{{{key}}}' in '{node.value}' has no value; {hint(key, values)}")
             return None
     return Node(_MARK.sub(lambda found: str(values[found[1]]), node.value), node.place)

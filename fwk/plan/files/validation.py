@@ -39,7 +39,7 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
     while True:
         made, mistakes = _tried(model, node, what)
         for mistake in mistakes:
-            if first or not mistake.missing:  # later on, what is missing was left out here
+            if first or not mistake.missing:  # missing values may have been left out here
                 report(mistake.path, node.at(*mistake.path).place, mistake.text)
         if made:
             return made, node
@@ -47,7 +47,7 @@ def validated(model: type[M], node: Node, report: Report, what: str) -> tuple[M,
             return None
         for path in reversed(
             dict.fromkeys(mistake.path for mistake in mistakes)
-        ):  # lists stay in order before their end
+        ):  # from the end, to keep positions in lists valid
             node = _without(node, path)
         first = False
 
@@ -109,7 +109,7 @@ def _text(model: type[BaseModel], node: Node, details: ErrorDetails, what: str) 
 
 
 def _mixed_up(made: Any, node: Node, path: Path) -> list[tuple[Path, str]]:
-    """Returns truth values that became numbers and vice versa, which pydantic accepts and authors do not mean."""
+    """Returns truth values that became numbers and vice versa, which pydantic accepts but authors do not mean."""
     if isinstance(node.value, dict) and isinstance(made, dict):
         pairs = [(key, made.get(key), below) for key, below in node.value.items()]
         return [found for key, value, below in pairs for found in _mixed_up(value, below, (*path, key))]

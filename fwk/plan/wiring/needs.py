@@ -1,4 +1,4 @@
-"""Needs of components: those of the launch file and those of granted aspects, without a ring."""
+"""Needs of components: those of the launch file and those of granted aspects, without cycles."""
 
 from collections.abc import Collection, Mapping, Sequence
 from itertools import pairwise
@@ -37,7 +37,7 @@ def needs_of(asked: Sequence[Asked], granted: Needs, files: Files, problems: Pro
         place = next(each.node.at("needs").place for each in asked if each.name == around[0])
         avoidable = any(other in said.get(name, ()) for name, other in pairwise(around))
         right = "leave one 'needs' out" if avoidable else "let one do without what another provides"
-        problems.add(place, around[0], f"components need each other in a ring: {' -> '.join(around)}; {right}")
+        problems.add(place, around[0], f"components need each other in a cycle: {' -> '.join(around)}; {right}")
     return {name: list(dict.fromkeys(others)) for name, others in needs.items()}
 
 
@@ -62,13 +62,13 @@ def _said(asked: Sequence[Asked], files: Files, problems: Problems) -> Needs:
             if name in names:
                 needs.setdefault(each.name, []).append(name)
             elif not files.may_hide(name):
-                text = f"it needs '{name}', which is not there; {nearest(name, names)}"
+                text = f"it needs '{name}', which does not exist; {nearest(name, names)}"
                 problems.add(node.at(number).place, each.name, text)
     return needs
 
 
 def ring(needs: Mapping[str, Sequence[str]]) -> list[str]:
-    """Returns a ring of components that wait for each other, first and last the same; empty if there is none."""
+    """Returns a cycle of components that wait for each other, first and last the same; empty if there is none."""
     done: set[str] = set()
     for start in needs:
         found = _from(start, needs, done, [])

@@ -28,7 +28,7 @@ def with_providers(
         for attribute in spec.providers:
             if attribute not in spec.declaration.asks:
                 right = hint(attribute, spec.declaration.asks)
-                report(spec.name, None, f"it asks for no aspect '{attribute}' that a component provides; {right}")
+                report(spec.name, None, f"it declares no aspect '{attribute}' that a component provides; {right}")
         made.append(replace(spec, channels={**_channels(spec, found), **spec.channels}))
         granted.append({attribute: provider.name for attribute, provider in found.items()})
     return made, tuple(granted)
@@ -58,10 +58,10 @@ def _provider(
     asks = f"{name}, which {spec.name} asks for as '{attribute}'"
     if near:
         listed = " and ".join(each.name for each in near)
-        right = f"keep one, or say 'providers: {{{attribute}: {near[0].name}}}'"
+        right = f"keep one, or set 'providers: {{{attribute}: {near[0].name}}}'"
         report(spec.name, None, f"{len(near)} components provide {asks}: {listed}; {right}")
     elif not may_be_missing(spec.name):
-        report(spec.name, None, f"no component provides {asks}; add a component whose class says 'provides = {name}'")
+        report(spec.name, None, f"no component provides {asks}; add a component whose class has 'provides = {name}'")
     return None
 
 

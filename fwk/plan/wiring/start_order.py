@@ -32,7 +32,7 @@ def check_starts(asked: Sequence[Asked], needs: Needs, problems: Problems) -> No
         for name in needs.get(each.name, ()):
             if name in later and each.name not in later:
                 text = f"it starts with the run and needs '{name}', which does not"
-                right = "say 'start: false' here too, or not there"
+                right = "set 'start: false' here too, or remove it there"
                 problems.add(each.node.at("needs").place, each.name, f"{text}; {right}")
 
 
@@ -46,7 +46,7 @@ def check_groups(
             other = first.setdefault(groups[each.name], each)
             if other.entry.start != each.entry.start:
                 names = f"{other.name} and {each.name}"
-                text = f"{names} share a process and only one starts with the run; say the same of both"
+                text = f"{names} share a process and only one starts with the run; set 'start' alike for both"
                 problems.add(places[groups[each.name]], "", text)
 
 
@@ -66,5 +66,5 @@ def check_processes(
         why = "; ".join(because[pair] for pair in pairwise(around))
         who = because[around[0], around[1]].partition(" needs ")[0]
         place = next(each.node.at("needs").place for each in asked if each.name == who)
-        text = f"processes need each other in a ring: {' -> '.join(around)} ({why}); share the components out otherwise"
+        text = f"processes need each other in a cycle: {' -> '.join(around)} ({why}); group the components differently"
         problems.add(place, who, text)

@@ -31,7 +31,7 @@ class ClockControl:
             return self.now
         if clock.wall:
             raise RequestError(
-                f"the clock on the wall cannot be {_WORDS[request.verb]}, and this run follows it; "
+                f"the wall clock cannot be {_WORDS[request.verb]}, and this run follows it; "
                 "for a simulation say 'clock: simulated' in the launch file"
             )
         if request.verb == "step":

@@ -138,9 +138,9 @@ class Photographer(Painter):
     [
         (Asker, r"Talkative\.said: an aspect that a component provides has Reads, .*, not Writes; what a component wr"),
         (Nothing, r"Nothing: it provides <class 'int'>, not an aspect; derive it from fwk\.Aspect"),
-        (Mute, r"Mute: it provides Compass, which reads 'imu' of it; add imu: Writes\[imu_t\]"),
-        (Mistyped, r"Mistyped: it provides Compass, which reads 'imu' of it; add imu: Writes\[imu_t\]"),
-        (Painter, r"Painter: it provides Pictures, which reads 'image' of it; add image: VisionMaster"),
+        (Mute, r"Mute: it provides Compass, which reads its channel 'imu'; add imu: Writes\[imu_t\]"),
+        (Mistyped, r"Mistyped: it provides Compass, which reads its channel 'imu'; add imu: Writes\[imu_t\]"),
+        (Painter, r"Painter: it provides Pictures, which reads its channel 'image'; add image: VisionMaster"),
     ],
 )
 def test_impossible_classes_are_refused(component: type[Component], says: str) -> None:

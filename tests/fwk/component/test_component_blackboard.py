@@ -66,7 +66,9 @@ def test_a_reader_opened_at_run_time_shows_messages_and_closes() -> None:
     made.opened("b/imu").put(heading_rad=2.0)
     made.iterate()
     assert reader.value.heading_rad == 1.0
-    with pytest.raises(ValueError, match="a/opener: this was not opened by this component, or is already closed"):
+    with pytest.raises(
+        ValueError, match="a/opener: this channel was not opened by this component, or is already closed"
+    ):
         made.component.blackboard.close(reader)
 
 
@@ -84,7 +86,7 @@ def test_declared_channels_are_given_and_cannot_be_closed() -> None:
         (imu_t, "a/ball!", "'a/ball!' is not a valid name"),
         (imu_t, "fwk/tick", "names that begin with 'fwk/' are the framework's own"),
         (int, "a/ball", "is not an LCM type; import it from lcmtypes"),
-        (header_t, "a/ball", "core.header_t is the framework's own and does not begin with 'core.header_t header;'"),
+        (header_t, "a/ball", "core.header_t belongs to the framework and does not begin with 'core.header_t header;'"),
     ],
 )
 def test_channels_that_can_never_open_are_refused_at_once(kind: type, name: str, what: str) -> None:

@@ -39,10 +39,10 @@ def test_time_set_backwards_is_reported_repeatedly() -> None:
     lines = logged(12, step_us=-1)
     assert lines[0] == (
         "time source: next_us = 49999 is not after this tick's time, 50000 us; "
-        "time goes on by the period instead (1 times so far)"
+        "time advances by the period instead (1 times so far)"
     )
     assert [line.rpartition("(")[2] for line in lines] == ["1 times so far)", "10 times so far)"]
 
 
 def test_a_time_source_that_never_sets_time_is_reported_once() -> None:
-    assert logged(50, silent=True) == ["time source: next_us was not set in 20 iterations; time goes on by the period"]
+    assert logged(50, silent=True) == ["time source: next_us was not set in 20 iterations; time advances by the period"]

@@ -80,7 +80,7 @@ def test_poses_older_than_the_history_are_forgotten() -> None:
             "ball",
             "camera",
             None,
-            "no way leads from frame 'camera' to 'ball': camera in base in world, but ball in table",
+            "no path from frame 'camera' to 'ball': camera in base in world, but ball in table",
         ),
         (
             ExtrapolationError,
@@ -110,10 +110,10 @@ def test_lookups_without_an_answer_are_refused(
 @pytest.mark.parametrize(
     ("parent", "child", "time_us", "text"),
     [
-        ("camera", "base", 0, "frame 'base' stands in 'world' and cannot stand in 'camera' as well"),
-        ("camera", "world", 0, "frames would stand in each other in a ring: world in camera in base in world"),
-        ("x", "x", 0, "frames would stand in each other in a ring: x in x"),
-        ("world", "base", 1_000_000, "frame 'base' is known at 2.000 s and cannot be told of 1.000 s"),
+        ("camera", "base", 0, "frame 'base' has the parent 'world' and cannot also have 'camera'"),
+        ("camera", "world", 0, "frames would form a cycle: world in camera in base in world"),
+        ("x", "x", 0, "frames would form a cycle: x in x"),
+        ("world", "base", 1_000_000, "frame 'base' is known at 2.000 s and cannot be set at 1.000 s"),
     ],
 )
 def test_transforms_that_do_not_fit_the_tree_are_refused(parent: str, child: str, time_us: int, text: str) -> None:
@@ -151,4 +151,4 @@ def test_the_aspect_leaves_out_poses_that_do_not_fit() -> None:
     assert tf.refused == 3
     assert tf.lookup("world", "base").translation_m[0] == 1.0
     (line,) = bench.logged
-    assert "frame 'base' stands in 'world' and cannot stand in 'elsewhere' as well (1 transforms refused" in line.text
+    assert "frame 'base' has the parent 'world' and cannot also have 'elsewhere' (1 transforms refused" in line.text

@@ -123,11 +123,11 @@ def test_requests_are_granted_by_tick_step_sender_and_number() -> None:
             ["write", 1, "x/read", *ODOMETRY],
             f"a/opener wants it as robot.odometry_t ({ODOMETRY[1]}), but it is robot.imu_t ({IMU[1]}) to b/opener",
         ),
-        (["read", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
-        (["write", 1, "c/image", *FRAME], "frames lie beside it; annotate with Image instead"),
+        (["read", 1, "c/image", *FRAME], "its frames are in shared memory; annotate with Image instead"),
+        (["write", 1, "c/image", *FRAME], "its frames are in shared memory; annotate with Image instead"),
         (
             ["read", 1, "x/more", *IMU],
-            "2 channels were opened at run time already; say 'spare_channels: N' in the launch file for more",
+            "all 2 spare channels are in use; set 'spare_channels: N' in the launch file for more",
         ),
     ],
 )

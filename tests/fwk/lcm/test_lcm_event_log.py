@@ -167,7 +167,7 @@ def test_full_disk_is_reported_once_and_writing_resumes(tmp_path: Path) -> None:
     assert (writer.events, writer.dropped) == (4, 2)
     assert len(said) == 2
     assert "File too large" in said[0]
-    assert "there is room again; 2 messages are missing" in said[1]
+    assert "the disk has room again; 2 messages are missing" in said[1]
 
 
 def test_a_disk_full_from_the_beginning_stops_no_process() -> None:
@@ -198,6 +198,6 @@ def test_refusals_name_the_file(tmp_path: Path) -> None:
 def test_a_message_that_lcm_cannot_hold_is_not_written(tmp_path: Path) -> None:
     with LogWriter(tmp_path / "log", refuse) as writer:
         for channel in ("", "x" * 1000):
-            with pytest.raises(ValueError, match="no LCM event"):
+            with pytest.raises(ValueError, match="not an LCM event"):
                 writer.append(channel, b"", 0)
     assert list(LogReader(tmp_path / "log")) == []

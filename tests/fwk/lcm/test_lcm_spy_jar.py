@@ -44,7 +44,7 @@ def test_errors_of_the_java_compiler_are_explained(tmp_path: Path, needs: Needs)
     with pytest.raises(spy.SpyError) as caught:
         spy.build_jar([folder(tmp_path / "types", "bad", "boolean final")], tmp_path / "cache")
     text = str(caught.value)
-    assert text.startswith("javac refuses:\nbad/thing_t.java:")
+    assert text.startswith("javac reports:\nbad/thing_t.java:")
     assert text.endswith("a member whose name is a Java keyword is the usual cause")
     assert list((tmp_path / "cache").iterdir()) == []
 

@@ -101,7 +101,7 @@ def test_a_full_disk_and_its_end_are_reported_once(small_disk: Callable[[int], P
     (folder / "big").unlink()
     log.write("last")
     assert len(said) == 2
-    assert "there is room again; " in said[1]
+    assert "the disk has room again; " in said[1]
     lines = list(read_rotating(folder / "log"))
     assert (lines[0], lines[-1]) == ("first", "last")
     assert 2 + 100 - len(lines) == int(said[1].partition("again; ")[2].split()[0])

@@ -28,7 +28,7 @@ ROWS = {
     "stage = ('think', 3)": """Odd: stage is ('think', 3); it should be text such as "think", or a tuple of texts""",
     "loop: Reads[odometry_t]": "Odd.loop: every component has 'loop'; choose another name",
     "finalize: Clock": "Odd.finalize: every component has 'finalize'; choose another name",
-    "settings: Settings": "Odd.settings: the attribute of the settings is called 'config'",
+    "settings: Settings": "Odd.settings: the attribute for settings has to be called 'config'",
     "config: Levelled": "Odd: every component has a setting 'log_level'; choose another name",
     "ball: 'Reads[odometry_t'": "Odd: an annotation cannot be read: Forward reference must be an expression -- got "
     "'Reads[odometry_t'",
@@ -54,7 +54,7 @@ ROWS = {
     "VisionMaster, a Config, Clock, Logger, LogLines, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is not an LCM type; import one from lcmtypes",
-    "ball: Reads[command_t]": "Odd.ball: core.command_t is the framework's own and "
+    "ball: Reads[command_t]": "Odd.ball: core.command_t belongs to the framework and "
     "does not begin with 'core.header_t header;'",
     "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) does not name a channel; write = "
     "channel('cyan1/ball'), or nothing for 'ball'",

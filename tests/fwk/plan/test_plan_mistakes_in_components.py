@@ -138,7 +138,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:2: cyan1/a: nothing says what '{temm}' in '{temm}*/odometry' stands for; did you mean 'team'?",
+        "it.yaml:2: cyan1/a: '{temm}' in '{temm}*/odometry' has no value; did you mean 'team'?",
         """
         templates: {bot: {
           a: {use: plan_parts:Watcher, channels: {odometries: "{temm}*/odometry"}}}}
@@ -165,7 +165,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
     Broken(
         """
         it.yaml:3: 'cyan 1' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
-        it.yaml:5: cyan2/a: nothing says what '{temm}' in '{temm}' stands for; there is name, namespace, number
+        it.yaml:5: cyan2/a: '{temm}' in '{temm}' has no value; there is name, namespace, number
         """,
         """
         templates: {bot: {b: {use: plan_parts:Odometer}}}
@@ -195,7 +195,7 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
 
 @rows(
     Broken(
-        "it.yaml:3: it/b: it needs 'it/aa', which is not there; did you mean 'it/a'?",
+        "it.yaml:3: it/b: it needs 'it/aa', which does not exist; did you mean 'it/a'?",
         """
         components:
           it/a: {use: plan_parts:Odometer}
@@ -203,7 +203,7 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:3: it/b: components need each other in a ring: it/b -> it/c -> it/d -> it/b; leave one 'needs' out",
+        "it.yaml:3: it/b: components need each other in a cycle: it/b -> it/c -> it/d -> it/b; leave one 'needs' out",
         """
         components:
           it/a: {use: plan_parts:Odometer, needs: it/b}
@@ -213,7 +213,7 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:3: it/camera: components need each other in a ring: it/camera -> it/eye -> it/camera; "
+        "it.yaml:3: it/camera: components need each other in a cycle: it/camera -> it/eye -> it/camera; "
         "leave one 'needs' out",
         """
         components:
@@ -222,12 +222,12 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: components need each other in a ring: it/a -> it/a; leave one 'needs' out",
+        "it.yaml:1: it/a: components need each other in a cycle: it/a -> it/a; leave one 'needs' out",
         "components: {it/a: {use: plan_parts:Odometer, needs: a}}",
     ),
     Broken(
         "it.yaml:2: it/eye: it starts with the run and needs 'it/camera', which does not; "
-        "say 'start: false' here too, or not there",
+        "set 'start: false' here too, or remove it there",
         """
         components:
           it/eye: {use: plan_parts:Eye}
@@ -235,7 +235,7 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:2: it/one and it/two share a process and only one starts with the run; say the same of both",
+        "it.yaml:2: it/one and it/two share a process and only one starts with the run; set 'start' alike for both",
         """
         hosts:
           both: it/*
@@ -245,8 +245,8 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:4: it/b: processes need each other in a ring: left -> right -> left "
-        "(it/b needs it/c; it/d needs it/a); share the components out otherwise",
+        "it.yaml:4: it/b: processes need each other in a cycle: left -> right -> left "
+        "(it/b needs it/c; it/d needs it/a); group the components differently",
         """
         hosts: {left: [it/a, it/b], right: [it/c, it/d]}
         components:
@@ -279,8 +279,8 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:3: a/sun: two time sources: the clock on the wall (clock: wall) and a/sun; "
-        "keep one, say 'clock: simulated'",
+        "it.yaml:3: a/sun: two time sources: the wall clock (clock: wall) and a/sun; "
+        "keep one, or set 'clock: simulated'",
         """
         clock: wall
         components:
@@ -288,8 +288,8 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:1: a/sun: two time sources: the clock on the wall (clock: wall) and a/sun; "
-        "keep one, say 'clock: simulated'",
+        "it.yaml:1: a/sun: two time sources: the wall clock (clock: wall) and a/sun; "
+        "keep one, or set 'clock: simulated'",
         "components: {a/sun: {use: plan_parts:Sun}}",
         {"sets": ["clock=wall"]},
     ),

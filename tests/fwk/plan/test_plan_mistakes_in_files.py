@@ -44,7 +44,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: the tag '!secret' is not known here; leave it out",
+        "it.yaml:1: unknown tag '!secret'; leave it out",
         "seed: !secret 5\ncomponents: {it/a: {use: plan_parts:Odometer}}",
     ),
     Broken(
@@ -52,7 +52,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         "seed: !!int six\ncomponents: {it/a: {use: plan_parts:Odometer}}",
     ),
     Broken("it.yaml:1: it should be a mapping with keys such as 'name: value'", "[a, b]"),
-    Broken("it.yaml:1: values lie too deep in each other; a few levels are enough", f"name: {'[' * 3000}{']' * 3000}"),
+    Broken("it.yaml:1: values are nested too deeply; use a few levels", f"name: {'[' * 3000}{']' * 3000}"),
     Broken(
         "it.yaml:1: more than 100000 values when its aliases are written out; use fewer",
         "a0: &a0 [1, 2, 3, 4, 5, 6, 7, 8, 9]\n"
@@ -215,7 +215,7 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "b.yaml:2: files include each other in a ring: it.yaml -> a.yaml -> b.yaml -> it.yaml; leave one out",
+        "b.yaml:2: files include each other in a cycle: it.yaml -> a.yaml -> b.yaml -> it.yaml; leave one out",
         """
         include: [a.yaml]
         components: {it/a: {use: plan_parts:Odometer}}

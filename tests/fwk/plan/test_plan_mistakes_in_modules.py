@@ -68,7 +68,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         """,
     ),
     Broken(
-        "it.yaml:1: it/a: module 'several' defines several components; say which: several:One or several:Two",
+        "it.yaml:1: it/a: module 'several' defines several components; name one: several:One or several:Two",
         """
         components: {it/a: {use: several}}
         --- several.py

@@ -18,7 +18,7 @@ def of_type(message: str, source: str) -> Broken:
 
 @rows(
     Broken(
-        "lcmtypes/mine.lcm:1: the package 'robot' is taken by {installed}; give these types a package of their own",
+        "lcmtypes/mine.lcm:1: the package 'robot' is used by {installed}; give these types another package",
         f"{RUN}--- lcmtypes/mine.lcm\npackage robot;\nstruct mine_t {{ core.header_t header; }}",
     ),
     Broken(

@@ -101,7 +101,7 @@ LONG = "x" * 60
     Broken(
         """
         it.yaml:2: a/b: no LCM type 'robot.odometri_t' in lcmtypes/; did you mean 'robot.odometry_t'?
-        it.yaml:3: a/c: core.answer_t is the framework's own and does not begin with 'core.header_t header;'
+        it.yaml:3: a/c: core.answer_t belongs to the framework and does not begin with 'core.header_t header;'
         it.yaml:4: 'a d' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball
         """,
         """
@@ -120,7 +120,7 @@ def test_channels(folder: Path, broken: Broken) -> None:
 @rows(
     Broken(
         """
-        it.yaml:3: 'b' means no component; there is a, a/one, a/watcher
+        it.yaml:3: 'b' matches no component; there is a, a/one, a/watcher
         it.yaml:4: 'a/watcher' is a component; give the process of several another name
         it.yaml:5: a/one: it is in two processes, 'left' and 'right'; keep one
         """,
@@ -134,12 +134,12 @@ def test_channels(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "--only: 'a/oen' means no component; did you mean 'a/one'?",
+        "--only: 'a/oen' matches no component; did you mean 'a/one'?",
         "components: {a/one: {use: plan_parts:Odometer}}",
         {"only": ["a", "a/oen"]},
     ),
     Broken(
-        "--without: 'bb' means no component; there is a, a/one",
+        "--without: 'bb' matches no component; there is a, a/one",
         "components: {a/one: {use: plan_parts:Odometer}}",
         {"without": ["bb"]},
     ),
@@ -149,7 +149,7 @@ def test_channels(folder: Path, broken: Broken) -> None:
         {"without": ["*"]},
     ),
     Broken(
-        "--bus-port: the run would need the ports 65530 to 65567; take --bus-port 65498 or less",
+        "--bus-port: the run would need the ports 65530 to 65567; use --bus-port 65498 or less",
         "components: {a/one: {use: plan_parts:Odometer}}",
         {"bus_port": 65530},
     ),

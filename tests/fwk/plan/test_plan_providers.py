@@ -52,7 +52,7 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
     ),
     Broken(
         "it.yaml:2: a/guide: 2 components provide Way, which a/guide asks for as 'way': b/farer and c/farer; keep one, "
-        "or say 'providers: {way: b/farer}'",
+        "or set 'providers: {way: b/farer}'",
         """
         components:
           a/guide: {use: plan_parts:Guide}
@@ -64,7 +64,7 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
         """
         it.yaml:2: a/guide: 'b/frer' does not provide Way, which it asks for as 'way'; did you mean 'b/farer'?
         it.yaml:3: b/guide: 'b/one' does not provide Way, which it asks for as 'way'; there is b/farer
-        it.yaml:4: c/guide: it asks for no aspect 'wya' that a component provides; did you mean 'way'?
+        it.yaml:4: c/guide: it declares no aspect 'wya' that a component provides; did you mean 'way'?
         """,
         """
         components:
@@ -76,7 +76,7 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
         """,
     ),
     Broken(
-        "it.yaml:2: a/leader: components need each other in a ring: a/leader -> a/led -> a/leader; "
+        "it.yaml:2: a/leader: components need each other in a cycle: a/leader -> a/led -> a/leader; "
         "let one do without what another provides",
         """
         components:
@@ -95,7 +95,7 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
     ),
     Broken(
         "it.yaml:2: a/guide: it starts with the run and needs 'a/farer', which does not; "
-        "say 'start: false' here too, or not there",
+        "set 'start: false' here too, or remove it there",
         """
         components:
           a/guide: {use: plan_parts:Guide}

@@ -53,17 +53,18 @@ ROWS = [
     ),
     (
         "m/one: {use: plan_parts:Watcher, needs: two}",
-        "m/one: components need each other in a ring: m/one -> m/two -> m/one; leave one 'needs' out",
+        "m/one: components need each other in a cycle: m/one -> m/two -> m/one; leave one 'needs' out",
     ),
     ("m/two: {use: plan_parts:Watcher, needs: one}", ""),
     (
         "n/user: {use: plan_parts:Watcher, needs: later}",
-        "n/user: it starts with the run and needs 'n/later', which does not; say 'start: false' here too, or not there",
+        "n/user: it starts with the run and needs 'n/later', which does not; "
+        "set 'start: false' here too, or remove it there",
     ),
     ("n/later: {use: plan_parts:Watcher, start: false}", ""),
     (
         "n/needy: {use: plan_parts:Watcher, needs: ltaer}",
-        "n/needy: it needs 'n/ltaer', which is not there; did you mean 'n/later'?",
+        "n/needy: it needs 'n/ltaer', which does not exist; did you mean 'n/later'?",
     ),
     ("o/one: {use: plan_parts:Watcher}", ""),
     ("o/two: {use: plan_parts:Watcher, start: false}", ""),
@@ -87,7 +88,9 @@ def test_every_combination_is_reported_with_both_sides(folder: Path) -> None:
     lines = ["hosts:", "  both: o/*", "components:", *(f"  {component}" for component, _ in ROWS)]
     (folder / "it.yaml").write_text("\n".join(lines))
     number = {component.partition(":")[0]: place for place, (component, _) in enumerate(ROWS, 4)}
-    expected = ["it.yaml:2: o/one and o/two share a process and only one starts with the run; say the same of both"]
+    expected = [
+        "it.yaml:2: o/one and o/two share a process and only one starts with the run; set 'start' alike for both"
+    ]
     for component, text in ROWS:
         if text:
             place = number[component.partition(":")[0]]

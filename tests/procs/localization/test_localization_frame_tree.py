@@ -47,7 +47,7 @@ def test_tree_has_mounted_frames_and_the_pose_once_known() -> None:
 
 
 def test_frame_tree_with_wrong_frames_does_not_start() -> None:
-    with pytest.raises(TransformError, match=r"in a ring: a in b in a"):
+    with pytest.raises(TransformError, match=r"form a cycle: a in b in a"):
         Bench(FrameTree, mounted={"b": {"parent": "a"}, "a": {"parent": "b"}})
 
 

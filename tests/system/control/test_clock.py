@@ -76,7 +76,7 @@ def test_the_wall_clock_refuses_pause_step_and_speed(start: Start) -> None:
         ("speed", "2"): "run at another speed",
     }
     for words, what in asked.items():
-        assert f"the clock on the wall cannot be {what}, and this run follows it" in run.fwk(*words, code=2)
+        assert f"the wall clock cannot be {what}, and this run follows it" in run.fwk(*words, code=2)
     assert "running at speed" in run.fwk("speed")
     run.ticks_pass(2)
     run.end()

@@ -193,7 +193,7 @@ def test_components_that_cannot_be_debugged_run_on(start: Callable[..., Steered]
     file = tmp_path / "sensors.py"
     file.write_text(FILES["sensors.py"].replace("class WorldModel", "class World Model"))
     broken = debug(NAME)
-    broken.child.expect("sensors cannot be imported; the run goes on with what it has")
+    broken.child.expect("sensors cannot be imported; the run keeps the old code")
     assert broken.end() == 2
     file.write_text(FILES["sensors.py"])
     first = debug(NAME)

@@ -133,7 +133,7 @@ def test_frames_lost_on_a_full_disk_are_reported(
     run.launched.until("log.lcm: cannot record: No space left on device")
     run.ticks_pass(20)
     big.unlink()
-    run.launched.until("log.lcm: there is room again; ")
+    run.launched.until("log.lcm: the disk has room again; ")
     room_at = run.tick
     run.ticks_pass(20)
     run.launched.signal(signal.SIGINT)

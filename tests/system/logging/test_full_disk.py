@@ -41,7 +41,7 @@ def test_a_full_disk_stops_log_and_recording_only(
     steered.ticks_pass(20)
     assert steered.json("status", "r/counter")["components"][0]["state"] == "running"
     big.unlink()
-    run.until_count("there is room again; ", 3)
+    run.until_count("the disk has room again; ", 3)
     room_at = steered.tick
     steered.ticks_pass(20)
     run.signal(signal.SIGINT)
@@ -58,7 +58,7 @@ def test_a_full_disk_stops_log_and_recording_only(
     assert set(range(1, 15)) < set(ticks)
     assert set(range(room_at + 1, room_at + 15)) < set(ticks)
     said = [line["text"] for line in read_lines(folder / "fwk.log.jsonl")]
-    assert any("fwk.log.jsonl: there is room again; " in text for text in said)
+    assert any("fwk.log.jsonl: the disk has room again; " in text for text in said)
 
 
 def test_a_setting_that_cannot_be_kept_is_not_set(
