@@ -1,11 +1,12 @@
 """State of the display: newest messages, rates and log lines of the run; selection and filters of the user."""
 
+import os
 from collections import deque
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.display.cpu import CpuMeter
-from fwk.display.figures import LoopTime, loop_times
+from fwk.display.figures import LoopTime, loop_times, slowest
 from fwk.display.floods import LineGroup, LineGroups
 from fwk.display.plan_overview import fewer_processes
 from fwk.display.scoreboard import Drawing, Scoreboard
@@ -95,10 +96,17 @@ class View:
 
     @property
     def slowness(self) -> str:
-        """Returns what helps a run that has been slower than asked for some seconds; empty for all others."""
-        if self._slow < _SLOW_STATUSES:
+        """Returns why a run has been slower than asked for some seconds, and what helps; empty for all others."""
+        if self._slow < _SLOW_STATUSES or self.standing_s:
             return ""
-        return f"slower than asked; on a machine of so few cores, start it with {fewer_processes(self.plan)}"
+        period_ms = self.plan.period_us / 1000 / (self.plan.speed or 1)
+        busiest = slowest(self.loop_times, 1)
+        if busiest and busiest[0].mean_ms > period_ms:
+            return f"slower than asked; {busiest[0].name} takes {busiest[0].mean_ms:.0f} ms of {period_ms:g} ms a tick"
+        hosts, cores = len(self.plan.hosts), len(os.sched_getaffinity(0))
+        if hosts <= cores:
+            return "slower than asked; 'fwk top' shows where the time goes"
+        return f"slower than asked; {hosts} processes share {cores} cores: start it with {fewer_processes(self.plan)}"
 
     @property
     def loop_times(self) -> dict[str, LoopTime]:

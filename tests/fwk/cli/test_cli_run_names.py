@@ -1,6 +1,7 @@
 """Runs have names and records: they start in the background, are listed, found by name, and ended from elsewhere."""
 
 import json
+import re
 import socket
 import subprocess
 from collections.abc import Iterator
@@ -64,6 +65,39 @@ def test_an_immediate_failure_of_a_detached_run_is_reported(folder: Path) -> Non
     result = launch(folder, "cards.yaml", "--detach")
     assert result.returncode == 1
     assert "ZeroDivisionError" in result.stdout
+
+
+SLEEPER = """
+import time
+from fwk import Component
+class Sleeper(Component):
+    stage = "think"
+    def init(self) -> None:
+        time.sleep(3)
+    def loop(self) -> None:
+        pass
+"""
+
+
+@pytest.mark.system
+def test_detach_names_the_component_that_the_start_waits_for(folder: Path, ports: PortBlock) -> None:
+    write_files(folder, {"procs/sleeper.py": SLEEPER, "launch/slow.yaml": "components: {a/bed: {use: procs.sleeper}}"})
+    command = ["fwk-launch", "slow.yaml", "--bus-port", str(ports.bus), "--run", "slow", "--ticks", "5", "--detach"]
+    result = run(folder, *command)
+    assert result.returncode == 0
+    assert re.search(r"^slow: the start has waited [12] s for a/bed$", result.stdout, re.MULTILINE), result.stdout
+
+
+@pytest.mark.system
+@pytest.mark.parametrize("output", [">/dev/full", ">&-", "| true"])
+def test_detach_without_output_reports_on_stderr(folder: Path, ports: PortBlock, output: str) -> None:
+    typed = f"fwk-launch cards.yaml --bus-port {ports.bus} --run quiet --time 300 --detach {output}"
+    shell = run(folder, "bash", "-o", "pipefail", "-c", typed)
+    ended = run(folder, "fwk", "stop", "--all", "--run", "quiet")
+    assert shell.returncode == 0, shell.stdout
+    assert ended.returncode == 0, ended.stdout
+    if "full" in output:
+        assert "standard output cannot be written; the run goes on\nquiet: runs in the background" in shell.stdout
 
 
 @pytest.mark.system

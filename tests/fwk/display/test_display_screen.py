@@ -1,5 +1,6 @@
 """The live picture: all important figures fit the terminal."""
 
+from dataclasses import replace
 from io import StringIO
 
 import pytest
@@ -7,6 +8,7 @@ from rich.console import Console
 
 from fwk.display.screen import screen
 from fwk.display.view import View
+from fwk.model.plan import HostPlan
 from lcmtypes.core import log_t, status_t
 from tests.fwk.cli.cli_runs import MATCH, TRACKER, component, game_state, host_of, log, packet, plan, status
 
@@ -131,13 +133,26 @@ def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -
     assert view.waiting == ""
 
 
-@pytest.mark.parametrize("columns", [80, 120])
-def test_a_run_below_the_desired_speed_names_the_flag(columns: int) -> None:
-    def shown(statuses: int) -> list[str]:
-        return drawn(*[status(TRACKER, 1, speed=0.3)] * statuses, columns=columns)
-
-    assert not any("slower" in line for line in shown(3))
-    assert row(shown(9), "slower").endswith("start it with --only NAME...")
+@pytest.mark.parametrize(
+    ("cores", "busy_us", "cause"),
+    [
+        (2, 1000, "3 processes share 2 cores: start it with --hosting robot"),
+        (4, 1000, "'fwk top' shows where the time goes"),
+        (2, 70_000, "cyan1/camera takes 70 ms of 50 ms a tick"),
+    ],
+)
+def test_a_run_below_the_desired_speed_names_the_cause(
+    cores: int, busy_us: int, cause: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: set(range(cores)))
+    hosts = tuple(HostPlan(index, f"cyan1/c{index}", (index,)) for index in range(3))
+    view = View(replace(plan(), hosts=hosts))
+    for count in range(9):
+        assert (view.slowness == "") == (count < 8)
+        view.take(packet("fwk/status", status(TRACKER, 1, speed=0.3, busy_us=busy_us)))
+    assert view.slowness == f"slower than asked; {cause}"
+    drawing = drawn(*[status(TRACKER, 1, speed=0.3, busy_us=70_000)] * 9, columns=80)
+    assert row(drawing, "slower").endswith("cyan1/camera takes 70 ms of 50 ms a tick")
 
 
 @pytest.mark.parametrize("columns", [40, 60, 80, 120])
