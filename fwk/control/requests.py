@@ -17,7 +17,7 @@ Names = Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=
 
 
 class _Request(BaseModel):
-    model_config = ConfigDict(extra="forbid", strict=True)
+    model_config = ConfigDict(extra="forbid", strict=True, defer_build=True)
 
 
 class Run(_Request):
@@ -157,8 +157,13 @@ SupervisorRequest = (
     Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
 )
 GatewayRequest = Channels | Show | Watch | Call
-to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(Annotated[SupervisorRequest, Field(discriminator="verb")])
-to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(Annotated[GatewayRequest, Field(discriminator="verb")])
+_LATER = ConfigDict(defer_build=True)  # validators are built for the first request: most runs never get one
+to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(
+    Annotated[SupervisorRequest, Field(discriminator="verb")], config=_LATER
+)
+to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(
+    Annotated[GatewayRequest, Field(discriminator="verb")], config=_LATER
+)
 
 
 class RequestError(Exception):

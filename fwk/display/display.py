@@ -2,31 +2,23 @@
 
 import contextlib
 import os
-import select
 import signal
 import socket
 import sys
-from collections.abc import Iterator
 from typing import TextIO
 
-from rich.console import Console
-from rich.live import Live
-
-from fwk.clock import SPEED_MAX, SPEED_MIN, US_PER_S, monotonic_us
+from fwk.clock import US_PER_S, monotonic_us
 from fwk.display.floods import FloodGate, Tracebacks
 from fwk.display.keys import Keyboard
 from fwk.display.lines import held_back_line, log_line, progress_of, status_line
-from fwk.display.screen import screen
+from fwk.display.packets import LOOK_S, packets
 from fwk.display.steering import Steering
-from fwk.display.view import LEVELS, View
+from fwk.display.view import View
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
 
-_PACKET_BYTES = 1 << 20
-_REDRAW_S = 0.25
 _STATUS_LINE_S = 5.0
 _WAITING_LINE_S = 10.0
-_LOOK_S = 0.5
 
 
 def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
@@ -43,8 +35,10 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
         if plain or not sys.stdout.isatty():
             show_lines(View(plan), connection, sys.stdout, Steering(plan.bus_port))
         else:
+            from fwk.display.live import show_live  # a display of lines needs no rich, which takes long to import
+
             with Keyboard() as keyboard:
-                show_live(View(plan), connection, Console(), keyboard, Steering(plan.bus_port))
+                show_live(View(plan), connection, keyboard, Steering(plan.bus_port))
 
 
 def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Steering) -> None:
@@ -56,7 +50,7 @@ def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Ste
     """
     due_us, shown, waiting_due_us, slowness = 0, "", 0, ""
     gate, tracebacks = FloodGate(), Tracebacks()
-    for packet in _packets(connection, _LOOK_S):
+    for packet in packets(connection, LOOK_S):
         with contextlib.suppress(MessageError):
             line = view.take(packet) if packet else None
             if line and gate.passes(line, monotonic_us()):
@@ -82,73 +76,6 @@ def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Ste
                 print(f"tick {view.status.tick if view.status else 0}   {view.waiting}", file=out, flush=True)
     for line, count in gate.held_back(sys.maxsize):
         print(held_back_line(line, count), file=out, flush=True)
-
-
-def show_live(view: View, connection: socket.socket, console: Console, keyboard: Keyboard, steering: Steering) -> None:
-    """Redraws the picture four times a second and obeys the keys; the last picture stays on the terminal."""
-    due_us = look_us = 0
-    with Live(console=console, auto_refresh=False, redirect_stdout=False, redirect_stderr=False) as live:
-        for packet in _packets(connection, _REDRAW_S, keyboard):
-            with contextlib.suppress(MessageError):
-                if packet:
-                    view.take(packet)
-            for key in keyboard.read() if select.select(keyboard.descriptors, [], [], 0)[0] else ():
-                press(key, view, steering)
-                due_us = 0
-            if view.standing_s and monotonic_us() >= look_us:
-                look_us = monotonic_us() + round(_LOOK_S * US_PER_S)
-                view.waits_for = steering.waits_for()
-            if monotonic_us() >= due_us:
-                due_us = monotonic_us() + round(_REDRAW_S * US_PER_S)
-                picture = screen(view, console.height, console.width, keys=bool(keyboard.descriptors))
-                live.update(picture, refresh=True)
-        view.message = ""
-        live.update(screen(view, console.height, console.width), refresh=True)
-
-
-def press(key: str, view: View, steering: Steering) -> None:
-    """Carries out the action of a key."""
-    view.message = ""
-    if key in ("space", "p"):
-        steering.toggle_pause(bool(view.status and view.status.paused))
-    elif key == "s":
-        steering.step()
-    elif key in ("+", "=", "-"):
-        speed = steering.speed() or (view.status.speed if view.status else 1.0)
-        factor = 0.5 if key == "-" else 2.0
-        steering.change_speed(min(SPEED_MAX, max(SPEED_MIN, speed * factor)))
-    elif key == "m":
-        steering.change_speed(0.0)
-    elif key == "q":
-        steering.quit()
-    elif key in ("tab", "down", "j"):
-        view.select(1)
-    elif key in ("up", "k"):
-        view.select(-1)
-    elif key == "l":
-        view.level = (view.level + 1) % len(LEVELS)
-    elif key == "escape":
-        view.selected, view.level = "", 0
-    view.message, steering.said = steering.said, ""
-
-
-def _packets(connection: socket.socket, idle_s: float, keyboard: Keyboard | None = None) -> Iterator[bytes]:
-    """Yields packets as they come, and an empty one at a key or when nothing came for `idle_s`; ends with the
-    connection.
-    """
-    while True:
-        keys = keyboard.descriptors if keyboard else []
-        ready, _, _ = select.select([connection.fileno(), *keys], [], [], idle_s)
-        if connection.fileno() not in ready:
-            yield b""
-            continue
-        try:
-            packet = connection.recv(_PACKET_BYTES)
-        except ConnectionError:
-            return
-        if not packet:
-            return
-        yield packet
 
 
 def _leave(number: int, _: object) -> None:

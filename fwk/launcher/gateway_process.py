@@ -2,8 +2,9 @@
 
 import signal
 import socket
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from pathlib import Path
 
 from fwk.bus.network import UdpNetwork
 from fwk.bus.public import PublicBus
@@ -18,7 +19,6 @@ from fwk.lcm.event_log import LogError
 from fwk.logs import targets
 from fwk.model.plan import Plan
 from fwk.recording import sinks
-from fwk.recording.frame_recorder import FrameRecorder
 from fwk.supervisor.options import RunOptions
 
 DELETED = b"deleted"
@@ -60,12 +60,7 @@ def run_gateway(
     ]
     if options.record:
         try:
-            recorded = {channel: rings[channel] for channel in plan.record.frames}
-            recorder = (
-                FrameRecorder(plan, options.record, recorded, gateway.log.error)
-                if recorded
-                else sinks.Recorder(plan, options.record, gateway.log.error)
-            )
+            recorder = _recorder(plan, options.record, rings, gateway.log.error)
             gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic_plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
@@ -77,3 +72,12 @@ def run_gateway(
         with suppress(OSError):  # the supervisor has died
             control.send(DELETED + b"\0" + run_files.deleted.encode())
     return 0
+
+
+def _recorder(plan: Plan, path: Path, rings: Mapping[str, Ring], report: Callable[[str], None]) -> sinks.Recorder:
+    """Makes the recorder that the plan asks for; OpenCV is imported only to record frames."""
+    if not plan.record.frames:
+        return sinks.Recorder(plan, path, report)
+    from fwk.recording.frame_recorder import FrameRecorder
+
+    return FrameRecorder(plan, path, {channel: rings[channel] for channel in plan.record.frames}, report)

@@ -17,6 +17,7 @@ import pytest
 from fwk.display import display as display_module
 from fwk.display.floods import PRINTED_MAX, FloodGate, LineGroups
 from fwk.display.keys import Keyboard, restore
+from fwk.display.live import press
 from fwk.display.steering import Steering
 from fwk.display.view import View
 from lcmtypes.core import log_t, status_t
@@ -205,7 +206,7 @@ def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -
             yield each
             now_us[0] += 500_000
 
-    monkeypatch.setattr(display_module, "_packets", arriving)
+    monkeypatch.setattr(display_module, "packets", arriving)
     with socket.socket() as nothing:
         display_module.show_lines(view, nothing, out, Answers())
     said = [line for line in out.getvalue().splitlines() if "waits for" in line]
@@ -263,14 +264,14 @@ KEYS = {
 def test_keys_control_the_run(typed: str) -> None:
     view, steering = View(plan()), Answers()
     view.take(packet("fwk/status", status(TRACKER, 5)))
-    display_module.press("space" if typed == " " else typed, view, steering)
+    press("space" if typed == " " else typed, view, steering)
     assert steering.asked == [KEYS[typed]]
 
 
 def test_the_key_of_a_paused_run_resumes_it() -> None:
     view, steering = View(plan()), Answers()
     view.take(packet("fwk/status", status(TRACKER, 5, paused=True)))
-    display_module.press("space", view, steering)
+    press("space", view, steering)
     assert steering.asked == [("resume",)]
 
 
@@ -280,13 +281,13 @@ def test_keys_choose_a_component_and_a_level() -> None:
     view.take(packet("fwk/log", log("found the ball", log_t.WARNING)))
     chosen = []
     for _ in range(4):
-        display_module.press("tab", view, steering)
+        press("tab", view, steering)
         chosen.append((view.selected, len(view.shown_lines())))
     assert chosen == [("cyan1", 1), ("cyan1/camera", 0), ("cyan1/tracker", 1), ("", 1)]
     for _ in range(3):
-        display_module.press("l", view, steering)
+        press("l", view, steering)
     assert view.shown_lines() == []
-    display_module.press("escape", view, steering)
+    press("escape", view, steering)
     assert len(view.shown_lines()) == 1
 
 
