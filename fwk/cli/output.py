@@ -30,6 +30,11 @@ def complain(text: str) -> None:
     print(f"error: {text}", file=sys.stderr)
 
 
+def notice(text: str) -> None:
+    """Prints a note to stderr."""
+    print(f"note: {text}", file=sys.stderr)
+
+
 def run_program(program: Callable[[], int | None], interrupted: int = INTERRUPTED) -> NoReturn:
     """Runs a program to its exit code and exits with it; the machine's failures end it with a sentence and code 2.
 

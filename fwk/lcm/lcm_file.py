@@ -5,6 +5,12 @@ import re
 from dataclasses import dataclass, field
 from pathlib import Path
 
+RENAMED = {f"robot.{name}": f"core.{name}" for name in ("frame_t", "picture_t", "transform_t", "transforms_t")}
+"""Present names of types by former ones, as in earlier programs, launch files and recordings.
+
+Fingerprints do not depend on names.
+"""
+
 _TOKEN = re.compile(
     r"(?P<comment>//[^\n]*|/\*.*?\*/)|(?P<word>[A-Za-z_][\w.]*)|(?P<number>[-+]?[0-9][\w.+-]*|[-+]\.?\w+)"
     r"|(?P<sign>[{}\[\];,=])|(?P<space>\s+)|(?P<other>.)",

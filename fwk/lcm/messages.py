@@ -6,6 +6,7 @@ from importlib import import_module
 from typing import Any, ClassVar, Protocol, Self, cast, runtime_checkable
 
 from fwk.lcm import codec
+from fwk.lcm.lcm_file import RENAMED
 from lcmtypes.core import header_t
 
 
@@ -84,13 +85,9 @@ def type_name(message_type: type[Message]) -> str:
     return f"{message_type.__module__.removeprefix('lcmtypes.').split('.')[0]}.{message_type.__name__}"
 
 
-_RENAMED = {f"robot.{name}": f"core.{name}" for name in ("frame_t", "picture_t", "transform_t", "transforms_t")}
-"""Former names of types, as in launch files and recordings made before; fingerprints do not depend on names."""
-
-
 def current_name(name: str) -> str:
     """Returns the present name of a type that may have been renamed: `core.frame_t` for `robot.frame_t`."""
-    return _RENAMED.get(name, name)
+    return RENAMED.get(name, name)
 
 
 def type_named(name: str) -> type[Message]:

@@ -33,20 +33,28 @@ class PlanError(Exception):
 class Problems:
     """Collects mistakes.
 
-    A mistake in a template occurs in every robot that uses it; it is reported once, with their number.
+    A mistake in a template occurs in every robot that uses it; it is reported once, with their number. So is a note.
     """
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, str], list[Problem]] = {}
+        self._notes: dict[tuple[str, str], list[Problem]] = {}
 
     def __bool__(self) -> bool:
         return bool(self._found)
 
     def add(self, place: str, who: str, text: str) -> None:
         """Adds a mistake."""
-        namespace = who.rpartition("/")[0]
-        alike = text.replace(f"{namespace}/", "{namespace}/") if namespace else text
-        self._found.setdefault((place, alike), []).append(Problem(place, who, text))
+        _add(self._found, Problem(place, who, text))
+
+    def note(self, place: str, who: str, text: str) -> None:
+        """Adds a note: an entry of an earlier version, which is understood but has a better form."""
+        _add(self._notes, Problem(place, who, text))
+
+    @property
+    def notes(self) -> list[Problem]:
+        """All notes, in the order of files and lines."""
+        return sorted(map(_together, self._notes.values()), key=_position)
 
     def stop_if_any(self) -> None:
         """Ends the check if there is a mistake.
@@ -56,6 +64,12 @@ class Problems:
         """
         if self._found:
             raise PlanError(sorted(map(_together, self._found.values()), key=_position))
+
+
+def _add(found: dict[tuple[str, str], list[Problem]], problem: Problem) -> None:
+    namespace = problem.who.rpartition("/")[0]
+    alike = problem.text.replace(f"{namespace}/", "{namespace}/") if namespace else problem.text
+    found.setdefault((problem.place, alike), []).append(problem)
 
 
 def _together(alike: list[Problem]) -> Problem:

@@ -1,6 +1,6 @@
 """Loads a launch file: from its name and command-line options to a checked plan, or to all its mistakes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -54,11 +54,11 @@ class LaunchOptions:
     bus_port: int | None = None
 
 
-def load_plan(file: str, options: LaunchOptions = LaunchOptions()) -> Plan:
+def load_plan(file: str, options: LaunchOptions = LaunchOptions(), notice: Callable[[str], None] | None = None) -> Plan:
     """Finds, reads and checks a launch file, and imports everything that it uses.
 
     The whole file is checked, including components that `only` and `without` leave out. A channel whose writer is left
-    out has no writer, and its readers never see a value.
+    out has no writer, and its readers never see a value. `notice` takes a line for each entry of an earlier version.
 
     Raises:
         PlanError: the file has mistakes; the text has a line for each.
@@ -71,7 +71,11 @@ def load_plan(file: str, options: LaunchOptions = LaunchOptions()) -> Plan:
     typed = overrides(options.sets, problems)
     if typed.value:
         lay_over(files, path, typed, problems)
-    return _Loading(files, options, problems).plan()
+    plan = _Loading(files, options, problems).plan()
+    if notice:
+        for note in problems.notes:
+            notice(str(note))
+    return plan
 
 
 @dataclass

@@ -13,7 +13,7 @@ from fwk.plan.files.launch_file import Files
 from fwk.plan.files.settings import effective
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
-from fwk.plan.stages import stages_in, turns_of
+from fwk.plan.stages import stages_in, turns_of, without_former_every
 from fwk.plan.wiring.component_spec import ComponentSpec
 
 
@@ -86,10 +86,11 @@ def resolve(
             files.gaps.add(asked.namespace)
             continue
         report = partial(_report, problems, asked.name)
-        config, origins = effective(declared.config, asked.settings(), asked.node.place, report)
+        layers, former = without_former_every(asked, declared, problems)
+        config, origins = effective(declared.config, layers, asked.node.place, report)
         _check_ports(asked, declared, problems)
         indices = stages_in(asked, declared, stages, problems)
-        every, offset = turns_of(asked, declared, problems)
+        every, offset = turns_of(asked, declared, former, problems)
         found.append(Resolved(asked, declared, indices, config, origins, every, offset))
     _check_time_sources(found, problems)
     return found

@@ -4,14 +4,16 @@ import re
 from collections.abc import Sequence
 
 from fwk.component.component import DEFAULT_STAGES
-from fwk.component.declaration import Declaration
+from fwk.component.declaration import EVERY_MAX, Declaration
 from fwk.model.errors import Problems, hint
 from fwk.model.ports import STAGES_MAX
 from fwk.plan.files.launch_file import Files
+from fwk.plan.files.source import Node
 from fwk.plan.files.templates import Asked
 
 _NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
 _OFFSET_DIGITS = 6
+_FORMER_EVERY = "every_ticks"
 
 
 def stages_of(files: Files, problems: Problems) -> tuple[str, ...]:
@@ -50,9 +52,37 @@ def stages_in(asked: Asked, declared: Declaration, stages: Sequence[str], proble
     return tuple(index for index, name in enumerate(stages) if name in wanted)
 
 
-def turns_of(asked: Asked, declared: Declaration, problems: Problems) -> tuple[int, int]:
-    """Returns `every` and `offset` of a component: those of the launch file, or else of its class."""
-    every = declared.every if asked.entry.every is None else asked.entry.every
+def without_former_every(asked: Asked, declared: Declaration, problems: Problems) -> tuple[list[Node], int | None]:
+    """Returns the settings without `every_ticks`, a setting of former cameras that is now `every`, and its value.
+
+    A component that has a setting of that name keeps it.
+    """
+    layers, every = asked.settings(), None
+    if _FORMER_EVERY in declared.config.model_fields:
+        return layers, None
+    for index, layer in enumerate(layers):
+        node = layer.child(_FORMER_EVERY)
+        if node is None:
+            continue
+        layers[index] = Node({key: each for key, each in layer.value.items() if key != _FORMER_EVERY}, layer.place)
+        if isinstance(node.value, int) and not isinstance(node.value, bool) and 1 <= node.value <= EVERY_MAX:
+            every = node.value
+            text = (
+                f"the setting '{_FORMER_EVERY}' has become a key of the component; say 'every: {every}' beside 'use:'"
+            )
+            problems.note(node.place, asked.name, text)
+        else:
+            text = f"{_FORMER_EVERY} is {node.value!r}; it should be a whole number from 1 to {EVERY_MAX}"
+            problems.add(node.place, asked.name, text)
+    return layers, every
+
+
+def turns_of(asked: Asked, declared: Declaration, former: int | None, problems: Problems) -> tuple[int, int]:
+    """Returns `every` and `offset` of a component: those of the launch file, or else of its class.
+
+    `former` is the value of the former setting `every_ticks`.
+    """
+    every = former or (declared.every if asked.entry.every is None else asked.entry.every)
     if every > 1 and declared.rate_hz is not None:
         text = "it is continuous and takes part in no tick; leave 'every' out"
         problems.add(asked.node.at("every").place, asked.name, text)

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.arguments import Hosting
-from fwk.cli.output import say, say_table
+from fwk.cli.output import notice, say, say_table
 from fwk.cli.run_options import Json
 from fwk.clock import rate_word, turns_word
 from fwk.display.plan_overview import counted, overview, value_at
@@ -45,7 +45,7 @@ def check(
     """
     options = LaunchOptions(sets=sets or (), hosting=hosting.value, only=only or (), without=without or ())
     try:
-        plan = load_plan(file, options)
+        plan = load_plan(file, options, notice)
     except PlanError as error:
         if as_json:
             say(json.dumps({"ok": False, "mistakes": [_plain(each) for each in error.problems]}, indent=2))

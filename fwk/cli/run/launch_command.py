@@ -14,7 +14,7 @@ from fwk.bus.port_lock import PortLock
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
-from fwk.cli.output import BAD_INPUT
+from fwk.cli.output import BAD_INPUT, notice
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
 from fwk.cli.run.profile import write_profiles
@@ -129,7 +129,7 @@ def launch(
         bus_port=bus_port,
     )
     with _ending():
-        plan = load_plan(file, launch_options)
+        plan = load_plan(file, launch_options, notice)
         _check_names(plan, {"--debug": debug, "--profile": profile})
         _check_video(plan, video)
         name = _checked_name(run_name, plan)

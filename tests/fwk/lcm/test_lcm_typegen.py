@@ -152,3 +152,23 @@ def test_components_with_own_types_pass_strict_mypy(folder: Path) -> None:
     command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(folder.parent / ".cache"), "tracker.py"]
     done = subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, check=False, timeout=250)
     assert done.stdout.strip() == "Success: no issues found in 1 source file"
+
+
+QUIET = "import warnings; warnings.simplefilter('ignore'); "
+
+
+def test_types_that_moved_to_core_keep_their_former_names(folder: Path) -> None:
+    write(folder, "robot")
+    generate(folder)
+    program = f"{QUIET}from lcmtypes.robot import frame_t, transforms_t, point_t; from lcmtypes import core; "
+    assert run(folder, f"{program}print(frame_t is core.frame_t, transforms_t is core.transforms_t)") == "True True"
+    warned = run(folder, "from lcmtypes.robot import frame_t")
+    assert warned.endswith("DeprecationWarning: 'lcmtypes.robot.frame_t' is now 'lcmtypes.core.frame_t'")
+    assert "cannot import name 'frame' from 'lcmtypes.robot'" in run(folder, "from lcmtypes.robot import frame")
+
+
+def test_type_of_a_former_name_in_ones_own_package_counts(folder: Path) -> None:
+    write(folder, "robot", "package NAME;\nstruct frame_t { int32_t mine; }\n")
+    generate(folder)
+    program = f"{QUIET}from lcmtypes.robot import frame_t, transforms_t; print(frame_t(mine=1), transforms_t.__name__)"
+    assert run(folder, program) == "frame_t(mine=1) transforms_t"

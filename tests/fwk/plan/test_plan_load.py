@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.model.errors import PlanError
 from fwk.model.plan import NOBODY, ComponentPlan, Plan
 from fwk.model.plan_document import document_of, plan_from
 from fwk.model.sections import RestartPolicy
@@ -314,3 +315,45 @@ def test_continuous_component_has_its_own_rate_and_process(load: Load, folder: P
     assert [(each.rate_hz, each.stages) for each in plan.components] == [(20, ()), (0.5, ()), (None, (5,))]
     assert [host.components for host in plan.hosts] == [(0,), (1,), (2,)]
     assert plan_from(json.loads(json.dumps(document_of(plan)))) == plan
+
+
+CAMERA = "components:\n  it/odometer:\n    use: plan_parts:Odometer\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "options", "place"),
+    [
+        (f"{CAMERA}    config: {{every_ticks: 2}}\n", {}, "it.yaml:4"),
+        (f"{CAMERA}config:\n  it/odometer: {{every_ticks: 2}}\n", {}, "it.yaml:5"),
+        (f"{CAMERA}    every: 3\n    config: {{every_ticks: 3}}\n", {"sets": ["it/odometer.every_ticks=2"]}, "--set"),
+    ],
+)
+def test_former_every_ticks_is_every_and_noted_once(
+    load: Load, folder: Path, text: str, options: dict[str, list[str]], place: str
+) -> None:
+    notes: list[str] = []
+    load(text, **options)
+    (plan,) = [load_plan("it.yaml", LaunchOptions(**options), notes.append)]  # type: ignore[arg-type]
+    assert component(plan, "it/odometer").every == 2
+    assert "every_ticks" not in component(plan, "it/odometer").config
+    assert [note.partition(": ")[0].rpartition("/")[2] for note in notes if "every: 2" in note] == [place]
+
+
+def test_former_every_ticks_of_a_template_is_noted_once(load: Load) -> None:
+    notes: list[str] = []
+    load(
+        "templates: {eye: {odometer: {use: plan_parts:Odometer, config: {every_ticks: 2}}}}\n"
+        "robots: {a1: {use: eye}, a2: {use: eye}}\n"
+    )
+    plan = load_plan("it.yaml", LaunchOptions(), notes.append)
+    assert [each.every for each in plan.components] == [2, 2]
+    text = "the setting 'every_ticks' has become a key of the component; say 'every: 2' beside 'use:'"
+    assert notes == [f"it.yaml:1: a1/odometer (and 1 more): {text}"]
+
+
+@pytest.mark.parametrize("value", ["0", "two", "1.5", "true", "1000001", "[2]"])
+def test_former_every_ticks_is_checked(load: Load, value: str) -> None:
+    with pytest.raises(
+        PlanError, match=r"it.yaml:4: it/odometer: every_ticks is .*; it should be a whole number from 1"
+    ):
+        load(f"{CAMERA}    config: {{every_ticks: {value}}}\n")
