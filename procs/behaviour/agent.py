@@ -7,14 +7,13 @@ from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, ch
 from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
-from procs.behaviour.game import Game, game_of
+from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.skills.book import SKILLS
-from procs.behaviour.tactics import Order, Tactics
-from procs.behaviour.view import Frame, View, view_of
+from procs.behaviour.tactics import Order, Tactics, leave_field
+from procs.behaviour.view import View, view_of
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad
-from procs.model.robot import side_of, team_of
-from procs.referee.restarts import team_number
+from procs.referee.ends import team_number
 
 _EXPIRES_S = 1.0
 """A command that the skiller has not begun by then is not begun."""
@@ -49,14 +48,17 @@ class Agent(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._frame = Frame(-side_of(team_of(self._robot)))
+        self._team = team_number(self._robot)
+        self._frame = frame_of(self.game_state.value, self._team)
         self._tactics = Tactics(self.config.field)
         self._call: Call | None = None
 
     def loop(self) -> None:
-        role = self.role.value
-        view = view_of(self.world_model.value, self._robot, role.role, self._frame)
-        game = game_of(self.game_state.value, team_number(self._robot), self._frame)
+        role, frame = self.role.value, frame_of(self.game_state.value, self._team)
+        if frame != self._frame:
+            self._frame, self._tactics = frame, Tactics(self.config.field)
+        game = game_of(self.game_state.value, self._team, frame)
+        view = view_of(self.world_model.value, self._robot, role.role, frame).without(game.sent_off)
         role.role, order = self._decide(view, game)
         role.intention = order.intention or order.skill
         self.role.write()
@@ -65,11 +67,14 @@ class Agent(Component):
     def _decide(self, view: View, game: Game) -> tuple[str, Order]:
         """Returns the role of the robot and its order."""
         held, field = self.kicker_state.value.ball_held, self.config.field
+        if self._robot in game.sent_off and view.localized:
+            return roles.ABSENT, leave_field(view, field)
         if self.config.strategy == "greedy":
             return greedy.decide(view, game, held, field)
         idle = roles.Job(self.role.value.role or roles.DEFENDER, view.own.place)
         job = roles.assign(view, field).get(self._robot, idle)
-        return job.role, self._tactics.decide(view, game, job, held, self.clock.period_s)
+        order = self._tactics.decide(view, game, job, held, self.clock.period_s)
+        return roles.PASSER if self._tactics.barred else job.role, order
 
     def _command(self, order: Order) -> None:
         place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)
@@ -77,6 +82,7 @@ class Agent(Component):
             command = self.skill.value
             command.skill = order.skill
             command.x_m, command.y_m, command.heading_rad = *place, heading_rad
+            command.speed_m_s = order.speed_m_s
             self._call = self.skill.call(expires_s=_EXPIRES_S)
 
     def _is_new(self, skill: str, place: Point, heading_rad: float) -> bool:

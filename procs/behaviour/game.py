@@ -1,5 +1,6 @@
 """The referee's state as one team sees it, in the attack frame."""
 
+import math
 from enum import Enum
 from typing import NamedTuple
 
@@ -7,7 +8,8 @@ from lcmtypes.soccer import game_state_t
 from procs.behaviour.view import Frame
 from procs.model.field import Point
 from procs.model.geometry import plausible
-from procs.referee.restarts import State, Team
+from procs.referee.ends import Ends, Team
+from procs.referee.restarts import State
 
 
 class Whose(Enum):
@@ -26,6 +28,8 @@ class Game(NamedTuple):
     whose: Whose = Whose.NEITHER
     spot: Point = Point(0.0, 0.0)
     """Place of the set piece."""
+    sent_off: tuple[str, ...] = ()
+    """Robots that take no part in the game."""
 
     @property
     def free_play(self) -> bool:
@@ -41,6 +45,12 @@ class Game(NamedTuple):
 _STATES = {int(state): state for state in State}
 
 
+def frame_of(message: game_state_t, team: Team) -> Frame:
+    """Returns the attack frame of a team, which turns when the teams change ends."""
+    ends = Ends(math.copysign(1.0, message.cyan_side)) if message.cyan_side else Ends()
+    return Frame(-ends.side_of(team))
+
+
 def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
     """Converts the referee's message; an unknown state stops the robot."""
     whose = Whose.NEITHER
@@ -48,4 +58,5 @@ def game_of(message: game_state_t, team: Team, frame: Frame) -> Game:
         whose = Whose.OURS if message.state_team == team else Whose.THEIRS
     x_m, y_m = message.ball_x_m, message.ball_y_m
     spot = frame.point(x_m, y_m) if plausible(x_m, y_m) else Point(0.0, 0.0)
-    return Game(_STATES.get(message.state, State.FROZEN), message.stopped, whose, spot)
+    state = _STATES.get(message.state, State.FROZEN)
+    return Game(state, message.stopped, whose, spot, tuple(message.sent_off))

@@ -12,6 +12,10 @@ from procs.model.field import Field, Point
 from procs.model.robot import number_of
 
 GOALKEEPER, ATTACKER, SUPPORTER, DEFENDER = "goalkeeper", "attacker", "supporter", "defender"
+PASSER = "passer"
+"""Took a set piece and may not touch the ball before another robot has."""
+ABSENT = "absent"
+"""Is off the field, or on its way there."""
 
 _HAS_BALL_M = 0.45
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
@@ -33,7 +37,8 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     The lowest number keeps the goal unless it is alone; of the others the one that meets the ball first attacks. The
     rest fill the formation so that they drive little. The order of the mates does not matter.
     """
-    team = sorted((*view.mates, view.own) if view.localized else view.mates, key=lambda robot: robot.name)
+    present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
+    team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
     jobs: dict[str, Job] = {}
     if len(team) > 1:
         keeper = min(team, key=lambda robot: (number_of(robot.name), robot.name))
@@ -43,7 +48,8 @@ def assign(view: View, field: Field) -> dict[str, Job]:
         return jobs
     course = ballistics.Course(view.ball)
     times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
-    attacker = min(team, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
+    free = [robot for robot in team if robot.role != PASSER] or team
+    attacker = min(free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
     theirs_s = min((course.meet(other.place).time_s for other in view.opponents), default=math.inf)

@@ -3,14 +3,13 @@
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Request, RequestState, Serves, Writes, channel
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_state_t
 from lcmtypes.soccer import drive_target_t, game_state_t, skill_command_t, skill_status_t, world_model_t
-from procs.behaviour.game import Whose, game_of
+from procs.behaviour.game import Whose, frame_of, game_of
 from procs.behaviour.skills.book import SKILLS, Machine
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
-from procs.behaviour.view import Frame, view_of
+from procs.behaviour.view import view_of
 from procs.model.field import Field
 from procs.model.geometry import plausible
-from procs.model.robot import side_of, team_of
-from procs.referee.restarts import team_number
+from procs.referee.ends import team_number
 
 _KICK_TIMEOUT_S = 0.15
 """A kick without an answer by then has failed."""
@@ -45,12 +44,14 @@ class Skiller(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._frame = Frame(-side_of(team_of(self._robot)))
+        self._team = team_number(self._robot)
+        self._frame = frame_of(self.game_state.value, self._team)
         self._machine = Machine()
         self._request: Request[skill_command_t] | None = None
         self._kick: Call | None = None
 
     def loop(self) -> None:
+        self._frame = frame_of(self.game_state.value, self._team)
         for request in self.skill:
             self._begin(request)
         step = self._machine.step(self._scene())
@@ -82,7 +83,7 @@ class Skiller(Component):
     def _scene(self) -> Scene:
         command = self._request.value if self._request else skill_command_t()
         kicker = self.kicker_state.value
-        game = game_of(self.game_state.value, team_number(self._robot), self._frame)
+        game = game_of(self.game_state.value, self._team, self._frame)
         return Scene(
             view_of(self.world_model.value, self._robot, "", self._frame),
             self._frame.point(command.x_m, command.y_m),

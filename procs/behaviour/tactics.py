@@ -8,7 +8,7 @@ from procs.behaviour.game import Game, Whose
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
-from procs.model.geometry import bearing_rad, clamp
+from procs.model.geometry import ahead, bearing_rad, clamp
 from procs.referee.restarts import State
 
 _SHOT_RANGE_M = 9.0  # less than half the field: a goal from the own half would not count
@@ -22,6 +22,16 @@ _MARK_M = 3.0  # a defender leaves its place for an opponent this near
 _HELD_M = 0.5  # an opponent this near to the ball has it
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 0.8
+_BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
+_TOUCHED_M = 0.4
+_BENCH_M = 8.0  # from the halfway line
+_FREE_S = 0.3  # a ball that is lost for longer is set free
+_DRIBBLE_M = 1.0  # then a poorer shot or a pass will do ...
+_RELEASE_M = 1.5  # ... and then the ball must go; the rules allow 3 m, and braking takes its way
+_LONGEST_M = 2.3
+_PUSH_M = 3.0
+_PUSH_M_S = 1.2
+_SLOW_BALL_M_S = 2.5
 
 
 class Order(NamedTuple):
@@ -31,6 +41,8 @@ class Order(NamedTuple):
     place: Point = Point(0.0, 0.0)
     heading_rad: float = 0.0
     intention: str = ""
+    speed_m_s: float = 0.0
+    """Of a pass: speed of the ball at its target; 0: the skill's own."""
 
 
 class Tactics:
@@ -40,17 +52,41 @@ class Tactics:
         self.field = field
         self._last = Order("stop")
         self._held_s = 0.0
+        self._held_from: Point | None = None
+        self._free_s = 0.0
         self._taking = False  # the ball in the mouth is that of the own set piece
+        self._barred_s = 0.0
+
+    @property
+    def barred(self) -> bool:
+        """Whether the robot has taken a set piece, and no other robot has touched the ball since."""
+        return self._barred_s > 0.0
 
     def decide(self, view: View, game: Game, job: Job, holds_ball: bool, duration_s: float) -> Order:
         """Returns the order for this tick, `duration_s` after the last."""
         self._held_s = self._held_s + duration_s if holds_ball else 0.0
+        self._free_s = 0.0 if holds_ball else self._free_s + duration_s
+        if self._free_s > _FREE_S:
+            self._held_from = None
+        elif holds_ball:
+            self._held_from = self._held_from or view.ball.place
+        self._barred_s = self._still_barred_s(view, game, holds_ball) - duration_s
         if not game.free_play:
             self._taking = game.whose is Whose.OURS and job.role == ATTACKER
         elif not holds_ball:
             self._taking = False
         self._last = self._order(view, game, job, holds_ball)
         return self._last
+
+    def _still_barred_s(self, view: View, game: Game, holds_ball: bool) -> float:
+        """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
+        others = (*view.mates, *view.opponents)
+        if game.stopped or not view.mates or holds_ball:
+            return 0.0
+        if self._taking and self._last.skill == "pass":
+            return _BARRED_S  # it held the ball in the last tick and does not any more
+        touched = any(math.dist(other.place, view.ball.place) < _TOUCHED_M for other in others)
+        return 0.0 if touched else self._barred_s
 
     def _order(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
         if game.paused or not view.localized:
@@ -95,7 +131,8 @@ class Tactics:
 
     def _play_ball(self, view: View) -> Order:
         pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
-        impatient = self._held_s > _PATIENCE_S
+        carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
+        impatient = self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
         if self._taking:
             order = self._pass_on(view, back_m=math.inf) or self._shot(view, _ROOM_M)
         elif pressed or impatient:
@@ -105,11 +142,16 @@ class Tactics:
         in_danger = pressed and view.own.place.x_m < _DANGER_M
         if order is None and (in_danger or self._held_s > 2 * _PATIENCE_S):
             order = self._clear(view)
+        if order is None and carried_m > _RELEASE_M:
+            order = self._push(view)
         return order or self._dribble(view)
 
     def _dribble(self, view: View) -> Order:
         ball, goal = view.ball.place, self.field.goal_centre(1.0)
         target = Point(min(ball.x_m + 3.0, self.field.half_length_m - 2.5), clamp(0.6 * ball.y_m, -3.0, 3.0))
+        start = self._held_from or ball
+        if math.dist(start, target) > _LONGEST_M:
+            target = ahead(start, bearing_rad(start, target), _LONGEST_M)
         return Order("dribble", target, bearing_rad(target, goal), "dribble")
 
     def _shot(self, view: View, room_m: float) -> Order | None:
@@ -127,6 +169,15 @@ class Tactics:
 
     def _clear(self, view: View) -> Order:
         return Order("shoot", aim.best_shot(view.ball.place, _others(view), self.field).place, intention="clear")
+
+    def _push(self, view: View) -> Order:
+        """Sets the ball free, so that the robot can take it again: a slow pass ahead, where the way is free."""
+        start = view.ball.place
+        goal_rad = bearing_rad(start, self.field.goal_centre(1.0))
+        places = [ahead(start, goal_rad + turn_rad, _PUSH_M) for turn_rad in (0.0, 0.5, -0.5, 1.0, -1.0)]
+        inside = [place for place in places if self.field.in_field(*place, -0.5)] or places[:1]
+        best = max(inside, key=lambda place: min(0.6, aim.lane_rad(start, place, _others(view), _SLOW_BALL_M_S)))
+        return Order("pass", best, bearing_rad(start, best), "push", _PUSH_M_S)
 
     def _pass_on(self, view: View, back_m: float) -> Order | None:
         best = aim.best_pass(view.own, _field_players(view), view.opponents, back_m)
@@ -169,6 +220,13 @@ def keeper_takes(view: View, field: Field) -> bool:
     course = ballistics.Course(ball)
     keeper_s = course.meet(keepers[0].place).time_s
     return all(keeper_s < course.meet(other.place).time_s + 0.3 for other in others)
+
+
+def leave_field(view: View, field: Field) -> Order:
+    """Returns the order of a robot that was sent off: over the nearer touch line, and to wait there."""
+    own = view.own.place
+    place = Point(clamp(own.x_m, -_BENCH_M, _BENCH_M), math.copysign(field.half_width_m + field.border_m / 2, own.y_m))
+    return Order("goto", place, view.own.heading_rad, "leave the field")
 
 
 def _others(view: View) -> tuple[Robot, ...]:

@@ -5,6 +5,7 @@ it, so that both teams run the same code and play alike.
 """
 
 import math
+from collections.abc import Container
 from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, robot_estimate_t, world_model_t
@@ -58,6 +59,10 @@ class View(NamedTuple):
     ball: Ball
     mates: tuple[Robot, ...] = ()
     opponents: tuple[Robot, ...] = ()
+
+    def without(self, robots: Container[str]) -> "View":
+        """Returns the view without mates that take no part in the game."""
+        return self._replace(mates=tuple(mate for mate in self.mates if mate.name not in robots))
 
 
 def view_of(model: world_model_t, name: str, role: str, frame: Frame, mate_timeout_s: float = 2.0) -> View:

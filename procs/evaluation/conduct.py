@@ -10,8 +10,9 @@ from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.model.field import Point
 from procs.model.robot import team_of
+from procs.referee.ends import Ends, Team
 from procs.referee.positions import in_wrong_half, too_near
-from procs.referee.restarts import Restart, State, Team
+from procs.referee.restarts import Restart, State
 
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3
@@ -45,9 +46,10 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
             truth = piece.truth[tick]
             middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in truth.robots}
             restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
-            distances.append(bool(too_near(restart, middles)))
+            ends = Ends(game.cyan_side or -1.0)
+            distances.append(bool(too_near(restart, middles, ends)))
             if restart.state is State.KICK_OFF:
-                halves.append(bool(in_wrong_half(restart, middles)))
+                halves.append(bool(in_wrong_half(restart, middles, ends)))
     return distances, halves
 
 

@@ -3,6 +3,8 @@
 import re
 
 CYAN, MAGENTA = "cyan", "magenta"
+RADIUS_M = 0.25
+"""Of the round robots of the middle size league."""
 
 _NAME = re.compile(r"(.*?)(\d*)")
 

@@ -1,47 +1,71 @@
-"""Places that robots have to keep at a set piece: their distance to the ball, and the own half at a kick-off."""
+"""Places that robots keep at a set piece: their distance to the ball, the own half, the keeper's area (2016)."""
 
 import math
 from collections.abc import Mapping
 
-from procs.model.field import Point
-from procs.model.robot import side_of, team_of
-from procs.referee.restarts import Restart, State, Team, team_number
+from procs.model.field import Field, Point
+from procs.referee.ends import Ends, Team, team_number
+from procs.referee.restarts import Restart, State
 
 OWN_M = 2.0
 """Least distance of the team that takes the set piece, except for the taker."""
 THEIRS_M = 3.0
-"""Least distance of the other team."""
+"""Least distance of the other team, except for one robot in its own penalty area."""
 DROPPED_M = 1.0
 """Least distance of every robot at a dropped ball."""
-_TOLERANCE_M = 0.05
+TOLERANCE_M = 0.05
+
+_ENDS, _FIELD = Ends(), Field()
 
 
-def misplaced(restart: Restart, robots: Mapping[str, Point]) -> list[str]:
-    """Returns the robots that stand where the rules do not allow it, by name; `robots` gives the middle of each."""
-    return sorted({*too_near(restart, robots), *in_wrong_half(restart, robots)})
+def misplaced(
+    restart: Restart, robots: Mapping[str, Point], ends: Ends = _ENDS, field: Field = _FIELD, keeper: str = ""
+) -> list[str]:
+    """Returns the robots that stand where the rules do not allow it, by name.
+
+    `robots` gives the middle of each; `keeper` is the goalkeeper that faces a penalty.
+    """
+    found = {*too_near(restart, robots, ends, field), *in_wrong_half(restart, robots, ends)}
+    if restart.state is State.PENALTY and keeper in robots:
+        side = ends.side_of(restart.team.other)
+        found.discard(keeper)
+        found.update([] if field.in_goal_area(*robots[keeper], side, TOLERANCE_M) else [keeper])
+    return sorted(found)
 
 
-def too_near(restart: Restart, robots: Mapping[str, Point]) -> list[str]:
+def too_near(
+    restart: Restart,
+    robots: Mapping[str, Point],
+    ends: Ends = _ENDS,
+    field: Field = _FIELD,
+    tolerance_m: float = TOLERANCE_M,
+) -> list[str]:
     """Returns the robots that are nearer to the ball than the rules allow."""
-    taker = _taker(restart, robots)
-    return [
+    taker = taker_of(restart, robots)
+    found = [
         name
         for name, middle in robots.items()
-        if name != taker and math.dist(middle, restart.spot) < _least_m(restart, name) - _TOLERANCE_M
+        if name != taker and math.dist(middle, restart.spot) < _least_m(restart, name) - tolerance_m
     ]
+    defenders = [name for name in found if _defends_area(restart, name, robots[name], ends, field)]
+    if defenders:
+        found.remove(max(defenders, key=lambda name: (abs(robots[name].x_m), name)))
+    return found
 
 
-def in_wrong_half(restart: Restart, robots: Mapping[str, Point]) -> list[str]:
+def in_wrong_half(restart: Restart, robots: Mapping[str, Point], ends: Ends = _ENDS) -> list[str]:
     """Returns the robots that are in the other team's half at a kick-off; none at other set pieces."""
     if restart.state is not State.KICK_OFF:
         return []
-    taker = _taker(restart, robots)
+    taker = taker_of(restart, robots)
     return [
-        name for name, middle in robots.items() if name != taker and middle.x_m * side_of(team_of(name)) < -_TOLERANCE_M
+        name
+        for name, middle in robots.items()
+        if name != taker and middle.x_m * ends.side_of(team_number(name)) < -TOLERANCE_M
     ]
 
 
-def _taker(restart: Restart, robots: Mapping[str, Point]) -> str:
+def taker_of(restart: Restart, robots: Mapping[str, Point]) -> str:
     """Returns the robot of the team that is nearest to the ball; empty without one."""
     taking = [name for name in robots if restart.team is not Team.NONE and team_number(name) is restart.team]
     return min(taking, key=lambda name: (math.dist(robots[name], restart.spot), name), default="")
@@ -51,3 +75,8 @@ def _least_m(restart: Restart, robot: str) -> float:
     if restart.state is State.DROP_BALL:
         return DROPPED_M
     return OWN_M if team_number(robot) is restart.team else THEIRS_M
+
+
+def _defends_area(restart: Restart, name: str, place: Point, ends: Ends, field: Field) -> bool:
+    team = team_number(name)
+    return restart.team.other is team and field.in_penalty_area(*place, ends.side_of(team))

@@ -1,11 +1,22 @@
-"""Referees the match: calls goals, balls out and fouls, places the ball, keeps time and score."""
+"""Referees the match: calls goals, balls out and fouls, places the ball, shows cards, keeps time and score."""
 
-from fwk import Clock, Component, Config, Logger, Reads, Writes
-from lcmtypes.soccer import ball_placement_t, game_event_t, game_state_t, ground_truth_t, match_event_t, match_events_t
+from fwk import Clock, Component, Config, Logger, Reads, Serves, Writes
+from lcmtypes.soccer import (
+    ball_placement_t,
+    game_event_t,
+    game_state_t,
+    ground_truth_t,
+    match_event_t,
+    match_events_t,
+    referee_command_t,
+)
 from procs.model.field import Point
-from procs.referee.restarts import State, Team
-from procs.referee.rules import Referee as Whistle
-from procs.referee.rules import Rules, Sight
+from procs.referee.ends import Team
+from procs.referee.orders import carry_out
+from procs.referee.restarts import State
+from procs.referee.rules import Rules
+from procs.referee.sight import Sight
+from procs.referee.whistle import Call, Whistle
 from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
@@ -16,7 +27,10 @@ class RefereeConfig(Config, Rules):
 
 
 class Referee(Component):
-    """Decides from the reports of the linesmen and the true positions of the robots."""
+    """Decides from the reports of the linesmen and the true positions of the robots; obeys commands by hand.
+
+    `fwk call world/referee_command name=freekick team=cyan`
+    """
 
     stage = "post_loop"
 
@@ -25,6 +39,7 @@ class Referee(Component):
     log: Logger
     match_events: Reads[match_events_t]
     ground_truth: Reads[ground_truth_t]
+    referee_command: Serves[referee_command_t]
     game_state: Writes[game_state_t]
     ball_placement: Writes[ball_placement_t]
 
@@ -32,26 +47,18 @@ class Referee(Component):
         self._whistle = Whistle(self.config)
         self._placed = 0
         self._before_us = -1
+        self._record(Call(self._whistle.state, self._whistle.team))
 
     def loop(self) -> None:
         whistle = self._whistle
         whistle.rules = self.config
-        before, score = (whistle.state, whistle.stopped), dict(whistle.score)
-        events = [
-            _event(event) for report in self.match_events.fresh for event in report.events if event.kind in _KINDS
-        ]
-        ball = self.match_events.value
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
-        robots = {robot.name: Point(robot.x_m, robot.y_m) for robot in self.ground_truth.value.robots}
-        whistle.step(passed_s, Sight(Point(ball.ball_x_m, ball.ball_y_m), events, robots))
-        for team in whistle.score:
-            if whistle.score[team] > score[team]:
-                self._remember(True, team)
-        if (whistle.state, whistle.stopped) != before or self.clock.tick == 1:
-            if whistle.stopped and whistle.state is not State.PLAY:
-                self._remember(False, whistle.team)
-            self._announce()
+        sight = self._sight()
+        whistle.step(passed_s, sight)
+        for call in whistle.calls:
+            self._record(call)
+        self._obey(sight)
         self._write_state()
         if whistle.placements != self._placed:
             self._placed = placement_id = whistle.placements
@@ -59,36 +66,60 @@ class Referee(Component):
             placement.placement_id, placement.x_m, placement.y_m = placement_id, *whistle.spot
             self.ball_placement.write()
 
-    def _remember(self, goal: bool, team: int) -> None:
-        event = game_event_t()
-        event.goal, event.state, event.team = goal, self._whistle.state, team
-        event.half, event.time_in_half_s = self._whistle.half, self._whistle.time_in_half_s
-        self.game_state.value.history.append(event)
+    def _sight(self) -> Sight:
+        ball, robots = self.match_events.value, self.ground_truth.value.robots
+        events = [
+            _event(event) for report in self.match_events.fresh for event in report.events if event.kind in _KINDS
+        ]
+        return Sight(
+            Point(ball.ball_x_m, ball.ball_y_m),
+            events,
+            {robot.name: Point(robot.x_m, robot.y_m) for robot in robots},
+            {robot.name: Point(robot.vx_m_s, robot.vy_m_s) for robot in robots},
+        )
+
+    def _obey(self, sight: Sight) -> None:
+        for command in self.referee_command:
+            asked, self._whistle.calls = command.value, []
+            refused = carry_out(self._whistle, sight, asked.name, asked.team, asked.robot)
+            if refused:
+                command.reject(refused)
+                continue
+            for call in self._whistle.calls:
+                self._record(call)
+            command.done()
+
+    def _record(self, call: Call) -> None:
+        """Adds a decision to the history and tells people about it."""
+        whistle, event = self._whistle, game_event_t()
+        event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
+        event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
+        event.robot, event.reason = call.robot, call.reason
+        if call.state not in (State.HALF_TIME, State.FROZEN):
+            self.game_state.value.history.append(event)
+        if not call.goal:
+            self.log.info(self._words(call))
+
+    def _words(self, call: Call) -> str:
+        whistle = self._whistle
+        score = f"cyan {whistle.score[Team.CYAN]}:{whistle.score[Team.MAGENTA]} magenta"
+        when = f"{whistle.time_in_half_s:.1f} s into half {whistle.half}"
+        if call.card:
+            return f"{call.card.name.lower().replace('_', ' ')} card for {call.robot}, {when}"
+        what = "final whistle" if call.state is State.FROZEN else call.state.name.lower().replace("_", " ")
+        whose = f" for {call.team.name.lower()}" if call.team else ""
+        why = f" ({', '.join(filter(None, (call.reason, call.robot)))})" if call.reason else ""
+        return f"{what}{whose}{why}, {score}, {when}"
 
     def _write_state(self) -> None:
         whistle, game = self._whistle, self.game_state.value
-        game.state, game.state_team, game.stopped, game.half = (
-            whistle.state,
-            whistle.team,
-            whistle.stopped,
-            whistle.half,
-        )
+        game.state, game.state_team = whistle.state, whistle.team
+        game.stopped, game.half, game.cyan_side = whistle.stopped, whistle.half, round(whistle.ends.cyan_side)
         game.score_cyan, game.score_magenta = whistle.score[Team.CYAN], whistle.score[Team.MAGENTA]
         game.time_in_half_s, game.time_in_state_s = whistle.time_in_half_s, whistle.time_in_state_s
         game.ball_x_m, game.ball_y_m = whistle.spot
+        game.sent_off = sorted(whistle.cards.sent_off)
         self.game_state.write()
-
-    def _announce(self) -> None:
-        whistle = self._whistle
-        if whistle.state is State.PLAY:
-            return
-        score = f"{whistle.score[Team.CYAN]}:{whistle.score[Team.MAGENTA]}"
-        what = "final whistle" if whistle.over else whistle.state.name.lower().replace("_", " ")
-        whose = f" for {whistle.team.name.lower()}" if whistle.team else ""
-        if whistle.stopped:
-            self.log.info(
-                f"{what}{whose}, cyan {score} magenta, {whistle.time_in_half_s:.1f} s into half {whistle.half}"
-            )
 
 
 def _event(event: match_event_t) -> Event:

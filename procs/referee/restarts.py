@@ -4,8 +4,8 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from procs.model.field import SIDES, Field, Point
-from procs.model.robot import MAGENTA, team_of
+from procs.model.field import Field, Point
+from procs.referee.ends import Ends, Team
 
 
 class State(IntEnum):
@@ -23,24 +23,6 @@ class State(IntEnum):
     HALF_TIME = 9
 
 
-class Team(IntEnum):
-    """Teams; the numbers are those of the message."""
-
-    NONE = 0
-    CYAN = 1
-    MAGENTA = 2
-
-    @property
-    def other(self) -> "Team":
-        """The other team; NONE for NONE."""
-        return Team(3 - self) if self else self
-
-    @property
-    def side(self) -> float:
-        """Side of the goal that the team defends; 0 for NONE."""
-        return (0.0, SIDES[0], SIDES[1])[self]
-
-
 class Restart(NamedTuple):
     """One set piece."""
 
@@ -51,13 +33,6 @@ class Restart(NamedTuple):
 
 _CORNER_INSET_M = 0.2
 _LINE_INSET_M = 0.1
-
-
-def team_number(robot: str) -> Team:
-    """Returns the team of a robot; NONE for the empty name."""
-    if not robot:
-        return Team.NONE
-    return Team.MAGENTA if team_of(robot) == MAGENTA else Team.CYAN
 
 
 def kick_off(team: Team) -> Restart:
@@ -80,24 +55,25 @@ def after_side_line(place: Point, touched_by: Team, field: Field) -> Restart:
     return Restart(State.THROW_IN, touched_by.other, Point(x_m, y_m))
 
 
-def after_goal_line(place: Point, touched_by: Team, field: Field) -> Restart:
+def after_goal_line(place: Point, touched_by: Team, field: Field, ends: Ends) -> Restart:
     """Returns a corner or goal kick; a dropped ball without a last touch."""
     if touched_by is Team.NONE:
         return dropped_ball(place, field)
     side = math.copysign(1.0, place.x_m)
-    if touched_by.side == side:
-        corner = Point(side * field.half_length_m, math.copysign(field.half_width_m, place.y_m))
-        inset = Point(
-            corner.x_m - math.copysign(_CORNER_INSET_M, corner.x_m),
-            corner.y_m - math.copysign(_CORNER_INSET_M, corner.y_m),
-        )
-        return Restart(State.CORNER_KICK, touched_by.other, inset)
-    return goal_kick(touched_by.other, place.y_m, field)
+    if ends.side_of(touched_by) == side:
+        return corner_kick(touched_by.other, place, field)
+    return goal_kick(touched_by.other, place.y_m, field, ends)
 
 
-def goal_kick(team: Team, y_m: float, field: Field) -> Restart:
+def corner_kick(team: Team, place: Point, field: Field) -> Restart:
+    """Returns the corner kick of a team, from the corner nearest to the place."""
+    x_m, y_m = field.half_length_m - _CORNER_INSET_M, field.half_width_m - _CORNER_INSET_M
+    return Restart(State.CORNER_KICK, team, Point(math.copysign(x_m, place.x_m), math.copysign(y_m, place.y_m)))
+
+
+def goal_kick(team: Team, y_m: float, field: Field, ends: Ends) -> Restart:
     """Returns the goal kick of a team, from the restart mark before its goal where the ball went out."""
-    x_m = team.side * (field.half_length_m - field.penalty_mark_distance_m)
+    x_m = ends.side_of(team) * (field.half_length_m - field.penalty_mark_distance_m)
     return Restart(State.GOAL_KICK, team, Point(x_m, math.copysign(field.restart_offset_m, y_m)))
 
 
@@ -105,6 +81,11 @@ def after_foul(place: Point, offender: Team, field: Field) -> Restart:
     """Returns the free kick of the other team at the place, at most as near to a goal as the penalty marks."""
     x_m = _within(place.x_m, field.half_length_m - field.penalty_mark_distance_m)
     return Restart(State.FREE_KICK, offender.other, Point(x_m, _within(place.y_m, field.half_width_m - 0.5)))
+
+
+def penalty(team: Team, field: Field, ends: Ends) -> Restart:
+    """Returns the penalty of a team, from the mark before the other team's goal."""
+    return Restart(State.PENALTY, team, field.penalty_mark(ends.side_of(team.other)))
 
 
 def _within(value_m: float, limit_m: float) -> float:

@@ -1,25 +1,12 @@
-"""Rules of the referee: from the reports of the linesmen to the state of the game.
+"""Times and limits of a match.
 
-A simplification of the rules of the middle size league: no cards, no dribbling limit, and fouls are free kicks. As
-there, a goal counts only if the scoring team touched the ball last in the opponents' half, own goals excepted, and a
-set piece is released once all robots keep their distance and, at a kick-off, their half.
+The defaults are those of the rule book of the middle size league: of 2016 unless another year is named. Values without
+a year are the simulation's own.
 """
 
-import math
-from collections.abc import Mapping, Sequence
-from types import MappingProxyType
-from typing import NamedTuple
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
-from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
-
-from procs.model.field import Field, Point
-from procs.referee import restarts
-from procs.referee.positions import misplaced
-from procs.referee.restarts import Restart, State, Team
-from procs.simulation.physics.events import Event, Kind
-
-_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
-_CREW_S = 0.5  # until the report shows a placement
+from procs.model.field import Field as SoccerField
 
 
 class Rules(BaseModel):
@@ -27,148 +14,63 @@ class Rules(BaseModel):
 
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 
+    automatic: bool = True
+    """The referee decides by itself; false: it only carries out commands, of a person or a RefBox."""
     half_s: PositiveFloat = 900.0
-    """Length of a half, stoppages included."""
+    """Length of a half, stoppages included (2016: 15 min)."""
     half_time_s: NonNegativeFloat = 5.0
-    """Break between the halves."""
+    """Break between the halves (2016: at most 10 min)."""
+    change_ends: bool = True
+    """The teams change ends after each half (2016)."""
+    decide: bool = False
+    """A draw is followed by overtime, and a further draw by penalties (2016)."""
+    overtime_half_s: PositiveFloat = 300.0
+    """Length of each of the two halves of the overtime (2016: 5 min)."""
+    penalties: int = Field(default=5, ge=1)
+    """Penalties of each team after a drawn overtime; further pairs follow until one decides (2016)."""
+    shot_s: PositiveFloat = 30.0
+    """Time for such a penalty, from the start to the goal (2016)."""
+    least_robots: int = Field(default=1, ge=1, le=5)
+    """A set piece waits until each team that plays has so many robots on the field (2016: 2)."""
     kick_off_stoppage_s: NonNegativeFloat = 6.0
     """From a goal or the beginning of a half until the kick-off may be taken."""
     stoppage_s: NonNegativeFloat = 3.0
     """From an interruption until the set piece may be taken."""
     positions_s: NonNegativeFloat = 6.0
     """Longest further wait for robots that are too near to the ball or in the wrong half."""
+    ends_s: NonNegativeFloat = 20.0
+    """The same at the beginning of a half, when the robots may have changed ends."""
     set_piece_s: PositiveFloat = 7.0
-    """Time for a set piece; after it play goes on."""
-    moved_m: PositiveFloat = 0.2
-    """A set piece is taken when the ball has moved that far."""
+    """Time for a set piece; after it the other team may play the ball, too (2016: 7 s)."""
+    moved_m: PositiveFloat = 0.5
+    """A set piece has been taken when the ball has rolled so far without a touch (2016: 0.5 m)."""
+    penalty_s: PositiveFloat = 10.0
+    """Within this time the taker of a penalty must reach the ball (2016: 10 s)."""
+    pass_m: PositiveFloat = 1.0
+    """A team that won the ball in its own half must pass it so far before a goal counts (2016: 1 m)."""
     deadlock_s: PositiveFloat = 10.0
     """A ball that stays within `deadlock_m` for so long is dropped elsewhere."""
     deadlock_m: PositiveFloat = 0.5
     collision_m_s: PositiveFloat = 3.0
     """Closing speed above which a collision is a foul of the faster robot."""
-    field: Field = Field()
-
-
-class Sight(NamedTuple):
-    """Report of the linesmen about a tick."""
-
-    ball: Point
-    events: Sequence[Event] = ()
-    robots: Mapping[str, Point] = MappingProxyType({})
-    """Middle of each robot on the field."""
-
-
-class Referee:
-    """Leads a match: call `step` once a tick and read the attributes."""
-
-    def __init__(self, rules: Rules) -> None:
-        self.rules = rules
-        self.state, self.team, self.spot = restarts.kick_off(Team.CYAN)
-        self.stopped = True
-        """Robots take position; the ball is not to be touched."""
-        self.half = 1
-        self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
-        self.time_in_half_s = 0.0
-        self.time_in_state_s = 0.0
-        self.placements = 1
-        """A higher number than before: the ball is to be put on `spot`."""
-        self._resting_at = self.spot  # where the ball was when it was last seen to move on
-        self._resting_s = 0.0
-        self._since_placed_s = 0.0
-        self._last_touch = self.spot  # where the ball was touched last in play
-
-    @property
-    def over(self) -> bool:
-        """Whether the match has ended."""
-        return self.state is State.FROZEN
-
-    def step(self, duration_s: float, sight: Sight) -> None:
-        """Runs one tick of `duration_s`."""
-        self.time_in_state_s += duration_s
-        if self.over:
-            return
-        if self.state is State.HALF_TIME:
-            if self.time_in_state_s >= self.rules.half_time_s:
-                self.half, self.time_in_half_s = 2, 0.0
-                self._interrupt(restarts.kick_off(Team.MAGENTA))
-            return
-        self.time_in_half_s += duration_s
-        if self.time_in_half_s >= self.rules.half_s:
-            self._enter(State.HALF_TIME if self.half == 1 else State.FROZEN, Team.NONE, stopped=True)
-        elif self.stopped:
-            self._wait_for_robots(duration_s, sight)
-        else:
-            self._watch(duration_s, sight)
-
-    def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
-        ball = sight.ball
-        self._since_placed_s += duration_s
-        if math.dist(ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
-            self._place()
-        kicks_off = self.state is State.KICK_OFF
-        stoppage_s = self.rules.kick_off_stoppage_s if kicks_off else self.rules.stoppage_s
-        if self.time_in_state_s < stoppage_s:
-            return
-        patient = self.time_in_state_s < stoppage_s + self.rules.positions_s
-        if patient and misplaced(Restart(self.state, self.team, self.spot), sight.robots):
-            return
-        self._enter(self.state, self.team, stopped=False)
-        self._resting_at, self._resting_s, self._last_touch = ball, 0.0, ball
-
-    def _watch(self, duration_s: float, sight: Sight) -> None:
-        for event in sight.events:
-            if event.kind in (Kind.TOUCH, Kind.KICK):
-                self._last_touch = Point(event.x_m, event.y_m)
-        restart = next(filter(None, map(self._call, sight.events)), None)
-        if restart:
-            self._interrupt(restart)
-            return
-        self._resting_s += duration_s
-        limit_m = self.rules.deadlock_m if self.state is State.PLAY else self.rules.moved_m
-        if math.dist(sight.ball, self._resting_at) > limit_m:
-            self._resting_at, self._resting_s = sight.ball, 0.0
-            if self.state is not State.PLAY:
-                self._play()
-        elif self.state is not State.PLAY:
-            if self.time_in_state_s >= self.rules.set_piece_s:
-                self._play()
-        elif self._resting_s >= self.rules.deadlock_s:
-            self._interrupt(restarts.dropped_ball(sight.ball, self.rules.field))
-
-    def _call(self, event: Event) -> Restart | None:
-        field, place, team = self.rules.field, Point(event.x_m, event.y_m), restarts.team_number(event.robot)
-        match event.kind:
-            case Kind.GOAL:
-                return self._goal(place, team)
-            case Kind.OUT_SIDE:
-                return restarts.after_side_line(place, team, field)
-            case Kind.OUT_END:
-                return restarts.after_goal_line(place, team, field)
-            case Kind.COLLISION if event.speed_m_s > self.rules.collision_m_s:
-                if restarts.team_number(event.other) is not team:
-                    return restarts.after_foul(place, team, field)
-        return None
-
-    def _goal(self, place: Point, touched_by: Team) -> Restart:
-        conceding = Team.CYAN if place.x_m < 0 else Team.MAGENTA
-        from_own_half = self._last_touch.x_m * place.x_m < 0
-        if touched_by is conceding.other and from_own_half:
-            return restarts.goal_kick(conceding, place.y_m, self.rules.field)
-        self.score[conceding.other] += 1
-        return restarts.kick_off(conceding)
-
-    def _interrupt(self, restart: Restart) -> None:
-        self._enter(restart.state, restart.team, stopped=True)
-        self.spot = restart.spot
-        self._place()
-
-    def _place(self) -> None:
-        self.placements += 1
-        self._since_placed_s = 0.0
-
-    def _play(self) -> None:
-        self._enter(State.PLAY, Team.NONE, stopped=False)
-
-    def _enter(self, state: State, team: Team, stopped: bool) -> None:
-        self.state, self.team, self.stopped = state, team, stopped
-        self.time_in_state_s = 0.0
+    pushing_m: PositiveFloat = 0.4
+    """A robot that drives a rival so far before itself commits a foul."""
+    dribbling_m: PositiveFloat = 3.0
+    """Longest way with the ball without setting it free (2019: 3 m)."""
+    holding_s: PositiveFloat = 1.0
+    """Longest time for which a robot may keep the ball from rolling (2016: 1 s)."""
+    holding_m: PositiveFloat = 0.3
+    """Longest way on which a robot may pull the ball back (2016: 0.30 m)."""
+    holding_pause_s: PositiveFloat = 4.0
+    """Holding is counted anew after this time without it (2016: 4 s)."""
+    area_s: PositiveFloat = 10.0
+    """Longest stay of a field player in a penalty area (2016: 10 s)."""
+    grace_s: PositiveFloat = 1.0
+    """A robot too many in an area leaves it within this time, or commits a foul."""
+    fouls_per_card: int = Field(default=3, ge=1)
+    """So many fouls of a robot bring a yellow card."""
+    double_yellow_s: PositiveFloat = 90.0
+    """A robot with its second yellow card leaves the field for this time (RefBox: 90 s)."""
+    repair_s: PositiveFloat = 20.0
+    """A robot under repair, or its substitute, comes back after this time (RefBox: 20 s)."""
+    field: SoccerField = SoccerField()

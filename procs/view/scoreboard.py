@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Callable
 from typing import Any
 
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
@@ -27,6 +27,7 @@ STATES = {
     game_state_t.GOAL_KICK: "goal kick",
     game_state_t.HALF_TIME: "half time",
 }
+CARDS = {game_event_t.YELLOW: "yellow", game_event_t.DOUBLE_YELLOW: "double yellow", game_event_t.RED: "red"}
 TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
 
 
@@ -81,6 +82,9 @@ def _events(state: game_state_t) -> list[str]:
         for event in state.history
         if event.goal and event.team in TEAMS
     ]
-    whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in state.history if not event.goal)
+    calls = [event for event in state.history if not event.goal and not event.card]
+    whistles = Counter(STATES.get(event.state, f"state {event.state}") for event in calls)
     counted = [f"{name} {count}" for name, count in sorted(whistles.items(), key=lambda item: (-item[1], item[0]))]
-    return [f"{name}: {', '.join(items)}" for name, items in (("goals", goals), ("whistles", counted)) if items]
+    cards = [f"{CARDS[event.card]} {event.robot}" for event in state.history if event.card in CARDS]
+    lists = (("goals", goals), ("whistles", counted), ("cards", cards))
+    return [f"{name}: {', '.join(items)}" for name, items in lists if items]

@@ -74,7 +74,7 @@ class _Kick(_WithBall):
         return super().step(scene)
 
     @abstractmethod
-    def _speed_m_s(self, distance_m: float) -> float:
+    def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
         """Returns the speed over the ground at which the ball leaves for a place that far away."""
 
     @abstractmethod
@@ -84,7 +84,7 @@ class _Kick(_WithBall):
     def _play(self, scene: Scene) -> Step:
         own = scene.view.own
         distance_m = math.dist(own.place, scene.place)
-        speed_m_s = self._speed_m_s(distance_m)
+        speed_m_s = self._speed_m_s(scene, distance_m)
         self._running_s += scene.duration_s
         if self._running_s > self._TIMEOUT_S:
             return failed("could not aim in time")
@@ -124,7 +124,7 @@ class _Kick(_WithBall):
 class Shoot(_Kick):
     """Kicks hard at the place."""
 
-    def _speed_m_s(self, _distance_m: float) -> float:
+    def _speed_m_s(self, _scene: Scene, _distance_m: float) -> float:
         return _SHOT_M_S
 
     def _tolerance_rad(self, distance_m: float) -> float:
@@ -134,8 +134,8 @@ class Shoot(_Kick):
 class Pass(_Kick):
     """Kicks so that the ball arrives at the place at a speed that a robot can take."""
 
-    def _speed_m_s(self, distance_m: float) -> float:
-        return ballistics.kick_speed_m_s(distance_m, _ARRIVAL_M_S)
+    def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
+        return ballistics.kick_speed_m_s(distance_m, scene.speed_m_s or _ARRIVAL_M_S)
 
     def _tolerance_rad(self, _distance_m: float) -> float:
         return 0.05

@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import pytest
+
 from fwk.testing import Bench
+from lcmtypes.core import answer_t
 from lcmtypes.soccer import game_state_t, match_event_t
 from procs.referee.referee import Referee
 
@@ -70,3 +73,72 @@ def test_unknown_kinds_of_events_are_ignored() -> None:
     bench.port("match_events").put(ball_x_m=3.0, events=[make(99)])
     bench.iterate()
     assert state(bench).state == game_state_t.PLAY
+
+
+@pytest.mark.parametrize(
+    ("asked", "state", "team"),
+    [
+        ({"name": "freekick", "team": "cyan"}, game_state_t.FREE_KICK, game_state_t.TEAM_CYAN),
+        ({"name": "throwin", "team": "magenta"}, game_state_t.THROW_IN, game_state_t.TEAM_MAGENTA),
+        ({"name": "corner", "team": "cyan"}, game_state_t.CORNER_KICK, game_state_t.TEAM_CYAN),
+        ({"name": "penalty", "team": "magenta"}, game_state_t.PENALTY, game_state_t.TEAM_MAGENTA),
+        ({"name": "drop_ball"}, game_state_t.DROP_BALL, game_state_t.TEAM_NONE),
+        ({"name": "goal", "team": "cyan"}, game_state_t.KICK_OFF, game_state_t.TEAM_MAGENTA),
+        ({"name": "second_half"}, game_state_t.KICK_OFF, game_state_t.TEAM_MAGENTA),
+        ({"name": "half_time"}, game_state_t.HALF_TIME, game_state_t.TEAM_NONE),
+        ({"name": "end_game"}, game_state_t.FROZEN, game_state_t.TEAM_NONE),
+    ],
+)
+def test_command_by_hand(asked: dict[str, str], state: int, team: int) -> None:
+    bench = playing()
+    bench.port("referee_command").put(**asked)
+    bench.iterate()
+    now = bench.port("game_state").sent[-1]
+    assert (now.state, now.state_team, now.stopped) == (state, team, True)
+    assert bench.port("referee_command").sent[-1].answer.state == answer_t.DONE
+
+
+def test_stop_by_hand_holds_the_game_until_start() -> None:
+    bench = playing()
+    bench.port("referee_command").put(name="stop")
+    bench.iterate(400)
+    assert state(bench).stopped
+    bench.port("referee_command").put(name="start")
+    bench.iterate()
+    assert not state(bench).stopped
+
+
+@pytest.mark.parametrize(
+    ("asked", "reason"),
+    [
+        ({"name": "freekick"}, "a free kick needs a team: cyan or magenta"),
+        ({"name": "freekick", "team": "red"}, "no team 'red'; there are cyan, magenta"),
+        ({"name": "subgoal", "team": "cyan"}, "cyan has no goal to take back"),
+        ({"name": "yellow_card", "robot": "cyan9"}, "no robot 'cyan9'; there are none"),
+        ({"name": "start"}, "nothing to start: the game runs, or has a break"),
+    ],
+)
+def test_impossible_command_by_hand(asked: dict[str, str], reason: str) -> None:
+    bench = playing()
+    bench.port("referee_command").put(**asked)
+    bench.iterate()
+    answer = bench.port("referee_command").sent[-1].answer
+    assert (answer.state, answer.reason) == (answer_t.REJECTED, reason)
+
+
+def test_unknown_command_lists_the_known_ones() -> None:
+    bench = playing()
+    bench.port("referee_command").put(name="kick")
+    bench.iterate()
+    assert bench.port("referee_command").sent[-1].answer.reason.startswith("no command 'kick'; there are kickoff, ")
+
+
+def test_led_by_hand_the_referee_calls_nothing() -> None:
+    bench = Bench(Referee, "world/referee", automatic=False)
+    bench.iterate(400)
+    assert (state(bench).state, state(bench).stopped) == (game_state_t.KICK_OFF, True)
+    bench.port("referee_command").put(name="start")
+    bench.iterate(10)
+    bench.port("match_events").put(ball_x_m=11.2, events=[make(match_event_t.GOAL, x_m=11.2)])
+    bench.iterate()
+    assert (state(bench).state, state(bench).score_cyan) == (game_state_t.PLAY, 0)

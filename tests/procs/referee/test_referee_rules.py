@@ -3,24 +3,27 @@
 import pytest
 
 from procs.model.field import Point
+from procs.referee.ends import Team
 from procs.referee.positions import misplaced
-from procs.referee.restarts import Restart, State, Team
-from procs.referee.rules import Referee, Rules, Sight
+from procs.referee.restarts import Restart, State
+from procs.referee.rules import Rules
+from procs.referee.sight import Sight
+from procs.referee.whistle import Whistle
 from procs.simulation.physics.events import Event, Kind
 
 TICK_S = 0.05
 CENTRE = Point(0.0, 0.0)
 
 
-def wait(referee: Referee, duration_s: float, ball: Point = CENTRE) -> None:
+def wait(referee: Whistle, duration_s: float, ball: Point = CENTRE) -> None:
     for _ in range(round(duration_s / TICK_S)):
         referee.step(TICK_S, Sight(ball))
 
 
-def in_play(**rules: float) -> Referee:
-    referee = Referee(Rules(**rules))
+def in_play(**rules: float) -> Whistle:
+    referee = Whistle(Rules(**rules))
     wait(referee, referee.rules.kick_off_stoppage_s + 0.1)
-    referee.step(TICK_S, Sight(Point(0.5, 0.0)))
+    referee.step(TICK_S, Sight(Point(0.6, 0.0)))
     assert (referee.state, referee.stopped) == (State.PLAY, False)
     return referee
 
@@ -29,31 +32,31 @@ def event(kind: Kind, robot: str, x_m: float, y_m: float, other: str = "", speed
     return Event(kind, robot, other, x_m, y_m, speed_m_s)
 
 
-def report(referee: Referee, *events: Event) -> None:
+def report(referee: Whistle, *events: Event) -> None:
     referee.step(TICK_S, Sight(Point(events[-1].x_m, events[-1].y_m), events))
 
 
 def test_match_begins_with_cyans_kick_off_at_the_centre_mark() -> None:
-    referee = Referee(Rules())
+    referee = Whistle(Rules())
     assert (referee.state, referee.team, referee.stopped) == (State.KICK_OFF, Team.CYAN, True)
     assert (referee.spot, referee.placements) == (CENTRE, 1)
 
 
 def test_set_piece_becomes_play_when_the_ball_has_moved() -> None:
-    referee = Referee(Rules(kick_off_stoppage_s=2.0))
+    referee = Whistle(Rules(kick_off_stoppage_s=2.0))
     wait(referee, 1.95)
     assert referee.stopped
     wait(referee, 0.1)
     assert (referee.state, referee.stopped) == (State.KICK_OFF, False)
     states = []
-    for x_m in (0.15, 0.25):
+    for x_m in (0.45, 0.55):
         referee.step(TICK_S, Sight(Point(x_m, 0.0)))
         states.append((referee.state, referee.team))
     assert states == [(State.KICK_OFF, Team.CYAN), (State.PLAY, Team.NONE)]
 
 
 def test_set_piece_that_no_robot_takes_becomes_play_in_time() -> None:
-    referee = Referee(Rules(kick_off_stoppage_s=1.0, set_piece_s=3.0))
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, set_piece_s=3.0))
     states = []
     for duration_s in (3.9, 0.2):
         wait(referee, duration_s)
@@ -161,7 +164,7 @@ def test_magenta_kicks_off_second_half_and_then_the_match_ends() -> None:
 
 
 def test_set_piece_waits_for_robots_that_are_misplaced() -> None:
-    referee = Referee(Rules(kick_off_stoppage_s=1.0, positions_s=4.0))
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=4.0))
     away = {"cyan1": Point(-5.0, 0.0), "cyan2": Point(-0.7, 0.0), "magenta1": Point(4.0, 0.0)}
     for _ in range(40):
         referee.step(TICK_S, Sight(CENTRE, robots=away | {"magenta2": Point(2.5, 0.0)}))
@@ -171,7 +174,7 @@ def test_set_piece_waits_for_robots_that_are_misplaced() -> None:
 
 
 def test_set_piece_does_not_wait_forever() -> None:
-    referee = Referee(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
     stopped = []
     for _ in range(70):
         referee.step(TICK_S, Sight(CENTRE, robots={"magenta2": Point(2.5, 0.0)}))

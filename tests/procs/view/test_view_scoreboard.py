@@ -76,3 +76,10 @@ def test_summary_lists_the_goals_and_counts_the_whistles() -> None:
         event.goal, event.state, event.team, event.half, event.time_in_half_s = goal, kind, team, 1, time_s
         state.history.append(event)
     assert summary(lambda _: state)[2:] == ["goals: 00:19 magenta", "whistles: kick-off 2, corner kick 1"]
+
+
+def test_summary_lists_the_cards() -> None:
+    state, event = game_state_t(), game_event_t()
+    event.card, event.robot, event.team, event.half = game_event_t.YELLOW, "cyan3", game_state_t.TEAM_CYAN, 1
+    state.half, state.history = 1, [event]
+    assert summary(lambda _: state)[2:] == ["cards: yellow cyan3"]

@@ -1,0 +1,41 @@
+"""Teams, and the goals that they defend."""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+from procs.model.robot import MAGENTA, team_of
+
+
+class Team(IntEnum):
+    """Teams; the numbers are those of the message."""
+
+    NONE = 0
+    CYAN = 1
+    MAGENTA = 2
+
+    @property
+    def other(self) -> "Team":
+        """The other team; NONE for NONE."""
+        return Team(3 - self) if self else self
+
+
+class Ends(NamedTuple):
+    """Ends of the field; the teams change them for the second half."""
+
+    cyan_side: float = -1.0
+    """Side of the goal that cyan defends: -1.0 or 1.0."""
+
+    def side_of(self, team: Team) -> float:
+        """Returns the side of the goal that a team defends; 0.0 for NONE."""
+        return (0.0, self.cyan_side, -self.cyan_side)[team]
+
+    def defender(self, side: float) -> Team:
+        """Returns the team that defends the goal on a side, given by a number of its sign."""
+        return Team.CYAN if side * self.cyan_side > 0 else Team.MAGENTA
+
+
+def team_number(robot: str) -> Team:
+    """Returns the team of a robot; NONE for the empty name."""
+    if not robot:
+        return Team.NONE
+    return Team.MAGENTA if team_of(robot) == MAGENTA else Team.CYAN

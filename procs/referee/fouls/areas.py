@@ -1,0 +1,51 @@
+"""Areas: one field player of a team, for 10 s at most, in a penalty area; only goalkeepers in a goal area (2016)."""
+
+from procs.model.field import SIDES
+from procs.referee.ends import Team, team_number
+from procs.referee.fouls.foul import Foul, Scene
+
+
+class Areas:
+    """Counts how long the field players have been in the areas."""
+
+    def __init__(self) -> None:
+        self._inside_s: dict[str, float] = {}
+        self._forbidden_s: dict[str, float] = {}
+
+    def watch(self, scene: Scene) -> Foul | None:
+        """Returns the foul of the robot that has been where it may not for the longest time."""
+        keepers = {scene.sight.goalkeeper(team) for team in (Team.CYAN, Team.MAGENTA)}
+        players = [name for name in sorted(scene.sight.robots) if name not in keepers]
+        inside = {name: side for name in players for side in SIDES if self._in_penalty_area(scene, name, side)}
+        self._inside_s = {name: self._inside_s.get(name, 0.0) + scene.duration_s for name in inside}
+        forbidden = [name for name in inside if self._is_second(name, inside) or self._in_goal_area(scene, name)]
+        self._forbidden_s = {name: self._forbidden_s.get(name, 0.0) + scene.duration_s for name in forbidden}
+        for name, time_s in self._forbidden_s.items():
+            if time_s > scene.rules.grace_s:
+                del self._forbidden_s[name]
+                return self._foul(
+                    scene, name, "goal area" if self._in_goal_area(scene, name) else "too many in an area"
+                )
+        for name, time_s in self._inside_s.items():
+            if time_s > scene.rules.area_s:
+                self._inside_s[name] = 0.0
+                return self._foul(scene, name, "too long in an area")
+        return None
+
+    def _is_second(self, name: str, inside: dict[str, float]) -> bool:
+        """Returns whether a mate has been in the same area for longer."""
+        team, entered = team_number(name), (-self._inside_s[name], name)
+        mates = [each for each in inside if inside[each] == inside[name] and team_number(each) is team]
+        return any((-self._inside_s[each], each) < entered for each in mates)
+
+    @staticmethod
+    def _in_penalty_area(scene: Scene, name: str, side: float) -> bool:
+        return scene.rules.field.in_penalty_area(*scene.sight.robots[name], side)
+
+    @staticmethod
+    def _in_goal_area(scene: Scene, name: str) -> bool:
+        return any(scene.rules.field.in_goal_area(*scene.sight.robots[name], side) for side in SIDES)
+
+    @staticmethod
+    def _foul(scene: Scene, name: str, reason: str) -> Foul:
+        return Foul(name, reason, scene.sight.robots[name])

@@ -1,0 +1,11 @@
+"""Double touch: the taker of a set piece may not play the ball again before another robot has (2016, laws 8 to 17)."""
+
+from procs.referee.fouls.foul import Foul, Scene
+
+
+def double_touch(scene: Scene) -> Foul | None:
+    """Returns the foul of a taker that played the ball twice; a robot without mates may."""
+    touches = scene.touches
+    if not touches.again or not scene.sight.mates(touches.taker):
+        return None
+    return Foul(touches.taker, "double touch", touches.place)

@@ -1,0 +1,31 @@
+"""Fouls, and what every rule gets to see."""
+
+from typing import NamedTuple
+
+from procs.model.field import Point
+from procs.referee.ends import Ends
+from procs.referee.rules import Rules
+from procs.referee.sight import Sight
+from procs.referee.touches import Carrier, Touches
+
+
+class Foul(NamedTuple):
+    """Breach of a rule by a robot."""
+
+    robot: str
+    reason: str
+    place: Point
+    """Place of the free kick."""
+    direct: bool = False
+    """In the own penalty area it brings a penalty."""
+
+
+class Scene(NamedTuple):
+    """A tick of play as the rules see it."""
+
+    duration_s: float
+    sight: Sight
+    rules: Rules
+    ends: Ends
+    touches: Touches
+    carrier: Carrier

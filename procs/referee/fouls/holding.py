@@ -1,0 +1,49 @@
+"""Holding: the ball must roll. A robot may stop it for 1 s or pull it back for 0.30 m, then not for 4 s (2016)."""
+
+import math
+
+from procs.model.field import Point
+from procs.referee.fouls.foul import Foul, Scene
+
+_STILL_M_S = 0.1
+_BACK_M_S = 0.05
+
+
+class Holding:
+    """Counts how long and how far the carrier has held the ball."""
+
+    def __init__(self) -> None:
+        self._robot = ""
+        self._held_s = self._pulled_m = self._free_s = 0.0
+        self._before: Point | None = None
+
+    def watch(self, scene: Scene) -> Foul | None:
+        """Returns the foul of a robot that has held the ball for too long or too far."""
+        ball, before, robot = scene.sight.ball, self._before, scene.carrier.robot
+        self._before = ball
+        if robot and robot != self._robot:
+            self._robot, self._held_s, self._pulled_m = robot, 0.0, 0.0
+        middle = scene.sight.robots.get(robot)
+        if before is None or middle is None or scene.duration_s <= 0.0:
+            return None
+        moved_m = math.dist(before, ball)
+        away_m = math.dist(middle, ball) or 1.0
+        back_m = (
+            (middle.x_m - ball.x_m) * (ball.x_m - before.x_m) + (middle.y_m - ball.y_m) * (ball.y_m - before.y_m)
+        ) / away_m
+        pulls = back_m > _BACK_M_S * scene.duration_s
+        if not pulls and moved_m > _STILL_M_S * scene.duration_s:
+            self._rolls(scene)
+            return None
+        self._free_s = 0.0
+        self._held_s += scene.duration_s
+        self._pulled_m += back_m if pulls else 0.0
+        if self._held_s <= scene.rules.holding_s and self._pulled_m <= scene.rules.holding_m:
+            return None
+        self._held_s = self._pulled_m = 0.0
+        return Foul(robot, "holding", ball)
+
+    def _rolls(self, scene: Scene) -> None:
+        self._free_s += scene.duration_s
+        if self._free_s >= scene.rules.holding_pause_s:
+            self._held_s = self._pulled_m = 0.0

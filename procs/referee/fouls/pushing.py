@@ -1,0 +1,54 @@
+"""Pushing: robots may touch each other, but not shove a rival away or run into it (2016, law 12)."""
+
+import itertools
+import math
+
+from procs.model.field import Point
+from procs.model.robot import RADIUS_M
+from procs.referee.ends import team_number
+from procs.referee.fouls.foul import Foul, Scene
+from procs.simulation.physics.events import Kind
+
+_CONTACT_M = 2 * RADIUS_M + 0.02
+_SHOVES_M_S = 0.1
+_REST = Point(0.0, 0.0)
+
+
+def collision(scene: Scene) -> Foul | None:
+    """Returns the foul of a robot that ran into a rival at speed."""
+    for event in scene.sight.events:
+        hard = event.kind is Kind.COLLISION and event.speed_m_s > scene.rules.collision_m_s
+        if hard and team_number(event.robot) is not team_number(event.other):
+            return Foul(event.robot, "collision", Point(event.x_m, event.y_m), direct=True)
+    return None
+
+
+class Pushing:
+    """Measures how far each robot has driven a rival before itself."""
+
+    def __init__(self) -> None:
+        self._pushed_m: dict[tuple[str, str], float] = {}
+
+    def watch(self, scene: Scene) -> Foul | None:
+        """Returns the foul of a robot that pushed a rival too far."""
+        robots, pushed_m = scene.sight.robots, {}
+        for pusher, pushed in itertools.permutations(sorted(robots), 2):
+            if team_number(pusher) is team_number(pushed) or math.dist(robots[pusher], robots[pushed]) > _CONTACT_M:
+                continue
+            both_m_s = min(self._towards_m_s(scene, pusher, pushed, of) for of in (pusher, pushed))
+            before_m = self._pushed_m.get((pusher, pushed), 0.0)
+            shoves = both_m_s > _SHOVES_M_S
+            pushed_m[pusher, pushed] = before_m + both_m_s * scene.duration_s if shoves else 0.0
+        self._pushed_m = pushed_m
+        for (pusher, _), way_m in pushed_m.items():
+            if way_m > scene.rules.pushing_m:
+                self._pushed_m = {}
+                return Foul(pusher, "pushing", robots[pusher], direct=True)
+        return None
+
+    @staticmethod
+    def _towards_m_s(scene: Scene, pusher: str, pushed: str, of: str) -> float:
+        """Returns the speed of a robot in the direction from the pusher to the pushed."""
+        start, end = scene.sight.robots[pusher], scene.sight.robots[pushed]
+        velocity, distance_m = scene.sight.velocities_m_s.get(of, _REST), math.dist(start, end) or 1.0
+        return ((end.x_m - start.x_m) * velocity.x_m + (end.y_m - start.y_m) * velocity.y_m) / distance_m

@@ -1,0 +1,35 @@
+"""Set pieces: only the team that takes it plays the ball, and robots keep their distance until it has moved (2016)."""
+
+from procs.referee.ends import Team, team_number
+from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.positions import too_near
+from procs.referee.restarts import Restart, State
+
+_INTRUSION_M = 0.3
+"""A robot that has kept its distance may come nearer by so much before the set piece is repeated."""
+
+
+def breach(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | None:
+    """Returns the breach that repeats a set piece; robots that were misplaced at its start are excused."""
+    if restart.team is Team.NONE:
+        return None
+    rivals = [name for name in scene.sight.touching if team_number(name) is restart.team.other]
+    if rivals and not scene.touches.robots & set(scene.sight.team(restart.team)):
+        return Foul(min(rivals), "touch before the set piece was taken", restart.spot)
+    if scene.touches.robots:
+        return None
+    near = too_near(restart, scene.sight.robots, scene.ends, scene.rules.field, _INTRUSION_M)
+    intruders = sorted(set(near) - excused)
+    if intruders:
+        return Foul(intruders[0], "too near to a set piece", restart.spot)
+    return _keeper_left_goal(scene, restart, excused)
+
+
+def _keeper_left_goal(scene: Scene, restart: Restart, excused: frozenset[str]) -> Foul | None:
+    keeper = scene.sight.goalkeeper(restart.team.other)
+    if restart.state is not State.PENALTY or not keeper or keeper in excused:
+        return None
+    side = scene.ends.side_of(restart.team.other)
+    if scene.rules.field.in_goal_area(*scene.sight.robots[keeper], side, _INTRUSION_M):
+        return None
+    return Foul(keeper, "keeper left its area before the penalty", restart.spot)

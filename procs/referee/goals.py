@@ -1,0 +1,48 @@
+"""Goals: which count, and which restart follows (2016, laws 8, 10, 13 and 14)."""
+
+import math
+from typing import NamedTuple
+
+from procs.model.field import Field, Point
+from procs.referee.ends import Ends, Team, team_number
+from procs.referee.restarts import Restart, State, corner_kick, goal_kick, kick_off
+from procs.referee.sight import Sight
+from procs.referee.touches import Touches
+
+
+class Verdict(NamedTuple):
+    """Judgement of a ball in a goal."""
+
+    scorer: Team
+    """Team that gets the goal; NONE: the goal does not count."""
+    restart: Restart
+    reason: str = ""
+
+
+def judge(place: Point, piece: State, touches: Touches, sight: Sight, ends: Ends, field: Field) -> Verdict:
+    """Judges a ball in the goal at `place`, after the set piece with which this stretch of the game began."""
+    conceding = ends.defender(place.x_m)
+    team = team_number(touches.last)
+    if team is conceding:
+        direct = piece is not State.DROP_BALL and touches.robots == {touches.taker} and len(sight.team(team)) > 1
+        if direct and piece is not State.PLAY:
+            return Verdict(Team.NONE, corner_kick(conceding.other, place, field), "own goal straight from a set piece")
+        return Verdict(conceding.other, kick_off(conceding))
+    reason = _why_not(piece, touches, sight, ends)
+    if reason:
+        return Verdict(Team.NONE, goal_kick(conceding, math.copysign(1.0, place.y_m), field, ends), reason)
+    return Verdict(conceding.other, kick_off(conceding))
+
+
+def _why_not(piece: State, touches: Touches, sight: Sight, ends: Ends) -> str:
+    """Returns why the goal of the team that attacks does not count; empty if it does."""
+    team = team_number(touches.last)
+    if touches.place.x_m * ends.side_of(team) > 0:
+        return "shot from the own half"
+    if len(sight.team(team)) < 2:
+        return ""  # a robot that is alone has no mate to pass to
+    if piece not in (State.PLAY, State.PENALTY) and len(touches.robots) < 2:
+        return "no second robot touched the ball"
+    if touches.owes_pass is team:
+        return "no pass since the ball was won in the own half"
+    return ""

@@ -1,0 +1,110 @@
+"""Commands by hand: the referee's decisions, made by a person or by a RefBox. Their names are those of the RefBox."""
+
+from collections.abc import Callable
+
+from procs.model.field import Point
+from procs.referee import halves, restarts
+from procs.referee.cards import Card
+from procs.referee.ends import Team
+from procs.referee.restarts import Restart, State
+from procs.referee.sight import Sight
+from procs.referee.whistle import Whistle
+
+_TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
+_SET_PIECES = {
+    "kickoff": State.KICK_OFF,
+    "freekick": State.FREE_KICK,
+    "goalkick": State.GOAL_KICK,
+    "throwin": State.THROW_IN,
+    "corner": State.CORNER_KICK,
+    "penalty": State.PENALTY,
+}
+_CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
+_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+_HALVES = {
+    "first_half": halves.FIRST,
+    "second_half": halves.SECOND,
+    "first_half_overtime": halves.THIRD,
+    "second_half_overtime": halves.FOURTH,
+}
+
+
+def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "") -> str:
+    """Carries out a command; returns why it is impossible, or an empty text."""
+    if team not in _TEAMS:
+        return f"no team '{team}'; there are cyan, magenta"
+    if name in _SET_PIECES:
+        return _set_piece(whistle, sight, _SET_PIECES[name], _TEAMS[team])
+    if name in ("goal", "subgoal"):
+        return _goal(whistle, _TEAMS[team], name == "goal")
+    if name in _CARDS or name in ("repair", "substitution"):
+        return _robot(whistle, sight, name, robot)
+    if name in _HALVES:
+        whistle.begin_half(_HALVES[name])
+        return ""
+    return _simple(whistle, sight, name)
+
+
+def _set_piece(whistle: Whistle, sight: Sight, state: State, team: Team) -> str:
+    if not team:
+        return f"a {state.name.lower().replace('_', ' ')} needs a team: cyan or magenta"
+    place, field, ends = sight.ball, whistle.rules.field, whistle.ends
+    made: dict[State, Callable[[], Restart]] = {
+        State.KICK_OFF: lambda: restarts.kick_off(team),
+        State.FREE_KICK: lambda: restarts.after_foul(place, team.other, field),
+        State.GOAL_KICK: lambda: restarts.goal_kick(team, place.y_m, field, ends),
+        State.THROW_IN: lambda: restarts.after_side_line(place, team.other, field),
+        State.CORNER_KICK: lambda: restarts.corner_kick(
+            team, Point(ends.side_of(team.other) * field.half_length_m, place.y_m), field
+        ),
+        State.PENALTY: lambda: restarts.penalty(team, field, ends),
+    }
+    whistle.interrupt(made[state](), "by hand")
+    return ""
+
+
+def _goal(whistle: Whistle, team: Team, more: bool) -> str:
+    if not team:
+        return "a goal needs a team: cyan or magenta"
+    if more:
+        whistle.goal(team)
+        whistle.interrupt(restarts.kick_off(team.other))
+    elif whistle.score[team] == 0:
+        return f"{team.name.lower()} has no goal to take back"
+    else:
+        whistle.score[team] -= 1
+    return ""
+
+
+def _robot(whistle: Whistle, sight: Sight, name: str, robot: str) -> str:
+    known = sorted(sight.robots)
+    if robot not in known:
+        return f"no robot '{robot}'; there are {', '.join(known) or 'none'}"
+    if name in _CARDS:
+        whistle.card(robot, _CARDS[name])
+    else:
+        whistle.cards.take_out(robot, whistle.rules.repair_s)
+    return ""
+
+
+def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
+    match name:
+        case "start":
+            if not whistle.stopped or whistle.state in (State.HALF_TIME, State.FROZEN):
+                return "nothing to start: the game runs, or has a break"
+            whistle.start(sight)
+        case "stop":
+            whistle.stop(sight.ball)
+        case "drop_ball":
+            whistle.interrupt(restarts.dropped_ball(sight.ball, whistle.rules.field), "by hand")
+        case "park":
+            for each in sight.robots:
+                whistle.cards.take_out(each, whistle.rules.repair_s)
+        case "half_time":
+            whistle.end_half()
+        case "end_game":
+            whistle.end_match()
+        case _:
+            known = [*_SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
+            return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"
+    return ""

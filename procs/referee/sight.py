@@ -1,0 +1,48 @@
+"""What the referee and the assistants see in a tick."""
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple
+
+from procs.model.field import Point
+from procs.model.robot import number_of
+from procs.referee.ends import Team, team_number
+from procs.simulation.physics.events import Event, Kind
+
+_NOTHING: Mapping[str, Point] = MappingProxyType({})
+
+
+class Sight(NamedTuple):
+    """Ball, robots and events of a tick; world frame."""
+
+    ball: Point
+    events: Sequence[Event] = ()
+    robots: Mapping[str, Point] = _NOTHING
+    """Middle of each robot on the field."""
+    velocities_m_s: Mapping[str, Point] = _NOTHING
+    """Velocity of each robot; a robot that is missing stands still."""
+
+    def without(self, robots: frozenset[str]) -> "Sight":
+        """Returns the sight without robots that take no part in the game."""
+        return self._replace(robots={name: place for name, place in self.robots.items() if name not in robots})
+
+    @property
+    def touching(self) -> dict[str, Point]:
+        """Robots that touched, held or kicked the ball in this tick, and where the ball was, by name."""
+        events = sorted(self.events)
+        return {each.robot: Point(each.x_m, each.y_m) for each in events if each.kind in (Kind.TOUCH, Kind.KICK)}
+
+    def team(self, team: Team) -> list[str]:
+        """Returns the robots of a team on the field, in the order of their numbers."""
+        return sorted(
+            (name for name in self.robots if team_number(name) is team), key=lambda name: (number_of(name), name)
+        )
+
+    def mates(self, robot: str) -> list[str]:
+        """Returns the mates of a robot on the field."""
+        return [name for name in self.team(team_number(robot)) if name != robot]
+
+    def goalkeeper(self, team: Team) -> str:
+        """Returns the goalkeeper of a team, the robot with the lowest number; empty for a robot that is alone."""
+        robots = self.team(team)
+        return robots[0] if len(robots) > 1 else ""

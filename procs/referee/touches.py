@@ -1,0 +1,70 @@
+"""History of the ball since the last restart: touches, passes, and the robot that carries it."""
+
+import math
+
+from procs.model.field import Point
+from procs.referee.ends import Ends, Team, team_number
+from procs.referee.sight import Sight
+
+_LOST_S = 0.25  # a robot that does not touch the ball for longer does not carry it any more
+_FREE_M = 0.5  # nor does a robot from which the ball has rolled so far
+
+
+class Touches:
+    """Touches in a stretch of the game, from the placing of the ball to the next interruption."""
+
+    def __init__(self, spot: Point) -> None:
+        self.robots: set[str] = set()
+        """Robots that touched the ball."""
+        self.taker = ""
+        """Robot that touched the ball first."""
+        self.last = ""
+        """Robot that touched the ball last; of several in a tick the taker of the ball."""
+        self.place = spot
+        """Place of the last touch; before the first, that of the ball."""
+        self.again = False
+        """The taker has touched the ball again after a free roll, before another robot did."""
+        self.owes_pass = Team.NONE
+        """Team that won the ball in its own half and has not passed it since."""
+
+    def watch(self, sight: Sight, ends: Ends, released: bool, pass_m: float) -> None:
+        """Takes the touches of a tick; `released`: the ball has been set free since the last touch of the taker."""
+        for robot, place in sight.touching.items():
+            if robot != self.last:
+                self._won(robot, place, ends, pass_m)
+            self.again = self.again or (released and robot == self.taker and self.robots == {robot})
+            self.taker = self.taker or robot
+            self.robots.add(robot)
+            self.last, self.place = robot, place
+
+    def _won(self, robot: str, place: Point, ends: Ends, pass_m: float) -> None:
+        team, before = team_number(robot), team_number(self.last)
+        if team is before:
+            if math.dist(place, self.place) >= pass_m:
+                self.owes_pass = Team.NONE
+        else:
+            in_own_half = place.x_m * ends.side_of(team) > 0
+            self.owes_pass = team if before and in_own_half else Team.NONE
+
+
+class Carrier:
+    """Robot that keeps the ball at its body, alone, from tick to tick."""
+
+    def __init__(self) -> None:
+        self.robot = ""
+        """Empty without one."""
+        self.since = Point(0.0, 0.0)
+        """Place at which it took the ball."""
+        self._missing_s = 0.0
+        self._place = self.since
+
+    def watch(self, duration_s: float, sight: Sight) -> None:
+        """Takes the touches of a tick."""
+        touching = sight.touching
+        alone = min(touching) if len(touching) == 1 else ""
+        self._missing_s = 0.0 if touching else self._missing_s + duration_s
+        free = self._missing_s > _LOST_S or math.dist(sight.ball, self._place) > _FREE_M
+        if touching:
+            self._place = sight.ball
+        if alone != self.robot and (touching or free):
+            self.robot, self.since = alone, sight.ball

@@ -1,0 +1,312 @@
+"""The referee's state machine: from what it sees in each tick to the state of the game.
+
+A stretch of the game is stopped (robots take position), then started (a set piece is taken), then played, until a goal,
+a ball out of the field, a foul or a deadlock interrupts it.
+"""
+
+import math
+from typing import NamedTuple
+
+from procs.model.field import Point
+from procs.referee import goals, halves, restarts
+from procs.referee.cards import Card, Cards
+from procs.referee.ends import Ends, Team, team_number
+from procs.referee.fouls.book import RuleBook
+from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.fouls.pushing import collision
+from procs.referee.fouls.set_piece import breach
+from procs.referee.positions import misplaced
+from procs.referee.restarts import Restart, State
+from procs.referee.rules import Rules
+from procs.referee.shootout import Shootout
+from procs.referee.sight import Sight
+from procs.referee.touches import Carrier, Touches
+from procs.simulation.physics.events import Event, Kind
+
+_MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
+_CREW_S = 0.5  # until the report shows a placement
+_REPEATS = 2  # of a set piece; then the game goes on in spite of a breach
+
+
+class Call(NamedTuple):
+    """Decision of the referee, for the record."""
+
+    state: State
+    team: Team
+    goal: bool = False
+    """By `team`; otherwise a whistle for the set piece `state`."""
+    robot: str = ""
+    """That committed a foul, or that got the card."""
+    card: Card = Card.NONE
+    reason: str = ""
+
+
+class Whistle:
+    """Leads a match: call `step` once a tick and read the attributes. `calls` are those of the newest tick."""
+
+    def __init__(self, rules: Rules) -> None:
+        self.rules = rules
+        self.state, self.team, self.spot = restarts.kick_off(Team.CYAN)
+        self.stopped = True
+        """Robots take position; the ball is not to be touched."""
+        self.held = False
+        """The game stays stopped until it is started by hand."""
+        self.half = halves.FIRST
+        self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
+        self.ends = Ends()
+        self.time_in_half_s = 0.0
+        self.time_in_state_s = 0.0
+        self.placements = 1
+        """A higher number than before: the ball is to be put on `spot`."""
+        self.cards = Cards()
+        self.shootout: Shootout | None = None
+        self.calls: list[Call] = []
+        self._changing_ends = False
+        self._resting_at = self.spot  # where the ball was when it was last seen to move on
+        self._resting_s = 0.0
+        self._since_placed_s = 0.0
+        self._repeats = 0
+        self._begin_stretch(self.spot, frozenset())
+
+    @property
+    def over(self) -> bool:
+        """Whether the match has ended."""
+        return self.state is State.FROZEN
+
+    @property
+    def restart(self) -> Restart:
+        """The set piece at hand."""
+        return Restart(self.state, self.team, self.spot)
+
+    def step(self, duration_s: float, sight: Sight) -> None:
+        """Runs one tick of `duration_s`."""
+        self.calls = []
+        self.time_in_state_s += duration_s
+        self.cards.pass_time(duration_s)
+        sight = sight.without(self.cards.sent_off)
+        if self.over:
+            return
+        if self.state is State.HALF_TIME:
+            if self.time_in_state_s >= self.rules.half_time_s:
+                self.begin_half(halves.after(self.half, self.score, self.rules) or halves.SECOND)
+            return
+        self.time_in_half_s += duration_s
+        if not self.rules.automatic:
+            self._follow(duration_s, sight)
+        elif not self.shootout and self.time_in_half_s >= halves.length_s(self.half, self.rules):
+            self.end_half()
+        elif self.stopped:
+            self._wait_for_robots(duration_s, sight)
+        else:
+            self._watch(duration_s, sight)
+
+    def begin_half(self, half: int) -> None:
+        """Begins a half with its kick-off, or the penalties with the first of them."""
+        ends = halves.ends_of(half, self.rules)
+        self._changing_ends, self.ends = ends != self.ends, ends
+        self.half, self.time_in_half_s = half, 0.0
+        self.shootout = Shootout(self.rules.penalties) if half == halves.PENALTIES else None
+        self.interrupt(self._next_penalty() if self.shootout else restarts.kick_off(halves.kicks_off(half)))
+
+    def stop(self, ball: Point) -> None:
+        """Stops the game until it is started by hand; from play it goes on with a dropped ball."""
+        if self.state is State.PLAY:
+            self.interrupt(restarts.dropped_ball(ball, self.rules.field), "by hand")
+        elif self.state not in (State.HALF_TIME, State.FROZEN):
+            self._enter(self.state, self.team, stopped=True)
+        self.held = True
+
+    def end_half(self) -> None:
+        """Ends the half, and the match if no other follows."""
+        if halves.after(self.half, self.score, self.rules):
+            self._enter(State.HALF_TIME, Team.NONE, stopped=True)
+            self.calls.append(Call(self.state, Team.NONE))
+        else:
+            self.end_match()
+
+    def end_match(self) -> None:
+        """Ends the match."""
+        self._enter(State.FROZEN, Team.NONE, stopped=True)
+        self.calls.append(Call(self.state, Team.NONE))
+
+    def interrupt(self, restart: Restart, reason: str = "", robot: str = "") -> None:
+        """Stops the game for a set piece and has the ball placed."""
+        self._repeats = self._repeats + 1 if restart == self.restart and not self.stopped else 0
+        self._enter(restart.state, restart.team, stopped=True)
+        self.spot, self.held = restart.spot, False
+        self.calls.append(Call(restart.state, restart.team, robot=robot, reason=reason))
+        self._place()
+
+    def start(self, sight: Sight | None = None) -> None:
+        """Lets the set piece be taken."""
+        self._enter(self.state, self.team, stopped=False)
+        self.held = self._changing_ends = False
+        excused = self._misplaced(sight) if sight else []
+        ball = sight.ball if sight else self.spot
+        self._resting_at, self._resting_s = ball, 0.0
+        self._begin_stretch(ball, frozenset(excused))
+
+    def goal(self, team: Team) -> None:
+        """Counts a goal."""
+        self.score[team] += 1
+        self.calls.append(Call(State.KICK_OFF, team, goal=True))
+
+    def card(self, robot: str, card: Card) -> None:
+        """Shows a card."""
+        self.cards.show(robot, card, self.rules)
+        self.calls.append(Call(self.state, team_number(robot), robot=robot, card=card))
+
+    def _begin_stretch(self, ball: Point, excused: frozenset[str]) -> None:
+        self._piece = self.state
+        self._touches, self._carrier, self._book = Touches(ball), Carrier(), RuleBook()
+        self._excused = excused
+        self._released = False
+
+    def _misplaced(self, sight: Sight) -> list[str]:
+        keeper = sight.goalkeeper(self.team.other)
+        return misplaced(self.restart, sight.robots, self.ends, self.rules.field, keeper)
+
+    def _follow(self, duration_s: float, sight: Sight) -> None:
+        """Follows a game that is led by hand: set pieces become play."""
+        if self.stopped:
+            self._guard_ball(duration_s, sight)
+        elif self.state is not State.PLAY:
+            self._touches.watch(sight, self.ends, self._released, self.rules.pass_m)
+            if self._rolled(sight.ball) or self.time_in_state_s >= self.rules.set_piece_s:
+                self._play(sight.ball)
+
+    def _guard_ball(self, duration_s: float, sight: Sight) -> None:
+        """Has the ball put back if a robot has pushed it away."""
+        self._since_placed_s += duration_s
+        if math.dist(sight.ball, self.spot) > _MISPLACED_M and self._since_placed_s > _CREW_S:
+            self._place()
+
+    def _wait_for_robots(self, duration_s: float, sight: Sight) -> None:
+        self._guard_ball(duration_s, sight)
+        rules = self.rules
+        stoppage_s = rules.kick_off_stoppage_s if self.state is State.KICK_OFF else rules.stoppage_s
+        if self.held or self.time_in_state_s < stoppage_s or self._too_few(sight):
+            return
+        patience_s = rules.ends_s if self._changing_ends else rules.positions_s
+        if self.time_in_state_s < stoppage_s + patience_s and self._misplaced(sight):
+            return
+        self.start(sight)
+
+    def _too_few(self, sight: Sight) -> bool:
+        teams = [sight.team(team) for team in (Team.CYAN, Team.MAGENTA)]
+        return any(0 < len(robots) < self.rules.least_robots for robots in teams)
+
+    def _watch(self, duration_s: float, sight: Sight) -> None:
+        self._touches.watch(sight, self.ends, self._released, self.rules.pass_m)
+        self._carrier.watch(duration_s, sight)
+        scene = Scene(duration_s, sight, self.rules, self.ends, self._touches, self._carrier)
+        if self.shootout:
+            self._watch_penalty(scene)
+        elif any(self._ball_left(event, sight) for event in sight.events):
+            return
+        elif self.state is State.PLAY:
+            self._watch_play(scene)
+        else:
+            self._watch_set_piece(scene)
+
+    def _ball_left(self, event: Event, sight: Sight) -> bool:
+        """Interrupts the game if the event says that the ball has left the field."""
+        field, place, team = self.rules.field, Point(event.x_m, event.y_m), team_number(event.robot)
+        if event.kind is Kind.OUT_SIDE:
+            self.interrupt(restarts.after_side_line(place, team, field))
+        elif event.kind is Kind.OUT_END:
+            self.interrupt(restarts.after_goal_line(place, team, field, self.ends))
+        elif event.kind is Kind.GOAL:
+            verdict = goals.judge(place, self._piece, self._touches, sight, self.ends, field)
+            if verdict.scorer:
+                self.goal(verdict.scorer)
+            self.interrupt(verdict.restart, verdict.reason)
+        else:
+            return False
+        return True
+
+    def _watch_play(self, scene: Scene) -> None:
+        ball = scene.sight.ball
+        self._released = self._released or self._rolled(ball)
+        foul = self._book.watch(scene)
+        self._resting_s += scene.duration_s
+        if foul:
+            self._punish(foul)
+        elif math.dist(ball, self._resting_at) > self.rules.deadlock_m:
+            self._resting_at, self._resting_s = ball, 0.0
+        elif self._resting_s >= self.rules.deadlock_s:
+            self.interrupt(restarts.dropped_ball(ball, self.rules.field), "deadlock")
+
+    def _watch_set_piece(self, scene: Scene) -> None:
+        foul = breach(scene, self.restart, self._excused)
+        crash = collision(scene)
+        if crash:
+            self._punish(crash)
+        elif foul and self._repeats < _REPEATS:
+            self._warn(foul)
+            self.interrupt(self.restart, foul.reason, foul.robot)
+        elif self.state is State.DROP_BALL and self._touches.robots:
+            self._play(scene.sight.ball)
+        elif self._rolled(scene.sight.ball):
+            self._released = True
+            self._play(scene.sight.ball)
+        elif self.state is State.PENALTY:
+            if not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s:
+                self.interrupt(self._goal_kick(), "penalty not taken in time")
+        elif self.time_in_state_s >= self.rules.set_piece_s:
+            self._play(scene.sight.ball)
+
+    def _watch_penalty(self, scene: Scene) -> None:
+        """Watches one of the penalties that decide a match: it ends with a goal, out, the keeper's save or in time."""
+        assert self.shootout
+        left = [event for event in scene.sight.events if event.kind in (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)]
+        attacked = self.ends.side_of(self.team.other)
+        scored = any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
+        self._released = self._released or self._rolled(scene.sight.ball)
+        late = not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s
+        missed = bool(left) or late or self._touches.again or self.time_in_state_s >= self.rules.shot_s
+        if not scored and not missed:
+            return
+        self.shootout.shot(scored)
+        if scored:
+            self.goal(self.team)
+        if self.shootout.decided:
+            self.end_half()
+        else:
+            self.interrupt(self._next_penalty(), "" if scored else "missed")
+
+    def _rolled(self, ball: Point) -> bool:
+        """Returns whether the ball has rolled without a touch far enough to be set free."""
+        return math.dist(ball, self._touches.place) >= self.rules.moved_m
+
+    def _punish(self, foul: Foul) -> None:
+        self._warn(foul)
+        offender, field = team_number(foul.robot), self.rules.field
+        if foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
+            self.interrupt(restarts.penalty(offender.other, field, self.ends), foul.reason, foul.robot)
+        else:
+            self.interrupt(restarts.after_foul(foul.place, offender, field), foul.reason, foul.robot)
+
+    def _warn(self, foul: Foul) -> None:
+        card = self.cards.foul(foul.robot, self.rules)
+        if card:
+            self.calls.append(Call(self.state, team_number(foul.robot), robot=foul.robot, card=card))
+
+    def _goal_kick(self) -> Restart:
+        return restarts.goal_kick(self.team.other, 1.0, self.rules.field, self.ends)
+
+    def _next_penalty(self) -> Restart:
+        assert self.shootout
+        return restarts.penalty(self.shootout.shooter, self.rules.field, self.ends)
+
+    def _place(self) -> None:
+        self.placements += 1
+        self._since_placed_s = 0.0
+
+    def _play(self, ball: Point) -> None:
+        self._enter(State.PLAY, Team.NONE, stopped=False)
+        self._resting_at, self._resting_s = ball, 0.0
+
+    def _enter(self, state: State, team: Team, stopped: bool) -> None:
+        self.state, self.team, self.stopped = state, team, stopped
+        self.time_in_state_s = 0.0

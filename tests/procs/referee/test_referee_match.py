@@ -1,0 +1,147 @@
+"""A match as a whole: penalties, cards, halves and ends."""
+
+import pytest
+
+from procs.model.field import Point
+from procs.referee.cards import Card
+from procs.referee.restarts import State
+from procs.referee.shootout import Shootout
+from procs.simulation.physics.events import Event, Kind
+from tests.procs.referee.script import CYAN, MAGENTA, Script
+
+BESIDE = {"cyan2": Point(6.9, 0.0), "cyan3": Point(3.0, 2.0), "magenta2": Point(3.0, -2.0), "magenta3": Point(2.0, 3.0)}
+
+
+def penalty() -> Script:
+    script = Script().playing()
+    script.robots |= BESIDE
+    script.tick(Event(Kind.COLLISION, "magenta2", "cyan3", 9.5, 0.5, 3.5))
+    return script.started()
+
+
+def test_penalty_goal_counts_without_a_second_robot() -> None:
+    script = penalty()
+    script.touch("cyan2")
+    script.roll(9.0, 0.0)
+    script.goal(11.2, "cyan2")
+    assert script.score == (1, 0)
+
+
+def test_penalty_that_is_not_taken_becomes_a_goal_kick() -> None:
+    script = penalty()
+    script.wait(9.8)
+    assert script.state == (State.PENALTY, CYAN, False)
+    script.wait(0.4)
+    assert script.state == (State.GOAL_KICK, MAGENTA, True)
+
+
+def test_penalty_is_repeated_when_the_keeper_leaves_its_area() -> None:
+    script = penalty()
+    script.robots["magenta1"] = Point(9.5, 0.0)
+    script.tick()
+    assert script.state == (State.PENALTY, CYAN, True)
+    assert script.reasons[-1] == "keeper left its area before the penalty"
+
+
+def test_third_foul_brings_yellow_then_the_robot_leaves() -> None:
+    script = Script(double_yellow_s=5.0).playing()
+    for _ in range(6):
+        script.tick(Event(Kind.COLLISION, "cyan3", "magenta2", 1.0, 1.0, 3.5))
+        cards = [call.card for call in script.whistle.calls if call.card]
+        script.robots["cyan3"] = Point(-4.0, -2.0)
+        script.started()
+        script.wait(7.1)  # until it is play, which nobody touched
+        if cards == [Card.DOUBLE_YELLOW]:
+            break
+    assert cards == [Card.DOUBLE_YELLOW]
+    assert script.whistle.cards.sent_off == frozenset(), "its time is over"
+
+
+@pytest.mark.parametrize(
+    ("card", "time_s", "out"), [(Card.DOUBLE_YELLOW, 89.0, True), (Card.DOUBLE_YELLOW, 91.0, False)]
+)
+def test_double_yellow_takes_a_robot_out_for_90_s(card: Card, time_s: float, out: bool) -> None:
+    script = Script().playing()
+    script.whistle.card("cyan3", card)
+    script.wait(time_s)
+    assert script.whistle.cards.sent_off == (frozenset({"cyan3"}) if out else frozenset())
+
+
+def test_red_card_is_for_the_rest_of_the_match() -> None:
+    script = Script().playing()
+    script.whistle.card("magenta2", Card.RED)
+    script.wait(300.0)
+    assert script.whistle.cards.sent_off == frozenset({"magenta2"})
+
+
+def test_robot_that_was_sent_off_is_not_seen() -> None:
+    script = Script()
+    script.robots["magenta2"] = Point(1.0, 0.0)
+    script.whistle.card("magenta2", Card.RED)
+    script.wait(0.6)
+    assert not script.whistle.stopped, "the set piece does not wait for it"
+
+
+def test_teams_change_ends_for_the_second_half() -> None:
+    script = Script(half_s=10.0, half_time_s=1.0).playing()
+    assert script.whistle.ends.cyan_side == -1.0
+    script.wait(11.0)
+    assert (script.whistle.half, script.state) == (2, (State.KICK_OFF, MAGENTA, True))
+    assert script.whistle.ends.cyan_side == 1.0
+    script.wait(5.0)
+    assert script.whistle.stopped, "the robots are in the wrong halves"
+    script.robots = {name: Point(-place.x_m, place.y_m) for name, place in script.robots.items()}
+    script.robots["magenta3"] = Point(-0.5, 0.0)
+    script.started()
+    script.touch("magenta3")
+    script.roll(1.0, 0.0)
+    script.touch("magenta2")
+    script.goal(11.2, "magenta2")
+    assert script.score == (0, 1), "cyan defends the goal at positive x"
+
+
+def test_draw_goes_to_overtime_and_penalties_if_it_is_to_be_decided() -> None:
+    script = Script(half_s=5.0, half_time_s=0.5, overtime_half_s=5.0, decide=True, penalties=1)
+    halves = []
+    for _ in range(600):
+        script.tick()
+        if script.whistle.half not in halves:
+            halves.append(script.whistle.half)
+        if script.whistle.shootout:
+            break
+    assert (halves, script.state) == ([1, 2, 3, 4, 5], (State.PENALTY, CYAN, True))
+    script.robots |= BESIDE
+    script.started()
+    script.touch("cyan2")
+    script.goal(11.2, "cyan2")
+    assert script.state == (State.PENALTY, MAGENTA, True)
+    script.robots |= {"cyan2": Point(-3.0, 2.0), "cyan3": Point(-3.0, -2.0), "magenta2": Point(-6.9, 0.0)}
+    script.robots |= {"magenta3": Point(-2.0, 3.0)}
+    script.started()
+    script.wait(10.1)
+    assert (script.state[0], script.score) == (State.FROZEN, (1, 0))
+
+
+def test_match_ends_after_two_halves_with_a_draw() -> None:
+    script = Script(half_s=5.0, half_time_s=0.5)
+    script.wait(12.0)
+    assert (script.whistle.half, script.state[0]) == (2, State.FROZEN)
+
+
+def test_penalties_end_when_they_are_decided() -> None:
+    shootout = Shootout(5)
+    for scored in (True, False, True, False):
+        shootout.shot(scored)
+    assert not shootout.decided
+    shootout.shot(True)
+    shootout.shot(False)
+    assert shootout.decided, "3:0 with two penalties left each"
+
+
+def test_penalties_go_on_in_pairs_after_five() -> None:
+    shootout = Shootout(1)
+    for scored in (True, True, True):
+        shootout.shot(scored)
+    assert not shootout.decided
+    shootout.shot(False)
+    assert shootout.decided
