@@ -10,6 +10,7 @@ import numpy as np
 import trouble
 import weather  # noqa: F401 - loses datagrams if its settings ask for it
 from fwk import Clock, Component, Config, Each, Reads, TimeSource, Writes, channel
+from fwk.lcm.codec import encoder  # the bytes of lcm-gen, sooner
 from lcmtypes.play import burst_t, heard_t, note_t
 
 
@@ -85,9 +86,12 @@ class Player(Component):
     def digest(self) -> int:
         found = 0
         for reader in self.readers():
-            for message in reader.fresh:
-                found = zlib.crc32(message.encode(), found)
-            found = zlib.crc32(reader.value.encode(), found)
+            message_type: Any = reader.message_type
+            encode = encoder(message_type)
+            assert encode
+            fresh = [*map(encode, reader.fresh)]
+            for data in [*fresh, fresh[-1] if fresh else encode(reader.value)]:
+                found = zlib.crc32(data, found)
         return found
 
     def readers(self) -> list[Reads[Any]]:

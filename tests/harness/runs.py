@@ -4,24 +4,21 @@ import contextlib
 import os
 import signal
 import socket
-import subprocess
-import sys
 import time
 import uuid
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Self
 
 import psutil
 
 from fwk.bus.port_lock import PortLock, PortsInUseError
-from fwk.host.process import die_with_parent
 from fwk.model.ports import Ports
+from tests.harness import commands
+from tests.harness.command_server import MARK
+from tests.harness.commands import BIN
 
-BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
-_MARK = "FWK_TEST_RUN"
 _BLOCK = 128
 _BASES = range(21_120, 32_000, _BLOCK)  # first lock block of ports
 
@@ -84,17 +81,9 @@ class Launched:
         self._mark = uuid.uuid4().hex
         self._output = folder / f"output-{self._mark}.txt"
         command = [*wrapper, str(BIN / "fwk-launch"), *arguments, "--bus-port", str(ports.bus), "--plain"]
+        environment = {**os.environ, "HOME": str(folder), MARK: self._mark, **env}
         with open(self._output, "wb") as output:
-            self.process = subprocess.Popen(
-                command,
-                cwd=folder,
-                env={**os.environ, "HOME": str(folder), _MARK: self._mark, **env},
-                stdin=subprocess.DEVNULL,
-                stdout=output,
-                stderr=subprocess.STDOUT,
-                start_new_session=True,
-                preexec_fn=partial(die_with_parent, os.getpid(), signal.SIGTERM),  # when the test run is killed
-            )
+            self.process = commands.start(command, folder, environment, output.fileno(), output.fileno(), session=True)
 
     @property
     def text(self) -> str:
@@ -137,7 +126,7 @@ class Launched:
         found = []
         for process in psutil.process_iter():
             try:
-                if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(_MARK) == self._mark:
+                if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == self._mark:
                     found.append(process)
             except psutil.Error:
                 continue
@@ -199,15 +188,8 @@ def pause(seconds: float = 0.02) -> None:
 
 def fwk(folder: Path, *words: str | Path, code: int = 0) -> str:
     """Returns the output of a command in a folder; it has to end with that exit code."""
-    done = subprocess.run(
-        [BIN / "fwk", *words],
-        cwd=folder,
-        env={**os.environ, "HOME": str(folder)},
-        capture_output=True,
-        text=True,
-        timeout=2 * TIMEOUT_S,
-        check=False,
-    )
+    command = [str(BIN / "fwk"), *map(str, words)]
+    done = commands.run(command, folder, {**os.environ, "HOME": str(folder)}, 2 * TIMEOUT_S)
     assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}\n{done.stderr}"
     return done.stdout + done.stderr
 

@@ -13,8 +13,9 @@ from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.client import RefusedError
 from fwk.model.plain_values import value_of
 from fwk.model.tick_events import HostStopped
+from tests.harness.commands import BIN
 from tests.harness.logs import Recording
-from tests.harness.runs import BIN, TIMEOUT_S, PortBlock, fwk
+from tests.harness.runs import TIMEOUT_S, PortBlock, fwk
 from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system

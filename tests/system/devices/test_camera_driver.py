@@ -9,9 +9,10 @@ import pexpect
 import pytest
 
 from procs.vision.colours import Picture
+from tests.harness.commands import BIN
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording, difference
-from tests.harness.runs import BIN, TIMEOUT_S, PortBlock, fwk, replayed
+from tests.harness.runs import TIMEOUT_S, PortBlock, fwk, replayed
 from tests.procs.vision.picture_parts import read, shades, simulated, write_folder, write_video
 from tests.programs.control_system import Steered
 

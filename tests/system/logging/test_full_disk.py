@@ -14,7 +14,8 @@ from fwk.clock import sleep_s
 from fwk.control.yaml_edit import read
 from fwk.lcm.event_log import LogReader
 from fwk.logs.reader import read_lines
-from tests.harness.runs import BIN, Launched, PortBlock, fill, fwk
+from tests.harness.commands import BIN
+from tests.harness.runs import Launched, PortBlock, fill, fwk
 from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system

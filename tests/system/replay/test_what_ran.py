@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness import commands
+from tests.harness.commands import BIN
 from tests.harness.fixtures import Launch
-from tests.harness.runs import BIN, PortBlock, write_files
+from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
 from tests.programs.opening_system import market
 
 pytestmark = pytest.mark.system
@@ -19,9 +21,7 @@ KERNEL = "OPENBLAS_CORETYPE"
 def done(folder: Path, *words: str, kernel: str = "") -> subprocess.CompletedProcess[str]:
     """Runs a command of `fwk` to its end."""
     env = {**os.environ, "HOME": str(folder), **({KERNEL: kernel} if kernel else {})}
-    return subprocess.run(
-        [BIN / "fwk", *words], cwd=folder, env=env, capture_output=True, text=True, timeout=120, check=False
-    )
+    return commands.run([str(BIN / "fwk"), *words], folder, env, 2 * TIMEOUT_S)
 
 
 def said(folder: Path, *words: str, kernel: str = "") -> str:
