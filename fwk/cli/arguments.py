@@ -49,7 +49,7 @@ def speed(text: str) -> float:
     Raises:
         BadParameter: the text is neither.
     """
-    meaning = f"a pace; say a number from {SPEED_MIN:g} to {SPEED_MAX:g}, such as 0.5 or 2, or 'max'"
+    meaning = f"a pace; use a number from {SPEED_MIN:g} to {SPEED_MAX:g}, such as 0.5 or 2, or 'max'"
     return 0.0 if text == "max" else _number(text, SPEED_MIN, SPEED_MAX, meaning)
 
 
@@ -59,7 +59,7 @@ def seconds(text: str) -> float:
     Raises:
         BadParameter: the text is not a duration.
     """
-    meaning = f"a duration; say seconds from 0.001 to {SECONDS_MAX:g}, such as 60 or 0.5"
+    meaning = f"a duration; use seconds from 0.001 to {SECONDS_MAX:g}, such as 60 or 0.5"
     return _number(text, 0.001, SECONDS_MAX, meaning)
 
 
@@ -86,7 +86,7 @@ def video_file(text: str) -> Path:
     """
     if Path(text).suffix != ".mp4":
         right = Path(text).with_suffix(".mp4") if Path(text).name else "match.mp4"
-        raise typer.BadParameter(f"'{text}' is not an .mp4 file, the only format; say {right}")
+        raise typer.BadParameter(f"'{text}' is not an .mp4 file, the only format; use {right}")
     return new_file(text)
 
 

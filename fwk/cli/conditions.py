@@ -19,7 +19,7 @@ def ticks(text: str) -> tuple[int, int]:
     """
     found = re.fullmatch(r"(\d{0,18})(\.\.|-)?(\d{0,18})", text, re.ASCII)
     if not found or not (found[1] or found[3]):
-        raise typer.BadParameter(f"--tick: '{text}' is not a tick; say 120, or 100..200")
+        raise typer.BadParameter(f"--tick: '{text}' is not a tick; use 120, or 100..200")
     first = int(found[1] or 0)
     return _ordered(first, int(found[3] or sys.maxsize) if found[2] else first, f"--tick: '{text}'")
 
@@ -37,12 +37,12 @@ def times_us(text: str) -> tuple[int, int]:
             return _ordered(first_us, last_us if last else sys.maxsize, f"--time: '{text}'")
     except (ValueError, OverflowError):
         pass
-    raise typer.BadParameter(f"--time: '{text}' is not a range of seconds; say 1.5..2, or 1.5..")
+    raise typer.BadParameter(f"--time: '{text}' is not a range of seconds; use 1.5..2, or 1.5..")
 
 
 def _ordered(first: int, last: int, said: str) -> tuple[int, int]:
     if first > last:
-        raise typer.BadParameter(f"{said} begins after its end; say the smaller number first")
+        raise typer.BadParameter(f"{said} begins after its end; give the smaller number first")
     return first, last
 
 
@@ -66,9 +66,7 @@ def moment_us(text: str, option: str) -> int:
                 return now_us - round(seconds * US_PER_S)
         except ValueError:
             pass
-    raise typer.BadParameter(
-        f"{option}: '{text}' is not a time; say how many seconds ago, or a time of day such as 14:05"
-    )
+    raise typer.BadParameter(f"{option}: '{text}' is not a time; give seconds ago, or a time of day such as 14:05")
 
 
 def pattern(text: str, option: str) -> re.Pattern[str]:

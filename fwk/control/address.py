@@ -1,4 +1,4 @@
-"""Control sockets of the runs on this machine: their addresses, which runs exist, and who owns and who may use them."""
+"""Control sockets of the runs on this machine: their addresses, owners, and permitted users."""
 
 import os
 import socket
@@ -39,10 +39,10 @@ def peer_of(connection: socket.socket) -> tuple[int, int]:
 
 
 def obeys(uid: int) -> bool:
-    """Whether a run of this user obeys that user: the user who started the run, and root, are obeyed."""
+    """Returns whether a run of this user obeys that user: the user who started the run, and root, are obeyed."""
     return uid in (os.geteuid(), _ROOT)
 
 
 def trusts(uid: int) -> bool:
-    """Whether a tool of this user believes a socket of that user; root uses the runs of all users."""
+    """Returns whether a tool of this user trusts a socket of that user; root uses the runs of all users."""
     return uid in (os.geteuid(), _ROOT) or os.geteuid() == _ROOT

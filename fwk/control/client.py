@@ -19,7 +19,7 @@ _LOOK_S = 1.0
 
 
 class ControlError(Exception):
-    """A run cannot be asked; the text says why and what would be right."""
+    """A run cannot be asked; the text gives the reason and the remedy."""
 
 
 class NoAnswerError(ControlError):
@@ -27,7 +27,7 @@ class NoAnswerError(ControlError):
 
 
 class RefusedError(ControlError):
-    """A run refuses a request, or the run that was named does not exist."""
+    """A run refuses a request, or the named run does not exist."""
 
 
 class Client:

@@ -1,4 +1,4 @@
-"""Needs and dependents: what has to run before a component starts, and what has to stop before it is unloaded."""
+"""Needs and dependents: components that must run before another starts, or stop before another is unloaded."""
 
 from collections.abc import Callable, Sequence
 

@@ -35,16 +35,17 @@ class Kept:
 
 
 class KeepError(Exception):
-    """The host file could not be changed and is as it was; the text says why."""
+    """The host file could not be changed and is unchanged; the text gives the reason."""
 
 
 def keep(file: Path, settings: Sequence[Kept]) -> None:
-    """Writes settings into the file, which is made if it does not exist.
+    """Writes settings into the file, which is created if necessary.
 
-    When this returns, they are on the disk; if the process is killed meanwhile, the file is the old or the new one.
+    When this returns, they are on the disk; if the process is killed during the call, the file is the old or the new
+    one.
 
     Raises:
-        KeepError: not written; the file is as it was.
+        KeepError: not written; the file is unchanged.
     """
 
     def edit(text: str) -> str:
@@ -60,7 +61,7 @@ def forget(file: Path, paths: Sequence[str]) -> None:
     """Removes settings, `NAME.SETTING` each, from the file; removes a file that is then empty.
 
     Raises:
-        KeepError: one of them is not in it, or it cannot be written; the file is as it was.
+        KeepError: one of them is not in it, or it cannot be written; the file is unchanged.
     """
 
     def edit(text: str) -> str:
@@ -88,7 +89,7 @@ def _rewrite(file: Path, edit: Callable[[str], str]) -> None:
     except (EditError, UnicodeDecodeError) as error:
         raise KeepError(f"{shown(file)}: {error}") from error
     except OSError as error:
-        raise KeepError(f"{shown(file)}: cannot be written: {error.strerror}; it is as it was") from error
+        raise KeepError(f"{shown(file)}: cannot be written: {error.strerror}; it is unchanged") from error
 
 
 def _check_wins(config: dict[str, Any], kept: Kept) -> None:
@@ -99,12 +100,12 @@ def _check_wins(config: dict[str, Any], kept: Kept) -> None:
         for key in kept.setting.split("."):
             below = below.get(key) if isinstance(below, dict) else None
         if matches(kept.component, later) and below is not None and below != kept.value:
-            raise EditError(f"'{later}' further down says {below} of '{kept.setting}' and wins; change it there")
+            raise EditError(f"'{later}' further down sets {below} for '{kept.setting}' and wins; change it there")
 
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[int]:
-    """Locks the folder for one writer; gives the descriptor of the folder."""
+    """Locks the folder for one writer; yields the descriptor of the folder."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)
@@ -130,7 +131,7 @@ def _write(file: Path, text: str, folder: int) -> None:
 
 
 def _like(descriptor: int, file: Path) -> None:
-    """Gives the new file mode and owner of the file that it replaces."""
+    """Gives the new file the mode and owner of the file that it replaces."""
     old = file.stat()
     os.fchmod(descriptor, old.st_mode & 0o7777)
     with contextlib.suppress(PermissionError):

@@ -1,6 +1,6 @@
 """Requests to a run, one model each; a request is one JSON object on one line.
 
-Every answer is a JSON object with `ok`; where that is false, `error` says what is wrong and what would be right.
+Every answer is a JSON object with `ok`; where that is false, `error` names the mistake and the correction.
 """
 
 from typing import Annotated, Literal, TypeVar
@@ -11,7 +11,7 @@ from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 
 R = TypeVar("R")
 NESTED_MAX = 32
-"""How deeply lists and mappings of a new value may be nested."""
+"""Deepest nesting of lists and mappings in a new value."""
 Action = Literal["start", "stop", "restart", "reload", "load", "unload", "kill"]
 Names = Annotated[list[Annotated[str, Field(max_length=200)]], Field(max_length=1000)]
 
@@ -75,11 +75,11 @@ def _possible(speed: float) -> float:
 
 
 class Clock(_Request):
-    """Pauses, resumes or steps simulated time, or sets its speed; answered when it has happened."""
+    """Pauses, resumes or steps simulated time, or sets its speed; answered after the effect."""
 
     verb: Literal["pause", "resume", "step", "speed"]
     ticks: int = Field(1, ge=1)
-    """To step."""
+    """Number of ticks to step."""
     speed: Annotated[float, Field(ge=0.0, le=SPEED_MAX), AfterValidator(_possible)] | None = None
     """Logical seconds per wall second, 0: as fast as possible; without it, the speed is only reported."""
 
@@ -150,7 +150,7 @@ class Call(_Request):
     data: str
     """The command's message, encoded, in hexadecimal digits; header and expiry are filled in."""
     expires_s: float = Field(gt=0.0, allow_inf_nan=False, le=SECONDS_MAX)
-    """Logical time after which the command is not begun any more."""
+    """Logical time after which the command does not begin any more."""
 
 
 SupervisorRequest = (
@@ -167,7 +167,7 @@ to_gateway: TypeAdapter[GatewayRequest] = TypeAdapter(
 
 
 class RequestError(Exception):
-    """A request that cannot be read or fulfilled; the text says why and what would be right."""
+    """A request that cannot be read or fulfilled; the text gives the reason and the correction."""
 
 
 def parsed(adapter: TypeAdapter[R], line: bytes) -> R:

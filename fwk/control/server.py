@@ -13,7 +13,7 @@ from fwk.control.address import obeys, peer_of
 REQUEST_MAX = 64 << 10
 REPLIES_MAX = 8 << 20  # bytes kept for a client that does not read
 CONNECTIONS_MAX = 32
-REQUESTS_MAX = 64  # in one piece of input
+REQUESTS_MAX = 64  # bytes read at once
 _CHUNK = 64 << 10
 
 Answer = Callable[[bytes, "Connection"], None]
@@ -21,7 +21,7 @@ Answer = Callable[[bytes, "Connection"], None]
 
 
 class ControlNameError(Exception):
-    """Another process holds the name of a control socket; the text says what would be right."""
+    """Another process holds the name of a control socket; the text names the remedy."""
 
 
 class Connection:
@@ -29,7 +29,7 @@ class Connection:
 
     def __init__(self, connection: socket.socket, changed: Callable[["Connection"], None]) -> None:
         self.open = True
-        self.skipped = 0  # messages of a stream left out because the client did not read
+        self.skipped = 0  # stream messages left out because the client did not read
         self.asked = 0  # requests taken
         self.waiting = 0  # requests not answered yet
         self.streams = False
@@ -61,7 +61,7 @@ class Connection:
         self.waiting = max(0, self.waiting - 1)
         self._replies += json.dumps(message).encode() + b"\n"
         if descriptors:
-            with contextlib.suppress(OSError):  # `flush` finds out
+            with contextlib.suppress(OSError):  # `flush` detects the error
                 del self._replies[: socket.send_fds(self._socket, [self._replies[:_CHUNK]], descriptors)]
         self.flush()
         if len(self._replies) > REPLIES_MAX:
@@ -77,7 +77,7 @@ class Connection:
         self.skipped = 0
 
     def refuse(self, error: str) -> None:
-        """Replies with an error: what is wrong and what would be right."""
+        """Replies with an error: the mistake and the correction."""
         self.reply({"ok": False, "error": error})
 
     def flush(self) -> None:
@@ -163,7 +163,7 @@ class Server:
         self._listener.close()
 
     def handle(self) -> None:
-        """Does what can be done without waiting: at most one chunk of input for each client."""
+        """Does all work that needs no waiting: reads at most one chunk of input from each client."""
         for descriptor, events in self._epoll.poll(0):
             connection = self._connections.get(descriptor)
             if connection is None:
@@ -194,7 +194,7 @@ class Server:
         """Disconnects the oldest idle client, preferring those that never asked; returns whether there was one."""
         idle = [each for each in self._connections.values() if each is not newest and each.idle]
         if idle:
-            chosen = min(idle, key=lambda each: each.asked > 0)  # the first of equals: the oldest
+            chosen = min(idle, key=lambda each: each.asked > 0)  # of equal ones the oldest
             chosen.refuse("disconnected: idle, and another client needs the connection")
             chosen.close()
         return bool(idle)

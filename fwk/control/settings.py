@@ -1,4 +1,4 @@
-"""The settings of a run's components: their values, where each comes from, and the changes that are asked for."""
+"""The settings of a run's components: values, origins, and requested changes."""
 
 import dataclasses
 import json
@@ -52,7 +52,7 @@ class RunSettings:
         """Returns name, value, origin, type and meaning of all settings, or of those that match the patterns.
 
         Raises:
-            RequestError: a pattern means nothing.
+            RequestError: a pattern matches nothing.
         """
         names = [pattern.partition(".")[0] for pattern in patterns] or ["*"]
         concerned = [each for each in self._plan.components if any(matches(each.name, name) for name in names)]
@@ -68,7 +68,7 @@ class RunSettings:
         return {self._plan.components[index].name: json.dumps(self._values[index]) for index in sorted(some)}
 
     def check(self, sets: Sequence[str]) -> list[NewSettings]:
-        """Returns what components get by `NAME.SETTING=VALUE`, on top of what is asked for; changes nothing.
+        """Returns requested settings of components with `NAME.SETTING=VALUE` added; changes nothing.
 
         Raises:
             RequestError: with every mistake.
@@ -76,7 +76,7 @@ class RunSettings:
         problems = Problems()
         for text in sets:
             if "." not in text.partition("=")[0]:
-                problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; what belongs to the run as a whole stays")
+                problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; values of the run as a whole cannot change")
         typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
         wishes = typed.at("config").value if typed.child("config") else {}
         found = [
@@ -116,7 +116,7 @@ class RunSettings:
         values, origins = effective(kind, [now, *layers], "", lambda _, text: texts.append(text))
         said = {name: _value(values, name) for name, origin in origins.items() if origin != _NOW}
         texts += [
-            f"'{name}' stays as it is while the run goes on; set it in the launch file and start the run again"
+            f"'{name}' cannot change during a run; set it in the launch file and restart the run"
             for name, value in said.items()
             if not _described(kind, name)["editable"] and value != _value(self._values[component.index], name)
         ]
@@ -181,7 +181,7 @@ def _value(values: Any, dotted: str) -> Any:
 
 @cache
 def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
-    """Returns type and meaning of a setting, and whether it can be edited while the run goes on."""
+    """Returns type and meaning of a setting, and whether it can be changed during the run."""
     annotation: Any = kind
     meaning, editable = "", True
     for key in dotted.split("."):
@@ -198,7 +198,7 @@ def _type_name(annotation: Any) -> str:
 
 
 def _field(kind: Any, key: str) -> tuple[Any, str, bool]:
-    """Returns type and meaning of a field of settings or of a dataclass in them, and whether the run fixes it."""
+    """Returns type and meaning of a field of settings, or of a dataclass in them, and whether it is fixed."""
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
         return found.annotation, found.description or "", bool(found.frozen)

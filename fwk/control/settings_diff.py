@@ -11,8 +11,8 @@ from fwk.plan.files.overrides import PLACE
 def differences(rows: Sequence[dict[str, Any]], plan: Plan) -> tuple[list[str], list[str]]:
     """Returns `NAME.SETTING=VALUE` for each setting of a run that differs in the freshly loaded plan.
 
-    First those that can be changed while the run goes on, then the others. What was typed with `--set` when the run
-    began stays.
+    First those that can be changed during the run, then the others. Values given with `--set` at the start of the run
+    stay.
     """
     values = {component.name: component.config for component in plan.components}
     now: list[str] = []

@@ -10,7 +10,7 @@ from fwk.model.plan import Plan
 from fwk.plan.files.launch_file import shown
 from fwk.plan.files.source_files import Sources, mistakes
 
-_LOOK_MS = 200  # how often to look whether to end
+_LOOK_MS = 200  # interval of checks for the end
 _TIMEOUT_S = 60.0
 
 
@@ -51,7 +51,7 @@ class Watcher:
         try:
             with Client(supervisor_address(self._plan.bus_port), _TIMEOUT_S) as run:
                 if wrong:
-                    text = f"{'; '.join(wrong)}; not reloaded, so the old code runs on: {', '.join(concerned)}"
+                    text = f"{'; '.join(wrong)}; not reloaded, so the old code continues: {', '.join(concerned)}"
                     run.ask("note", level="warning", text=text)
                     return
                 self._reload(run, concerned)

@@ -1,4 +1,4 @@
-"""Sets or removes one value in a YAML text and leaves all other characters as they are, comments too."""
+"""Sets or removes one value in a YAML text and leaves all other characters unchanged, including comments."""
 
 import json
 import math
@@ -20,9 +20,9 @@ class EditError(Exception):
 
 
 def with_value(text: str, path: Sequence[str], value: Any) -> str:
-    """Returns the text with `value` at the mapping keys of `path`, which are added where they are missing.
+    """Returns the text with `value` at the mapping keys of `path`, which are added if missing.
 
-    The result is read again and compared, so that a text with aliases, for example, is refused and not spoiled.
+    The result is read again and compared, so that a text with aliases, for example, is refused and not damaged.
 
     Raises:
         EditError: the text is not YAML, or the value cannot be put there.
@@ -30,7 +30,7 @@ def with_value(text: str, path: Sequence[str], value: Any) -> str:
     before = read(text)
     changed = _edited(text if text.strip() else "", path, value)
     if not _reads_as(changed, _over(before, path, value)):
-        raise EditError(f"'{'.'.join(path)}' cannot be changed there without touching other values; write it by hand")
+        raise EditError(f"'{'.'.join(path)}' cannot be changed there without touching other values; edit it manually")
     return changed
 
 
@@ -49,7 +49,7 @@ def without(text: str, path: Sequence[str]) -> str:
         below = below[key]
     changed = _cut(text, path[: depth + 1])
     if not _reads_as(changed, _less(data, path[: depth + 1])):
-        raise EditError(f"'{'.'.join(path)}' cannot be removed without touching other values; do it by hand")
+        raise EditError(f"'{'.'.join(path)}' cannot be removed without touching other values; edit it manually")
     return changed
 
 
@@ -62,7 +62,7 @@ def read(text: str) -> Any:
     problems = Problems()
     node = read_value(text, "", problems)
     if problems or node is None:
-        raise EditError("the text is not YAML; correct it first: fwk check says where")
+        raise EditError("the text is not YAML; correct it first: fwk check names the place")
     return node.plain() or {}
 
 
@@ -135,7 +135,7 @@ def _inserted(text: str, node: yaml.MappingNode, path: Sequence[str], value: Any
         pair = f"{_key(path[0])}: {flow(_nested(path[1:], value))}"
         return f"{text[:end]}{', ' if node.value else ''}{pair}{text[end:]}"
     end = _end(node)
-    if not text[:end].endswith("\n"):  # behind a comment at the end of that line
+    if not text[:end].endswith("\n"):  # after a comment at the end of that line
         end = text.find("\n", end) + 1 or len(text)
     return _with_newline(text[:end]) + _lines(path, value, node.value[0][0].start_mark.column) + text[end:]
 

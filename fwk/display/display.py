@@ -29,7 +29,7 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
     this process has the lowest priority, so that nothing here slows the run.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the run; the display shows how
-    signal.signal(signal.SIGTERM, _leave)  # ends by an exception, so that the cursor of the terminal is restored
+    signal.signal(signal.SIGTERM, _leave)  # raises an exception, so that the cursor of the terminal is restored
     os.nice(10)
     with contextlib.suppress(OSError):  # the reader of the output has gone; the run goes on without it
         if plain or not sys.stdout.isatty():
@@ -44,9 +44,9 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
 def show_lines(view: View, connection: socket.socket, out: TextIO, steering: Steering) -> None:
     """Prints log lines as they come, and the state of the run in one line every few seconds while it advances.
 
-    A run that stands still for a second prints the components that it waits for, and again every ten seconds. A run
-    that is slower than asked prints once what helps. Of many lines that say the same, the first are printed and the
-    others counted.
+    For a run that stands still for a second it prints the components that the run waits for, and again every ten
+    seconds. For a run that is slower than desired it prints the remedy once. Of many equivalent lines, the first are
+    printed and the others counted.
     """
     due_us, shown, waiting_due_us, slowness = 0, "", 0, ""
     gate, tracebacks = FloodGate(), Tracebacks()

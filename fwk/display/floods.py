@@ -11,7 +11,7 @@ from lcmtypes.core import log_t
 WINDOW_US = 2 * US_PER_S
 """Wall time in which equivalent lines are one group."""
 _WARNING_WINDOW_US = 60 * US_PER_S
-"""Such wall time for warnings on the live display, where a warning every few seconds would push out all other lines."""
+"""The same for warnings on the live display, where a warning every few seconds would displace all other lines."""
 PRINTED_MAX = 4
 """Number of lines of a group that are printed; the others are counted."""
 _VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")

@@ -1,4 +1,4 @@
-"""Keys of the live display: reads single keys from the terminal and gives the terminal back as it was."""
+"""Keys of the live display: reads single keys from the terminal and restores its settings at the end."""
 
 import os
 import signal

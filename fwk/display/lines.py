@@ -19,7 +19,7 @@ def log_line(line: log_t) -> str:
 
 
 def held_back_line(line: log_t, count: int) -> str:
-    """Returns the line that stands for lines that were not printed because they said the same."""
+    """Returns the line that replaces equivalent lines that were not printed."""
     level = LEVEL_NAMES.get(line.level, str(line.level))
     first = line.text.partition("\n")[0]
     return f"... {count} more {level} {'line' if count == 1 else 'lines'} like: {line.component}: {first}"

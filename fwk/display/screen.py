@@ -1,4 +1,4 @@
-"""Draws a view of the run as tidy text: headline, figures, components beside a drawing, worries, log lines, keys."""
+"""Draws a view of the run as text: headline, figures, components beside a drawing, problems, log lines, keys."""
 
 from itertools import groupby
 
@@ -178,7 +178,7 @@ def _log_lines(group: LineGroup, columns: int) -> list[Text]:
 
 
 def _folded(text: str, columns: int) -> list[str]:
-    """Breaks a text of one or several lines; what continues is indented."""
+    """Breaks a text of one or several lines; continuations are indented."""
     indent = " " * 18
     first, *others = text.split("\n")
     words = first.lstrip()

@@ -22,7 +22,7 @@ class Steering:
         return list(self._ask("status").get("waits_for", []))
 
     def toggle_pause(self, paused: bool) -> None:
-        """Pauses the run, or lets it go on."""
+        """Pauses the run, or resumes it."""
         self._clock("resume" if paused else "pause")
 
     def step(self) -> None:
@@ -51,7 +51,7 @@ class Steering:
         try:
             with Client(self._address, _TIMEOUT_S) as run:
                 return run.ask(verb, _TIMEOUT_S, **fields)
-        except NoAnswerError:  # it happens when the running tick has ended
+        except NoAnswerError:  # it takes effect at the end of the running tick
             return {}
         except (ControlError, ValueError) as error:
             self.said = str(error)

@@ -49,5 +49,5 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
 
 
 def _advice() -> list[str]:
-    """Returns what helps when processes are not ready in time."""
+    """Returns advice for processes that are not ready in time."""
     return ["a busy machine starts many processes slowly; --hosting robot or --hosting single starts fewer"]

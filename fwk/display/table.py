@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 _GAP = "  "
-_WRAPPED_MIN = 24  # a column of prose narrower than that is left out
+_WRAPPED_MIN = 24  # narrower columns of prose are left out
 _RESET = "\x1b[0m"
 STYLES = {"green": "32", "yellow": "33", "red": "31;1", "cyan": "36", "dim": "2", "bold": "1"}
 

@@ -20,7 +20,7 @@ LEVELS = (log_t.DEBUG, log_t.INFO, log_t.WARNING, log_t.ERROR)
 _KEPT_LINES = 200
 _RATE_STATUSES = 5  # loop times are means over as many statuses: about two seconds
 _STANDING_US = US_PER_S
-_SLOW_STATUSES = 8  # so many slow ones in a row: about four seconds
+_SLOW_STATUSES = 8  # as many slow ones in a row: about four seconds
 _SLOW = 0.9
 
 

@@ -1,1 +1,1 @@
-"""The gateway: follows the run, shows every channel on the public bus, takes foreign messages in."""
+"""The gateway: follows the run, mirrors every channel to the public bus, takes in messages from outside."""

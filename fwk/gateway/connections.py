@@ -1,4 +1,4 @@
-"""Protocols of what the gateway is connected to: sinks, the supervisor, programs outside the run."""
+"""Protocols of the gateway's partners: sinks, the supervisor, programs outside the run."""
 
 from typing import Protocol
 
@@ -10,10 +10,10 @@ class Sink(Protocol):
         """Takes a message of a component, a tick record, a line of text or a status."""
 
     def tick(self) -> None:
-        """Takes note that all messages of a tick were handed over."""
+        """Notes that all messages of a tick were passed on."""
 
     def close(self) -> None:
-        """Writes what is left: the run is over."""
+        """Writes the remaining data: the run is over."""
 
 
 class SupervisorConnection(Protocol):
@@ -33,7 +33,7 @@ class SupervisorConnection(Protocol):
 
 
 class Outsiders(Protocol):
-    """The programs outside, on the public bus."""
+    """Programs outside, on the public bus."""
 
     def fileno(self) -> int:
         """Returns the descriptor that is readable when a message waits."""

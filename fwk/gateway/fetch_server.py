@@ -14,11 +14,11 @@ from lcmtypes.core import fetch_t, gone_t
 
 
 class FetchServer:
-    """Keeps what readers may still lack, and answers their fetches.
+    """Keeps messages that readers may still lack, and answers their fetches.
 
     It keeps the newest message of each channel, all messages of the last two recorded ticks (in real time: 17), which
-    is how far a reader that takes part may be behind, and all later ones. Its answer is final: the tick that the reader
-    takes part in, and with it the next record, may be waiting for it.
+    is the largest delay of a reader that takes part, and all later ones. Its answer is final: the tick that the
+    reader takes part in, and with it the next record, may be waiting for it.
     """
 
     def __init__(
@@ -39,7 +39,7 @@ class FetchServer:
         self._recent[channel] = recent
 
     def answer(self, fetch: fetch_t) -> None:
-        """Sends the messages that a fetch asks for, or says that they are gone."""
+        """Sends the fetched messages, or answers that they are gone."""
         if fetch.channel not in self._inputs:
             return
         buffer, first, last = self._inputs.buffer(fetch.channel), fetch.first_sequence, fetch.last_sequence

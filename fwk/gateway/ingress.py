@@ -23,7 +23,7 @@ BYTES_MAX = 1 << 20
 
 
 class IngressFullError(Exception):
-    """Too many messages came in before a tick; says on which channel."""
+    """Too many messages came in before a tick; the text names the channel."""
 
 
 class Ingress:
@@ -57,17 +57,17 @@ class Ingress:
         self._complain = complain
 
     def hear(self, channel: str, data: bytes, port: int) -> None:
-        """Takes what another program has published from `port` of the public bus, or refuses it with a complaint."""
+        """Takes or refuses a message that another program published from `port` of the public bus."""
         message_type = self._open_types.get(channel)
         if message_type is None:
             if channel in self._names or channel.startswith("fwk/"):
-                self._complain(channel, f"another program (port {port}) writes it on the public bus; not taken")
+                self._complain(channel, f"another program (port {port}) writes it on the public bus; refused")
             return
         try:
             self.take_in(channel, checked(message_type, data, channel))
         except (MessageError, IngressFullError) as error:
             reason = str(error).removeprefix(f"{channel}: ")
-            self._complain(channel, f"from port {port} on the public bus: {reason}; not taken")
+            self._complain(channel, f"from port {port} on the public bus: {reason}; refused")
 
     def take_in(self, name: str, message: Any) -> int:
         """Stamps a message and sends it to its readers; returns its sequence number.
@@ -93,7 +93,7 @@ class Ingress:
         return {index: number for index, number in self._sequences.items() if number > self._visible[index]}
 
     def recorded(self, record: tick_record_t) -> None:
-        """Takes note of the marks of a tick record: the supervisor knows these messages."""
+        """Notes the marks of a tick record: the supervisor knows these messages."""
         for index, sequence in zip(record.channel, record.sequence, strict=True):
             if index in self._visible:
                 self._visible[index] = sequence
@@ -111,7 +111,7 @@ def checked(message_type: type[Message], data: bytes, channel: str) -> Any:
         MessageError: the bytes are not such a message, or too many.
     """
     if len(data) > BYTES_MAX:
-        raise MessageError(f"{channel}: {len(data)} bytes; from outside come at most {BYTES_MAX}")
+        raise MessageError(f"{channel}: {len(data)} bytes; a message from outside has at most {BYTES_MAX}")
     message = messages.decode(message_type, data, channel)
     surplus = len(data) - len(message.encode())
     if surplus < 0:

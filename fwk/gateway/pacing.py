@@ -14,19 +14,19 @@ SLOT_US = 1_000
 SLOT_BYTES = 2_048
 """A datagram counts as one for each begun piece of this size."""
 LEAST = 4
-"""Datagrams of a group, at the least."""
+"""Smallest number of datagrams in a group."""
 LARGEST = 14
-"""Datagrams of a group, at the most: two groups fit into the queue of a subscription.
+"""Largest number of datagrams in a group: two groups fit into the queue of a subscription.
 
-A Java program stands still for some milliseconds when it tidies its memory, which its other threads do not show. Its
-socket holds the groups of that time, not more.
+A Java program pauses for some milliseconds to collect garbage, which its other threads do not show. Its socket holds
+the groups of that time, not more.
 """
 QUEUE_MAX = 16_384
-"""Datagrams that wait, at the most; of a system that writes more, the excess leaves at once."""
+"""Largest number of waiting datagrams; of a system that writes more, the excess leaves at once."""
 LONGEST_US = 250_000
-"""Wall time over which the messages of a tick are spread, at the most."""
+"""Longest wall time over which the messages of a tick are spread."""
 _NEVER = 1 << 62
-_WEIGHT = 0.2  # of the newest tick in the mean time between ticks
+_WEIGHT = 0.2  # share of the mean time between ticks
 
 
 class PacedPublisher:
@@ -36,8 +36,8 @@ class PacedPublisher:
         now_us: returns the wall time in microseconds.
         send: sends one datagram.
         busy_listener: returns the name of a program that has not handled earlier datagrams; empty if all listeners
-            have, None if no program can listen.
-        patience_us: wall time that the queue waits for a busy listener at the most.
+        have, None if no program can listen.
+        patience_us: longest wall time that the queue waits for a busy listener.
     """
 
     def __init__(
@@ -48,13 +48,13 @@ class PacedPublisher:
         patience_us: int,
     ) -> None:
         self.overrun = ""
-        """Listener that was busy for so long that it may lack datagrams; empty: there was none."""
+        """Listener that was busy for so long that it may lack datagrams; empty: none."""
         self._now_us = now_us
         self._send = send
         self._busy_listener = busy_listener
         self._patience_us = patience_us
         self._queue: deque[bytes] = deque()
-        self._size = 0  # of the queue, in datagrams that count
+        self._size = 0  # datagrams in the queue that count
         self._group = LEAST
         self._due_us = 0
         self._busy_us = 0  # wall time since which a listener is busy; 0: none is
@@ -63,7 +63,7 @@ class PacedPublisher:
 
     @property
     def due_us(self) -> int:
-        """Wall time at which the next group may leave; far away while nothing waits."""
+        """Wall time at which the next group may leave; far in the future while the queue is empty."""
         return self._due_us if self._queue else _NEVER
 
     @property
@@ -78,7 +78,7 @@ class PacedPublisher:
             self._size += _size_of(datagram)
 
     def tick(self) -> None:
-        """Spreads what waits over the time until the next tick is expected."""
+        """Spreads the waiting datagrams over the time until the next expected tick."""
         now_us = self._now_us()
         elapsed_us, self._tick_us = min(now_us - self._tick_us, LONGEST_US), now_us
         self._interval_us += _WEIGHT * (elapsed_us - self._interval_us)

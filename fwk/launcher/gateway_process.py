@@ -22,7 +22,7 @@ from fwk.recording import sinks
 from fwk.supervisor.options import RunOptions
 
 DELETED = b"deleted"
-"""Begins the packet that tells the supervisor which file of the run was deleted."""
+"""Beginning of the packet that names a deleted file of the run to the supervisor."""
 
 
 def run_gateway(
@@ -45,7 +45,7 @@ def run_gateway(
     channel_server = ChannelServer(plan, gateway.channels, bridge.call, reservations.gateway)
     gateway.watch(channel_server.fileno(), channel_server.handle)
     plain = plain_channels(plan)
-    ours = plain - set(plan.outside)  # what came from the public bus stands there already
+    ours = plain - set(plan.outside)  # the public bus had these messages before
     if public:
         mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.dynamic_plain)
         gateway.sinks.append(targets.above(mirror, plan.log.bus))

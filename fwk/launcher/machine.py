@@ -1,4 +1,4 @@
-"""Checks what a run needs of the machine before any process starts: network, ports, names, files, cores, memory."""
+"""Requirements of a run on the machine, checked before its start: network, ports, names, files, cores, memory."""
 
 import errno
 import os
@@ -23,7 +23,7 @@ _LIBRARIES_BYTES = 150 << 20
 
 
 class MachineError(Exception):
-    """The machine lacks something that the run needs; the text says what, and what would be right."""
+    """The machine lacks something that the run needs; the text names it, and the remedy."""
 
 
 def check_machine(plan: Plan) -> None:
@@ -122,7 +122,7 @@ def _check_names(plan: Plan) -> None:
 
 
 def _is_free(port: int, own: bool) -> bool:
-    """Whether a port can be bound: one that a process sends from (`own`), or one of the group."""
+    """Returns whether a port can be bound: one that a process sends from (`own`), or one of the group."""
     try:
         (own_socket if own else multicast_holder)(port).close()
     except OSError as error:

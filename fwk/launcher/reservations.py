@@ -15,7 +15,7 @@ from fwk.model.ports import Ports
 class Reservations:
     """Every port and both control sockets of a run, opened at once, so that no other program can take one later.
 
-    The forked processes inherit them; each gives back those that are not its own.
+    The forked processes inherit them; each closes those that are not its own.
 
     Raises:
         PortsInUseError: another run or another program has a port.
@@ -52,13 +52,13 @@ class Reservations:
         return [each for each in self._opened if each not in hosts]
 
     def keep_for_gateway(self) -> Mapping[int, socket.socket]:
-        """Gives back in the gateway's process what belongs to the supervisor; returns the gateway's own socket."""
+        """Closes the supervisor's sockets in the gateway's process; returns the gateway's own socket."""
         self.supervisor.close()
         port = self._ports.host(self._ports.gateway)
         return {port: self.own[port]}
 
     def release(self) -> None:
-        """Gives all ports and names back, as far as this process is concerned."""
+        """Releases all ports and names, as far as this process is concerned."""
         for each in self._opened:
             each.close()
         self._lock.release()

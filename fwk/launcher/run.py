@@ -40,8 +40,8 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     Raises:
         PortsInUseError: another run or another program on this machine has a port.
         ControlNameError: another process has the name of a control socket.
-        DebuggerMissingError: debugpy is asked for and not installed.
-        ProfilerMissingError: a profile is asked for and pyinstrument is not installed.
+        DebuggerMissingError: debugpy is requested and not installed.
+        ProfilerMissingError: a profile is requested and pyinstrument is not installed.
     """
     debug = _debug_request(plan, options)
     profile = _profile_request(plan, options)
@@ -81,7 +81,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
 
 
 def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:
-    """A ring for each camera; where frames are recorded, as large as the window that the recorder may be behind."""
+    """Creates a ring for each camera; where frames are recorded, it also covers the recorder's delay."""
     recorded = plan.record.frames if options.record else ()
     cameras = [channel.name for channel in plan.channels if channel.images]
     large = SLOTS + (SLOTS - 1) * WINDOW

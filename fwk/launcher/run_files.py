@@ -1,4 +1,4 @@
-"""Notices that files of a run are deleted while the run goes on."""
+"""Watches the files of a run for deletion."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -8,16 +8,16 @@ from fwk.supervisor.options import RunOptions
 
 
 class RunFiles:
-    """A sink of the gateway that looks for the run directory and the recording once a second.
+    """Sink of the gateway that checks the run directory and the recording once a second.
 
     Args:
         options: names the run directory and the recording, both of which exist.
-        report: takes the name of what was deleted, once.
+        report: takes the name of the deleted file, once.
     """
 
     def __init__(self, options: RunOptions, report: Callable[[str], None]) -> None:
         self.deleted = ""
-        """Says which of them was deleted; empty: both exist."""
+        """The deleted one, as text; empty: both exist."""
         self._watched: list[tuple[str, Path]] = [("run directory", options.run_dir)]
         if options.record and options.record.exists():
             self._watched.append(("recording", options.record))
@@ -25,7 +25,7 @@ class RunFiles:
         self._look_us = 0
 
     def message(self, _channel: str, _data: bytes, _time_us: int) -> None:
-        """Looks for the files when it is time, also while no tick ends."""
+        """Checks the files when it is time, also while no tick ends."""
         now_us = monotonic_us()
         if now_us >= self._look_us:
             self._look_us = now_us + US_PER_S
@@ -35,14 +35,14 @@ class RunFiles:
         """Does nothing."""
 
     def close(self) -> None:
-        """Looks for the files a last time."""
+        """Checks the files a last time."""
         self._look()
 
     def _look(self) -> None:
         for what, path in self._watched if not self.deleted else ():
             if _is_gone(path):
                 self.deleted = f"the {what} {path} was deleted during the run"
-                self._report(f"{self.deleted}; what is written there is lost")
+                self._report(f"{self.deleted}; files written there are lost")
                 return
 
 
@@ -51,6 +51,6 @@ def _is_gone(path: Path) -> bool:
         path.stat()
     except FileNotFoundError:
         return True
-    except OSError:  # it cannot be seen from here, such as for lack of rights
+    except OSError:  # it cannot be seen from here, for example for lack of rights
         return False
     return False

@@ -1,4 +1,4 @@
-"""Hands lines of text to components with the aspect `LogLines`."""
+"""Passes lines of text to components with the aspect `LogLines`."""
 
 from collections.abc import Callable
 from typing import Any
@@ -38,7 +38,7 @@ class LogTarget:
         now_us = monotonic_us()
         if self._dropped and now_us >= self._say_us:
             dropped, self._dropped, self._say_us = self._dropped, 0, now_us + US_PER_S
-            self._log.warning(f"{dropped} lines did not reach the components that ask for lines: too many in one tick")
+            self._log.warning(f"{dropped} lines did not reach the components with LogLines: too many in one tick")
 
     def close(self) -> None:
         """Does nothing."""

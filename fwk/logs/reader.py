@@ -30,7 +30,7 @@ class Filter:
     time_us: tuple[int, int] | None = None
     """First and last logical time, in seconds."""
     file: str | None = None
-    """Name of the source file, with as many of its folders as wanted."""
+    """Name of the source file, with any number of its folders."""
     line: int | None = None
     text: re.Pattern[str] | None = None
     """Pattern found anywhere in the text."""

@@ -62,7 +62,7 @@ class RotatingFile:
             while rest:
                 rest = rest[os.write(self._descriptor, rest) :]
         except OSError:
-            os.ftruncate(self._descriptor, self._bytes)  # no torn line
+            os.ftruncate(self._descriptor, self._bytes)  # removes a torn line
             raise
         self._bytes += len(data)
 
@@ -88,14 +88,14 @@ def names(path: Path, files: int) -> list[Path]:
 def read_rotating(path: Path, goes_on: Callable[[], bool] = lambda: False) -> Iterator[str]:
     """Yields the whole lines of all files of a log, the oldest first; waits for more while `goes_on()` is true.
 
-    A file that is renamed meanwhile is read to its end. A line that a killed writer left unfinished is skipped.
+    A file that is renamed during the read is read to its end. A line that a killed writer left unfinished is skipped.
     """
     file: BinaryIO = open(next(iter(_there(path)), path), "rb")  # noqa: SIM115 - closed below
     following: BinaryIO | None = None
     rest = b""
     try:
         while True:
-            running = goes_on()  # asked first, so that no line written meanwhile is missed
+            running = goes_on()  # asked first, so that no line written in between is missed
             following = _next(path, file)  # also asked first: a renamed file is complete
             while chunk := file.read(_CHUNK):
                 *whole, rest = (rest + chunk).split(b"\n")
@@ -126,8 +126,8 @@ def _next(path: Path, file: BinaryIO) -> BinaryIO | None:
     newer: BinaryIO | None = None
     for each in reversed(_there(path)):
         try:
-            opened = open(each, "rb")  # noqa: SIM115 - handed out
-        except FileNotFoundError:  # renamed this moment
+            opened = open(each, "rb")  # noqa: SIM115 - returned open
+        except FileNotFoundError:  # renamed at this moment
             if newer:
                 newer.close()
             return _next(path, file)

@@ -8,9 +8,9 @@ from collections.abc import Callable
 from fwk.clock import US_PER_S
 from lcmtypes.core import log_t
 
-_USER_LEVEL = 1 << 3  # facility of programs that people start
+_USER_LEVEL = 1 << 3  # facility of programs that users start
 _SEVERITIES = {log_t.DEBUG: 7, log_t.INFO: 6, log_t.WARNING: 4, log_t.ERROR: 3}
-_BYTES_MAX = 8192  # all daemons take as much; the rest of a line is left out
+_BYTES_MAX = 8192  # size that all daemons accept; the rest of a line is left out
 
 
 class Syslog:
@@ -36,7 +36,7 @@ class Syslog:
         if channel != "fwk/log":
             return
         sent = self._formatted(log_t.decode(data))
-        for _ in range(2):  # the daemon may have been started again since the last line
+        for _ in range(2):  # the daemon may have been restarted since the last line
             try:
                 self._socket = self._socket or _connected(self._to)
                 self._socket.send(sent)

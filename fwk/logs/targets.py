@@ -1,4 +1,4 @@
-"""The targets of a plan's lines of text, each from its own level on."""
+"""The targets of a plan's log lines, each with its lowest level."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -18,7 +18,7 @@ from fwk.model.plan import Plan
 from fwk.model.sections import LogPlan
 
 _MB = 1_000_000
-_LEVEL_AT = 8  # of an encoded log_t; the type's fingerprint stands before it
+_LEVEL_AT = 8  # of an encoded log_t, after the type's fingerprint
 OFF = "off"
 
 
@@ -38,7 +38,7 @@ class Above:
 
 
 def above(sink: Sink, level: str) -> Sink:
-    """Returns the sink itself if it gets all lines, otherwise a sink before it that keeps some back."""
+    """Returns the sink itself if it gets all lines, otherwise a filter before it."""
     if level == "debug":
         return sink
     return Above(sink, LEVELS.get(level, max(LEVELS.values()) + 1))

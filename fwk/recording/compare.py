@@ -15,16 +15,16 @@ from fwk.recording.difference import Difference, changed, missing
 from fwk.recording.versions import BROKEN, PLAN, read_plan
 
 FRAMEWORK = "fwk/"
-_SELF_TEST = "LCM_SELF_TEST"  # what liblcm sends when a process subscribes; a logger elsewhere may hear it
+_SELF_TEST = "LCM_SELF_TEST"  # liblcm's self test when a process subscribes
 _PLAN_WITHIN = 1000  # events at the beginning of a log among which its plan is
-_RECENT = 1024  # messages of a channel among which one sent again is recognized; writers keep fewer to send again
+_RECENT = 1024  # messages of a channel among which a repeated one is recognized; writers keep fewer to send again
 
 
 def compare(a: Path, b: Path, common: bool = False) -> Difference | None:
-    """Returns the first difference of two logs in the order of tick, stage, channel and sequence; None: they are equal.
+    """Returns the first difference of two logs by tick, stage, channel and sequence; None: they are equal.
 
-    Equal logs have the same bytes in the same order on each channel. A message that a logger heard twice, because it
-    was sent again to a reader, counts once.
+    Equal logs have the same bytes in the same order on each channel. A message that a logger received twice, because
+    it was sent again to a reader, counts once.
 
     Args:
         a: one log.

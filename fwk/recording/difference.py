@@ -9,7 +9,7 @@ from fwk.lcm.envelope import marked
 from fwk.lcm.messages import Header
 from fwk.lcm.type_registry import decoded, header_of, in_envelope, types_of
 
-_LAST = 1 << 63  # sorts what has no header behind everything else
+_LAST = 1 << 63  # sorts messages without a header after all others
 
 
 @dataclass(frozen=True)
@@ -22,10 +22,10 @@ class Difference:
     """None, as stage: the message has no header."""
     stage: int | None
     sequence: int
-    """In the header; without one the message's place on its channel, from 1."""
+    """In the header; without one the position of the message on its channel, from 1."""
     writer: str
     path: str
-    """Field, as `ball.covariance[1][0]`, or `byte 57` where fields do not tell it; empty if a message is missing."""
+    """Field, such as `ball.covariance[1][0]`, or `byte 57` if no field shows it; empty if a message is missing."""
     values: tuple[str, str]
     """In the first and in the second log."""
     names: tuple[str, str] = ("A", "B")
@@ -91,7 +91,7 @@ def _field(a: bytes, b: bytes) -> tuple[str, str, str] | None:
     try:
         stamps = [Header.of(data) for data in (a, b)] if in_envelope(a) else []
         return _stamps(*stamps) or _first(decoded(a), decoded(b), "")
-    except Exception:  # no type, or whatever generated code does with broken bytes
+    except Exception:  # unknown type, or any error of generated code on broken bytes
         return None
 
 

@@ -58,7 +58,7 @@ class ChannelInfo:
             self.types.append(name)
         try:
             decoded(event.data)
-        except Exception:  # no type, or whatever generated code does with broken bytes
+        except Exception:  # unknown type, or any error of generated code on broken bytes
             self.undecodable += 1
         else:
             head = header_of(event.data) if len(event.data) >= HEADER_SIZE else None

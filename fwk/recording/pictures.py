@@ -17,7 +17,7 @@ FRAME = "fwk/frame"
 """Channel of the frames that the launch file wants recorded."""
 LOSSLESS = "png"
 PLAIN = "raw"
-"""Format of bytes as they are, row by row: of frames with so many channels that png does not know them."""
+"""Format of raw bytes, row by row: for frames with a number of channels that png does not support."""
 _PNG_CHANNELS = (1, 3, 4)
 _HOW = [cv2.IMWRITE_PNG_COMPRESSION, 1, cv2.IMWRITE_PNG_STRATEGY, cv2.IMWRITE_PNG_STRATEGY_RLE]
 _FINGERPRINT = messages.fingerprint(picture_t)
@@ -44,7 +44,7 @@ class RecordedPicture:
             return np.frombuffer(self.data, np.uint8).reshape(self.shape).copy() if right else None
         try:
             found = cv2.imdecode(np.frombuffer(self.data, np.uint8), cv2.IMREAD_UNCHANGED) if self.data else None
-        except cv2.error:  # a picture that says it is larger than any
+        except cv2.error:  # a picture of an impossible claimed size
             return None
         return None if found is None else np.asarray(found, np.uint8)
 

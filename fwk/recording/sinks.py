@@ -52,7 +52,7 @@ class Pace(Protocol):
         """Adds the datagrams of a message."""
 
     def tick(self) -> None:
-        """Takes note that a tick is complete."""
+        """Notes that a tick is complete."""
 
 
 class Mirror:
@@ -109,16 +109,16 @@ class Display:
     def _send(self, channel: str, data: bytes) -> None:
         try:
             self._connection.send(channel.encode() + b"\0" + data, socket.MSG_DONTWAIT)
-        except OSError:  # a slow terminal: the display lacks something, the run does not wait
+        except OSError:  # a slow terminal: the display lacks a message, the run does not wait
             return
 
 
 LOST = "fwk/lost"
-"""In what the supervisor is handed at the end: how many messages the gateway never got."""
+"""Key of the data for the supervisor at the end: number of messages that the gateway never got."""
 
 
 class Newest:
-    """Keeps the newest message of each channel; hands them and the number of losses to the supervisor at the end."""
+    """Keeps the newest message of each channel; passes them and the number of losses to the supervisor at the end."""
 
     def __init__(self, plan: Plan, connection: socket.socket, lost: Callable[[], int]) -> None:
         self._lost = lost
@@ -132,10 +132,10 @@ class Newest:
             self._newest[channel] = data
 
     def tick(self) -> None:
-        """Nothing to do."""
+        """Does nothing."""
 
     def close(self) -> None:
-        """Hands the messages to the supervisor."""
+        """Passes the messages to the supervisor."""
         self._connection.setblocking(True)
         for channel, data in {**self._newest, LOST: str(self._lost()).encode()}.items():
             try:

@@ -33,7 +33,7 @@ from lcmtypes.core import protocol_t, settings_change_t, tick_record_t
 PLAN = "fwk/plan"
 """Channel of the plan."""
 BROKEN = (ValueError, struct.error, LookupError, TypeError, AttributeError, RecursionError)
-"""What reading data raises that is not what it should be."""
+"""Exceptions of reading data that are damaged."""
 _EVENTS_OF_A_HOST: dict[int, type[HostLost | HostLate | HostStopped]] = {
     core_v1.tick_event_t.LOST: HostLost,
     core_v1.tick_event_t.LATE: HostLate,

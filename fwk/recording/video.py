@@ -28,7 +28,7 @@ class Rendered(NamedTuple):
 
 
 class VideoError(Exception):
-    """A video cannot be made; the text says which file or drawing and why."""
+    """A video cannot be made; the text names the file or drawing and the reason."""
 
 
 def drawing(name: str) -> Draw:
@@ -41,7 +41,7 @@ def drawing(name: str) -> Draw:
     try:
         found = getattr(import_module(module), word)
     except (ImportError, AttributeError, ValueError) as error:
-        raise VideoError(f"no drawing '{name}': {error}; say module:name, as my_robot.pictures:top_view") from error
+        raise VideoError(f"no drawing '{name}': {error}; use module:name, as my_robot.pictures:top_view") from error
     draw: Draw = found().draw if isinstance(found, type) else found
     return draw
 
@@ -102,7 +102,7 @@ class _Newest:
             data = self._raw[channel]
             try:
                 self._decoded[channel] = decoded(data)
-            except Exception:  # no type, or whatever generated code does with broken bytes: as if it were not there
+            except Exception:  # undecodable: as if the message did not exist
                 self._decoded[channel] = None
         return self._decoded.get(channel)
 

@@ -13,20 +13,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 Picture = NDArray[np.uint8]
-"""Height x width x 3, blue green red; the same size all the time, both even."""
+"""Height x width x 3, blue green red; always the same size, both even."""
 
 _FRAGMENTS = "frag_keyframe+empty_moov+default_base_moof"
-"""An mp4 of fragments, each complete in itself, so that the file of a killed process plays up to there."""
+"""An mp4 of fragments, each complete in itself: the file of a killed process plays up to the last one."""
 _PYAV_CODECS = ("libx264", "libopenh264", "libvpx-vp9")
 _OPENCV_OPTIONS = "deadline;realtime|cpu-used;8"
-"""VP9 as fast as it goes: the default takes seconds for a picture of a match."""
+"""Fastest settings of VP9: the default takes seconds for a picture of a match."""
 _OPENCV_CODECS = {"avc1": "H.264", "vp09": "VP9", "mp4v": "MPEG-4 part 2"}
-_KEY_PICTURES = 40  # at most so many are lost when the process is killed; OpenCV finishes a file only in `close`
+_KEY_PICTURES = 40  # most pictures that are lost when the process is killed; OpenCV finishes a file only in `close`
 _PLAYED_NOWHERE = "MPEG-4 part 2"
 
 
 class EncoderError(Exception):
-    """A video file cannot be written; the text says which and why."""
+    """A video file cannot be written; the text names the file and the reason."""
 
 
 class Encoder(Protocol):
@@ -45,7 +45,7 @@ class Encoder(Protocol):
 
 
 def advice(codec: str) -> str:
-    """Returns what to do about a codec that browsers do not play; empty for all others."""
+    """Returns advice about a codec that browsers do not play; empty for all others."""
     if codec != _PLAYED_NOWHERE:
         return ""
     return "browsers do not play MPEG-4 part 2; for H.264: pip install 'fwk[video]'"

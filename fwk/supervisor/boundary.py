@@ -23,7 +23,7 @@ from fwk.supervisor.tick_log import TickLog
 
 @dataclass
 class SettingsRequest:
-    """New settings of a component that a tool asks for."""
+    """New settings of a component, requested by a tool."""
 
     new: NewSettings
     origin: str
@@ -41,11 +41,11 @@ class SettingsChanged:
 
 
 class Boundary:
-    """Carries out what was asked since the last boundary.
+    """Carries out the requests since the last boundary.
 
-    The order is fixed: requests set desired states and settings; hosts that shall leave finalize; main loop and
-    dynamic channels are decided; hosts that shall come are started with the state after these decisions. In lockstep
-    the boundary waits until those have left and these are ready or have failed, so nothing depends on wall time.
+    The order is fixed: requests set desired states and settings; leaving hosts finalize; main loop and dynamic
+    channels are decided; joining hosts are started with the state after these decisions. In lockstep the boundary
+    waits until the former have left and the latter are ready or have failed, so nothing depends on wall time.
     """
 
     def __init__(
@@ -80,14 +80,14 @@ class Boundary:
         core.events.subscribe(HostLeaves, self._take_leaves)
 
     def ask_settings(self, new: NewSettings, origin: str) -> SettingsRequest:
-        """Gives a component new settings at the next boundary; `origin` names the tool that asks."""
+        """Gives a component new settings at the next boundary; `origin` names the requesting tool."""
         asked = SettingsRequest(new, origin)
         self._changes.settings.ask(new)
         self.requests.ask(self._core.clock.tick, AFTER_ALL_STEPS, TOOLS, "settings", asked)
         return asked
 
     def cross(self) -> Steps[None]:
-        """Carries out everything that was asked."""
+        """Carries out all requests."""
         hosts, lockstep = self._hosts, self._core.lockstep
         self._decide()
         hosts.retire()
@@ -139,7 +139,7 @@ class Boundary:
             self._hosts.enforce_timeouts()
 
     def _until_ready(self) -> Steps[None]:
-        """Waits until hosts that come are ready or have failed, whether or not the schedule has their stages."""
+        """Waits until joining hosts are ready or have failed, whether or not the schedule has their stages."""
         began_us = self._core.now_us()
         while coming := self._staged(lambda host: host.coming):
             yield from self._wait_for(coming, began_us)
@@ -162,7 +162,7 @@ class Boundary:
         host = event.host
         self._tick_log.event(HostStarted(host.index, host.incarnation, host.started_with))
         if host.incarnation > 1:
-            self._core.log.info(f"{host.name} runs again, start number {host.incarnation}")
+            self._core.log.info(f"{host.name} runs again, incarnation {host.incarnation}")
         self._barrier.joined()
         self._channels.came(host)
 
@@ -176,7 +176,7 @@ class Boundary:
         self._forget(event.host)
 
     def _forget(self, host: HostProcess) -> None:
-        """Drops the requests of a host that takes no part any more, and what its components hold."""
+        """Drops the requests and grants of a host that takes no part any more."""
         names = [self._core.plan.components[index].name for index in self._core.components_of(host)]
         self.requests.drop(names, ("main_loop", "channels"))
         self._schedule.left(host)

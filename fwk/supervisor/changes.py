@@ -1,4 +1,4 @@
-"""Changes of settings and dynamic channels: numbered, recorded, and told to the hosts that they concern."""
+"""Changes of settings and dynamic channels: numbered, recorded, and sent to the hosts that they concern."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,7 +11,7 @@ from fwk.supervisor.tick_log import TickLog
 
 
 class Changes:
-    """Makes a change part of the tick that begins next. Called at boundaries only."""
+    """Makes a change part of the next tick; called at boundaries only."""
 
     def __init__(self, core: Core, tick_log: TickLog) -> None:
         self.newest = 0
@@ -26,7 +26,7 @@ class Changes:
         return self._make(component, settings, [self._core.host_of(component)])
 
     def change_channels(self, facts: Sequence[Fact]) -> Change:
-        """Tells all hosts that may open channels what was decided."""
+        """Sends decisions about channels to all hosts that may open channels."""
         return self._make(NOBODY, "", [self._core.hosts[index] for index in self._channel_hosts], facts)
 
     def settings_of(self, host: HostProcess) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""Requests for dynamic channels: decided at boundaries, told to the hosts, recorded."""
+"""Requests for dynamic channels: decided at boundaries, sent to the hosts, recorded."""
 
 from fwk.engine.channel_grants import ChannelGrants
 from fwk.model.channel_table import Fact, text_of
@@ -12,7 +12,7 @@ from lcmtypes.core import channel_request_t
 
 
 class ChannelRequests:
-    """Decides about dynamic channels, in a run whose components may open any."""
+    """Decides about dynamic channels, in a run whose components may open some."""
 
     def __init__(self, core: Core, changes: Changes, tick_log: TickLog) -> None:
         self._core = core
@@ -20,15 +20,15 @@ class ChannelRequests:
         self._tick_log = tick_log
         self._exist = any(component.opens for component in core.plan.components)
         self._grants = ChannelGrants(core.plan)
-        self._written = {channel.index for channel in core.plan.channels}  # all channels that had a writer
+        self._written = {channel.index for channel in core.plan.channels}  # all channels that ever had a writer
 
     @property
     def asked(self) -> bool:
-        """Whether there is something to decide."""
+        """Whether there are requests to decide."""
         return self._exist and self._grants.asked
 
     def snapshot(self) -> str:
-        """Returns the table of dynamic channels as it is, for a host that starts."""
+        """Returns the present table of dynamic channels, for a starting host."""
         return text_of(self._grants.instances.snapshot()) if self._exist else "[]"
 
     def ask(self, tick: int, step: int, request: channel_request_t) -> None:
@@ -38,12 +38,12 @@ class ChannelRequests:
             self._grants.ask(tick, step, name, [channel_request_of(request)])
 
     def came(self, host: HostProcess) -> None:
-        """Takes note that a host takes part in the run."""
+        """Notes that a host takes part in the run."""
         for component in self._core.components_of(host) if self._exist else ():
             self._grants.came(component, host.incarnation)
 
     def left(self, host: HostProcess) -> None:
-        """Takes note that a host ended or leaves the loop; the channels that its components had opened are closed."""
+        """Notes that a host ended or leaves the loop; the channels that its components had open are closed."""
         for component in self._core.components_of(host) if self._exist else ():
             self._grants.left(component)
 
@@ -64,7 +64,7 @@ class ChannelRequests:
         return announced
 
     def _numbered(self, fact: Fact) -> Fact:
-        """Adds the newest sequence number of the channel, at which its writer goes on."""
+        """Adds the newest sequence number of the channel, from which its writer continues."""
         return fact.numbered(self._core.ledger.latest(fact.opening.channel)) if fact.opening else fact
 
     def _busy(self, component: int) -> bool:

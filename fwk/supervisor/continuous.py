@@ -1,4 +1,4 @@
-"""Hosts of continuous components: each tick tells them what is visible; their dones are taken whenever they come."""
+"""Hosts of continuous components: each tick carries the visible marks; their dones are taken whenever they come."""
 
 from collections import deque
 
@@ -16,8 +16,8 @@ _TICKS_KEPT = 4096
 class ContinuousHosts:
     """The hosts of continuous components, for which the main loop never waits.
 
-    A host has one done under way: it repeats the done until it is told that it was taken, and only then runs again. So
-    each iteration is taken once and in order, whatever is lost.
+    A host has at most one done under way: it repeats the done until its receipt is confirmed, and only then runs
+    again. So each iteration is taken once and in order, whatever is lost.
     """
 
     def __init__(self, core: Core, tick_log: TickLog) -> None:
@@ -28,7 +28,7 @@ class ContinuousHosts:
         self._taken: dict[int, tuple[int, int, int]] = {}  # by host: incarnation, tick and number of the newest done
 
     def tell(self, tick: Tick) -> None:
-        """Tells all hosts the marks that count from the beginning of a tick on."""
+        """Sends all hosts the marks from the beginning of a tick."""
         if not self._hosts:
             return
         step = self._core.ledger.begin()
@@ -39,14 +39,14 @@ class ContinuousHosts:
                 self._core.sender.send(sync.TICK, self._message(host, tick), self._port(host))
 
     def counts(self, host: HostProcess, done: done_t) -> bool:
-        """Tells the host that its done was taken; returns whether the iteration was not taken before."""
+        """Confirms a done to its host; returns whether the iteration was not taken before."""
         if done.kind != done_t.ITERATION or not (host.alive or host.state is HostState.STOPPING):
             return False
         self._core.sender.send(sync.TAKEN, sync.taken(done, taken_t.SUPERVISOR), self._port(host))
         return (done.incarnation, done.tick, done.iteration) > self._taken.get(host.index, (0, 0, 0))
 
     def take(self, host: HostProcess, done: done_t) -> None:
-        """Takes note of an iteration that has ended."""
+        """Notes an iteration that has ended."""
         self._taken[host.index] = (done.incarnation, done.tick, done.iteration)
         steps = (step for tick, step in reversed(self._ledger_steps) if tick == done.tick)
         host.answered_step = next(steps, 0)

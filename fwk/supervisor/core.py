@@ -1,4 +1,4 @@
-"""What all parts of a supervisor share."""
+"""Data that all parts of a supervisor share."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class Core:
     """All host processes, by index."""
     log: Logger
     interrupted: Callable[[], bool]
-    """Whether the run is asked to end; then no wait continues."""
+    """Whether the run is asked to end; from then on no wait continues."""
     now_us: Callable[[], int]
     """Returns the wall time in microseconds."""
 

@@ -10,7 +10,7 @@ _KINDS = (done_t.STAGE, done_t.ITERATION, done_t.FINAL)
 
 
 class DoneCheck:
-    """Refuses dones that cannot be, so that a broken process does not bring the supervisor down."""
+    """Refuses impossible dones, so that a broken process does not bring the supervisor down."""
 
     def __init__(self, core: Core) -> None:
         plan = core.plan

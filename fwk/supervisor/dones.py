@@ -1,4 +1,4 @@
-"""Decides which dones count and takes what they say."""
+"""Decides which dones count and takes their contents."""
 
 from collections.abc import Callable
 
@@ -18,7 +18,7 @@ from lcmtypes.core import done_t, recorded_t, taken_t
 
 
 class Dones:
-    """Takes each done that answers what its host was told; refuses, counts and names what cannot be a done."""
+    """Takes each done that answers a tick of its host; refuses, counts and names impossible dones."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class Dones:
         core.events.subscribe(recorded_t, self._receive_recorded)
 
     def take_in(self) -> None:
-        """At the beginning of a tick: makes what came from outside visible to all its stages."""
+        """At the beginning of a tick, makes messages from outside visible to all its stages."""
         if not self._from_outside:
             return
         arrived, self._from_outside = self._from_outside, {}
@@ -72,7 +72,7 @@ class Dones:
             self._from_outside[channel] = max(sequence, self._from_outside.get(channel, 0))
 
     def _counts(self, host: HostProcess, done: done_t) -> bool:
-        """Whether a done is of the host's process and of an iteration that is not answered yet."""
+        """Returns whether a done is of the host's present incarnation and of an unanswered iteration."""
         if done.incarnation != host.incarnation:  # messages of an ended process are void already
             return False
         if done.kind == done_t.FINAL:
@@ -87,7 +87,7 @@ class Dones:
         return answered == self._barrier.place and host.alive and host.index in self._barrier.outstanding
 
     def _counts_as_final(self, host: HostProcess, done: done_t) -> bool:
-        """Whether a final done is new; a host that was late has its last iteration taken first, if it ran it."""
+        """Returns whether a final done is new; the last iteration of a late host is taken first, if it ran."""
         if host.late_with and host.late_with[0] <= done.tick:
             return False
         if not host.finalizing:
@@ -95,12 +95,12 @@ class Dones:
         return host.finalizing
 
     def _tell_taken(self, done: done_t) -> None:
-        """Tells the host that its done was taken."""
+        """Confirms to the host that its done was taken."""
         port = self._core.ports.host(done.host)
         self._core.sender.send(sync.TAKEN, sync.taken(done, taken_t.SUPERVISOR), port)
 
     def _take(self, host: HostProcess, done: done_t) -> None:
-        """Makes what a done says visible with the next stage."""
+        """Makes the messages of a done visible with the next stage."""
         self._check.check(done)
         self._note_answer(host, done)
         if host.changes:
@@ -116,7 +116,7 @@ class Dones:
         self._tick_log.event(_event_of(done))
 
     def _record_losses(self, done: done_t) -> None:
-        """Records what the host lost before the done itself: a replay withholds the same from the same components."""
+        """Records the host's losses before the done: a replay withholds the same messages from the components."""
         for message in done.lost:
             self._tick_log.event(MessageLost(done.host, message.channel, message.sequence))
         for frame in done.lost_frames:

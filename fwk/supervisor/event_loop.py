@@ -11,7 +11,7 @@ E = TypeVar("E")
 Handler = Callable[[], None]
 
 COARSE_US = 1_500
-"""A wait that is to end on time ends so long before: the system counts longer waits in whole milliseconds."""
+"""Margin before the end of a precise wait: the system counts longer waits in whole milliseconds."""
 
 
 class EventSource(Protocol):
@@ -46,7 +46,7 @@ class EventLoop:
         self.network.watch(source)
 
     def unwatch(self, source: Source) -> None:
-        """Leaves `source` out of the waits from now on."""
+        """Removes `source` from the waits."""
         if self._handlers.pop(_descriptor(source), None):
             self.network.unwatch(source)
 
@@ -63,7 +63,7 @@ class EventLoop:
         self._queue.append(event)
 
     def dispatch(self) -> None:
-        """Hands the events in the queue to their subscribers, also those that these emit."""
+        """Passes the events in the queue to their subscribers, and also those that these emit."""
         while self._queue:
             event = self._queue.popleft()
             for subscriber in self._subscribers.get(type(event), ()):
@@ -80,7 +80,7 @@ class EventLoop:
             afterwards()
 
     def wait_on_time(self, until_us: int) -> Steps[None]:
-        """As `wait`; the last part of a long wait is a wait of its own, so that it ends on time."""
+        """Waits like `wait`; the last part of a long wait is a separate wait, so that it ends on time."""
         early_us = until_us - COARSE_US
         yield from self.wait(early_us if early_us > self.now_us() else until_us)
 

@@ -1,4 +1,4 @@
-"""Events of host processes that the parts of a supervisor tell each other."""
+"""Events of host processes, exchanged by the parts of a supervisor."""
 
 from dataclasses import dataclass
 
@@ -14,13 +14,13 @@ class HostReady:
 
 @dataclass(frozen=True)
 class HostLost:
-    """The process of a host ended without having been asked to."""
+    """The process of a host ended without a request."""
 
     host: HostProcess
 
 
 @dataclass(frozen=True)
 class HostLeaves:
-    """A host leaves the loop as it was asked to; it finalizes its components and may still send a final done."""
+    """A host leaves the loop on request; it finalizes its components and may still send a final done."""
 
     host: HostProcess

@@ -1,4 +1,4 @@
-"""The process table: every host, its state, and when it is started again. Knows no clock and no processes."""
+"""The process table: every host, its state, and its restarts; knows no clock and no processes."""
 
 from collections import deque
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from fwk.model.sections import RestartPolicy
 from lcmtypes.core import component_state_t, histogram_t, host_counters_t
 
 REAL_TIME_STOP_US = 3 * US_PER_S
-"""Time to end in real time if the launch file gives none; in lockstep the loop waits as long as it takes."""
+"""Default time to end in real time; in lockstep the loop waits as long as it takes."""
 NOT_STARTED = "does not start with the run"
 
 
@@ -23,7 +23,7 @@ class HostState(StrEnum):
     LOADED = "loaded"
     """In the plan, to be started with the run."""
     WAITING = "waiting"
-    """To be started as soon as its time has come and the hosts that it needs run."""
+    """Starts as soon as its time has come and the hosts that it needs run."""
     STARTING = "starting"
     """Has a process that initialises its components."""
     RUNNING = "running"
@@ -31,7 +31,7 @@ class HostState(StrEnum):
     """Has left the loop; its process was asked to end."""
     STOPPED = "stopped"
     FAILED = "failed"
-    """Ended, or cannot be started, and is not started again by itself."""
+    """Ended, or cannot be started, and is not restarted automatically."""
 
 
 IDLE = frozenset({HostState.LOADED, HostState.WAITING, HostState.STOPPED, HostState.FAILED})
@@ -39,7 +39,7 @@ IDLE = frozenset({HostState.LOADED, HostState.WAITING, HostState.STOPPED, HostSt
 JOINING = frozenset({HostState.LOADED, HostState.WAITING, HostState.STARTING, HostState.RUNNING})
 """States of a host that takes part in the loop or will."""
 UNSETTLED = frozenset({HostState.WAITING, HostState.STARTING, HostState.STOPPING})
-"""States that time alone may end."""
+"""States that can change by time alone."""
 NEXT_STATES = {
     HostState.LOADED: IDLE | {HostState.STARTING},
     HostState.WAITING: IDLE | {HostState.STARTING},
@@ -53,20 +53,20 @@ NEXT_STATES = {
 
 
 class HostStateError(Exception):
-    """A change of state that the table of states does not have."""
+    """A change of state that is not in the table of states."""
 
 
 @dataclass(frozen=True)
 class Change:
-    """New settings of a component as JSON, or what was decided about dynamic channels."""
+    """New settings of a component as JSON, or decisions about dynamic channels."""
 
     component: int
     number: int
     settings: str
     step: int
-    """Step of the ledger from which on hosts are told."""
+    """Step of the ledger from which on hosts receive it."""
     facts: Sequence[Fact] = ()
-    """Decisions about channels; then there is no component and there are no settings."""
+    """Decisions about channels; a change with decisions has neither component nor settings."""
 
 
 @dataclass(eq=False)
@@ -77,25 +77,25 @@ class HostProcess:
     name: str
     policy: RestartPolicy
     ready_timeout_us: int | None = None
-    """Wall time in which it has to become ready; None: no limit."""
+    """Wall time within which it must become ready; None: no limit."""
     stop_timeout_us: int | None = None
-    """Wall time in which it has to end when asked to while the run goes on; None: no limit."""
+    """Wall time within which it must end when asked to during the run; None: no limit."""
     needs: tuple[int, ...] = ()
-    """Hosts that have to be running before it is started."""
+    """Hosts that must be running before it is started."""
     continuous: bool = False
-    """Whether its component iterates at a rate of its own; the loop never waits for it."""
+    """Whether its component is continuous; the loop never waits for it."""
     incarnation: int = 0
     pid: int = 0
     since_us: int = 0
     """Wall time of the last change of state."""
     restart_us: int = 0
-    """Wall time at which it may be started, while waiting."""
+    """Wall time from which it may be started, while waiting."""
     restarts: int = 0
     reason: str = ""
     answered_step: int = 0
-    """Step of the ledger of the last tick that it answered; 0: none since it was started."""
+    """Step of the ledger of the last tick that it answered; 0: none in this incarnation."""
     late_with: tuple[int, int] | None = None
-    """Tick, and step of that tick, that it still works on after the stage has ended."""
+    """Tick, and step of that tick, on which it still works after the end of the stage."""
     finalizing: bool = False
     """Whether it left the loop and its final done may still come."""
     components: list[component_state_t] = field(default_factory=list)
@@ -104,9 +104,9 @@ class HostProcess:
     counters: host_counters_t = field(default_factory=host_counters_t)
     """Losses and refusals of all its processes."""
     wanted: bool = True
-    """Whether it should run: the first half of the desired state."""
+    """First half of the desired state: whether it should run."""
     desired_run: int = 1
-    """The second half: a number that goes up with each request to start it again."""
+    """Second half of the desired state: a number that increases with each requested restart."""
     actual_run: int = 0
     """The desired run number at its last start."""
     asked_us: int = 0
@@ -114,7 +114,7 @@ class HostProcess:
     fresh_code: bool = False
     """Whether its processes import the application's modules anew, because their files changed."""
     changes: list[Change] = field(default_factory=list)
-    """Changes that it has not taken over yet."""
+    """Changes that it has not confirmed yet."""
     held: bool = False
     """Whether a debugger has its process: no time limit applies."""
     started_with: int = 0
@@ -122,7 +122,7 @@ class HostProcess:
 
     def __post_init__(self) -> None:
         self.alive = False
-        """Whether there is a process that takes part in the loop or will."""
+        """Whether a process exists that takes part in the loop or will."""
         self.running = False
         """Whether it takes part in the loop."""
         self.unsettled = False
@@ -130,17 +130,17 @@ class HostProcess:
         self._joins = True
         self._state = HostState.LOADED
         self._starts_us: deque[int] = deque()
-        self._earlier_frames: dict[str, int] = {}  # lost ones of the processes before this one, by component
+        self._earlier_frames: dict[str, int] = {}  # losses of earlier incarnations, by component
         self._earlier_counters = host_counters_t()
 
     @property
     def state(self) -> HostState:
-        """The state of the process."""
+        """State of the process."""
         return self._state
 
     @property
     def failed(self) -> bool:
-        """Whether it is given up."""
+        """Whether it has failed and is not restarted."""
         return self._state is HostState.FAILED
 
     @property
@@ -160,7 +160,7 @@ class HostProcess:
 
     @property
     def settled(self) -> bool:
-        """Whether it is as desired, or failed in the attempt."""
+        """Whether it has the desired state, or failed in the attempt."""
         if not self.wanted:
             return self._state is HostState.STOPPED
         done = self._state in (HostState.RUNNING, HostState.FAILED, HostState.STOPPED)
@@ -168,47 +168,47 @@ class HostProcess:
 
     @property
     def must_leave(self) -> bool:
-        """Whether its process has to end for what is desired."""
+        """Whether its process has to end for the desired state."""
         return self.alive and (not self.wanted or self.actual_run != self.desired_run)
 
     @property
     def must_join(self) -> bool:
-        """Whether a process has to be started for what is desired."""
+        """Whether a process has to be started for the desired state."""
         return self.wanted and self.actual_run != self.desired_run and self._state in IDLE
 
     def not_ready_in_time(self, now_us: int) -> bool:
-        """Whether it should have become ready by now."""
+        """Whether it has exceeded the time to become ready."""
         limit_us = self.ready_timeout_us
         starting = self._state is HostState.STARTING and not self.held
         return starting and limit_us is not None and now_us - self.since_us > limit_us
 
     def not_stopped_in_time(self, now_us: int) -> bool:
-        """Whether it should have ended by now."""
+        """Whether it has exceeded the time to end."""
         limit_us = self.stop_timeout_us
         return self._state is HostState.STOPPING and limit_us is not None and now_us - self.since_us > limit_us
 
     def want_stop(self, now_us: int) -> None:
-        """Sets the desired state: it shall not run any more."""
+        """Sets the desired state to stopped."""
         self.wanted, self.asked_us = False, now_us
 
     def want_start(self, now_us: int) -> None:
-        """Sets the desired state: it shall run, if it does not yet."""
+        """Sets the desired state to running."""
         if not self.wanted or self._state in (HostState.STOPPED, HostState.FAILED):
             self.want_restart(now_us)
 
     def want_restart(self, now_us: int) -> None:
-        """Sets the desired state: it shall run, in a new process; earlier failures are forgotten."""
+        """Sets the desired state to running in a new process; earlier failures are forgotten."""
         self.wanted, self.asked_us = True, now_us
         self.desired_run += 1
         self._starts_us.clear()
 
     def wait_for_start(self, now_us: int) -> None:
-        """Lets it start as soon as what it needs runs."""
+        """Lets it start as soon as its needs run."""
         self._become(HostState.WAITING, now_us)
         self.restart_us = now_us
 
     def fail(self, reason: str) -> None:
-        """Gives it up: it cannot be started, or not in time."""
+        """Marks it as failed: it cannot be started, or not in time."""
         self._become(HostState.FAILED, self.since_us)
         self.reason, self.actual_run = reason, self.desired_run
 
@@ -237,17 +237,17 @@ class HostProcess:
     def begin_stop(self, now_us: int) -> None:
         """Takes it out of the loop; its process has been asked to end.
 
-        A host that was not ready has taken no part: what it writes in `finalize` is void.
+        A host that was not ready has taken no part: its messages from `finalize` are void.
         """
         self.changes, self.finalizing = [], self.running
         self._become(HostState.STOPPING, now_us)
 
     def drop_told_changes(self) -> None:
-        """Drops the changes that the tick which it answered last has told."""
+        """Drops the changes of the tick that it answered last."""
         self.changes = [change for change in self.changes if change.step > self.answered_step]
 
     def report(self, components: list[component_state_t], times: list[histogram_t], counters: host_counters_t) -> None:
-        """Takes the state of its components; losses of earlier processes stay counted."""
+        """Takes the states of its components; losses of earlier processes stay counted."""
         for component in components:
             component.lost_frames += self._earlier_frames.get(component.name, 0)
         earlier = self._earlier_counters
@@ -257,7 +257,7 @@ class HostProcess:
         self.components, self.times, self.counters = components, times, counters
 
     def ended(self, code: int, now_us: int, stopping: bool, core: bool = False, culprit: str = "") -> None:
-        """Takes the end of its process and decides whether and when it is started again.
+        """Notes the end of its process and decides whether and when it is restarted.
 
         Args:
             code: exit code, or minus the signal that killed it.
@@ -287,9 +287,9 @@ class HostProcess:
     def _after_end(self, code: int, now_us: int, stopping: bool) -> HostState:
         if self._state is HostState.STOPPING:
             return HostState.WAITING if self.wanted and not stopping else HostState.STOPPED
-        if (stopping and code == 0) or not self.wanted:  # asked to stop, but ended before the loop came to it
+        if (stopping and code == 0) or not self.wanted:  # asked to stop, but ended before the boundary
             return HostState.STOPPED
-        if code == LEFT and not stopping:  # given back by a debugger, which is not a failure
+        if code == LEFT and not stopping:  # returned by a debugger, which is not a failure
             self.reason = "given back"
             return HostState.WAITING
         if stopping or self.policy.when == "never":

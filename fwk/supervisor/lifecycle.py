@@ -13,7 +13,7 @@ from fwk.supervisor.host_process import HostProcess
 _STOPS = ("stop", "unload", "kill")
 _STARTS_AGAIN = ("start", "restart", "reload")
 _RUNNING = ("starting", "running", "waiting")
-_LOADED = "; what can be loaded stands in the launch file, with 'start: false' if it does not start with the run"
+_LOADED = "; only components of the launch file can be loaded, also those with 'start: false'"
 
 
 class Lifecycle:
@@ -54,7 +54,7 @@ class Lifecycle:
             RequestError: the request cannot be granted; names the components that prevent it.
         """
         if not patterns:
-            raise RequestError(f"{action} what? name components, or patterns such as 'cyan1/*'")
+            raise RequestError(f"{action}: no components given; name some, or patterns such as 'cyan1/*'")
         try:
             chosen, components = self.components(patterns), self._plan.components
         except RequestError as error:
@@ -108,10 +108,10 @@ class Lifecycle:
         return self._plan.components[index].name
 
     def check_needs(self, chosen: Sequence[int]) -> None:
-        """Checks that everything runs that these components need.
+        """Checks that all needs of these components run.
 
         Raises:
-            RequestError: a needed component does not run; says what to type.
+            RequestError: a needed component does not run; names the command that helps.
         """
         for index in chosen:
             missing = [
@@ -134,7 +134,7 @@ class Lifecycle:
         files = {file for index in chosen for file in self._sources.files(self._plan.components[index])}
         if found := mistakes(files):
             names = ", ".join(self._name(index) for index in chosen)
-            raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code runs on: {names}")
+            raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code continues: {names}")
 
     def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostProcess]) -> None:
         """Refuses to start or stop a part of a process."""

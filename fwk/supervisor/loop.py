@@ -12,13 +12,13 @@ from fwk.supervisor.tick_log import TickLog, void_messages
 from fwk.supervisor.tick_sender import Tick
 
 PAUSED_US = 100_000
-"""How often boundaries are crossed while the run is paused."""
+"""Interval of boundaries while the run is paused."""
 FINISH_US = 2_000_000
-"""How long an interrupted run waits for the gateway."""
+"""Longest wait of an interrupted run for the gateway."""
 
 
 class MainLoop:
-    """Runs ticks as the page on the protocol says."""
+    """Runs ticks as the page on the protocol describes."""
 
     def __init__(
         self,
@@ -90,7 +90,7 @@ class MainLoop:
             begin_us = clock.begin_us(core.now_us())
 
     def _begin(self) -> Tick:
-        """Begins a tick: late hosts are reminded, messages from outside and the marks of the moment become visible."""
+        """Begins a tick: late hosts are reminded, messages from outside and all published marks become visible."""
         self.barrier.sender.remind()
         now_us = self._core.now_us()
         time_us = self._core.clock.advance(now_us)

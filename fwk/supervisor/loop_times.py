@@ -1,4 +1,4 @@
-"""How long stages and ticks take, and warnings about those that take too long."""
+"""Durations of stages and ticks, and warnings about slow ones."""
 
 import sys
 from collections.abc import Sequence
@@ -9,7 +9,7 @@ from fwk.model.histogram import Histogram
 from fwk.model.plan import Plan
 from fwk.supervisor.host_process import HostProcess
 
-TOLERANCE = 1.1  # a tick that takes up to so many times the desired time is no reason for a warning
+TOLERANCE = 1.1  # a tick up to this much longer than desired gives no warning
 _QUIET_US = 10 * US_PER_S
 _OVERRUNS_SAID = 10
 
@@ -23,7 +23,7 @@ class Limited:
         self._quiet_until_us = 0
 
     def lets_through(self, now_us: int) -> bool:
-        """Whether a warning may be logged now; if not, it is counted."""
+        """Returns whether a warning may be logged now; if not, it is counted."""
         if self._at_once > 0:
             self._at_once -= 1
         elif now_us < self._quiet_until_us:
@@ -33,7 +33,7 @@ class Limited:
         return True
 
     def between(self) -> str:
-        """Returns how many warnings were left out since the last one, as text, and begins to count anew."""
+        """Returns the number of warnings left out since the last one, as text, and resets it."""
         left_out, self.left_out = self.left_out, 0
         return f" ({left_out} more since the last such line)" if left_out else ""
 
@@ -55,10 +55,10 @@ class LoopTimes:
         self._table = table
         self._log = log
         self._began_us = 0
-        self._slowest_stage = (0, 0)  # of this tick: how long, which
-        self._slowest_host = (0, 0, 0)  # of this tick: how long, which, in which stage
+        self._slowest_stage = (0, 0)  # of this tick: duration, stage
+        self._slowest_host = (0, 0, 0)  # of this tick: duration, host, stage
         warns = plan.loop_time_warnings
-        lockstep = plan.clock == "simulated"  # in real time the loop itself names late hosts
+        lockstep = plan.clock == "simulated"  # in real time the main loop itself names late hosts
         self._allowed_us = plan.stage_time_us if warns and lockstep and plan.stage_time_us else sys.maxsize
         self._warns = warns
         self._missed = Limited(1)
@@ -66,7 +66,7 @@ class LoopTimes:
         self._said_late: set[int] = set()
 
     def tick_begins(self, now_us: int) -> None:
-        """Takes the wall time at which a tick begins."""
+        """Notes the wall time at which a tick begins."""
         if self._began_us:
             self.cycle.add(now_us - self._began_us)
         self._began_us = now_us
@@ -74,7 +74,7 @@ class LoopTimes:
         self._slowest_host = (0, 0, 0)
 
     def answered(self, host: int, stage: int, busy_us: int, tick: int) -> None:
-        """Takes the wall time of a host's iterations of a stage."""
+        """Notes the wall time of a host's iterations of a stage."""
         if busy_us > self._slowest_host[0]:
             self._slowest_host = (busy_us, host, stage)
         if busy_us > self._allowed_us and self._overrun[host].lets_through(self._began_us):
@@ -84,13 +84,13 @@ class LoopTimes:
             )
 
     def stage_ended(self, stage: int, duration_us: int) -> None:
-        """Takes the wall time of a stage."""
+        """Notes the wall time of a stage."""
         self.stages[stage].add(duration_us)
         if duration_us > self._slowest_stage[0]:
             self._slowest_stage = (duration_us, stage)
 
     def tick_ended(self, tick: int, now_us: int, desired_us: float) -> None:
-        """Takes the wall time at which a tick ends; `desired_us` is the longest that it should take, 0: no limit."""
+        """Notes the wall time at which a tick ends; `desired_us` is its desired duration, 0: no limit."""
         took_us = now_us - self._began_us
         self.loop.add(took_us)
         if not self._warns or not 0 < desired_us * TOLERANCE < took_us or any(entry.held for entry in self._table):

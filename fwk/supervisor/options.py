@@ -24,7 +24,7 @@ class RunOptions:
     record: Path | None = None
     """File of the recording; None: no recording."""
     video: Path | None = None
-    """File of a video of the run, drawn from the recording when the run has ended."""
+    """File of a video of the run, drawn from the recording after the run."""
     debug: str | None = None
     """Component that runs under pdb in this terminal."""
     debugpy_port: int = 0
@@ -38,7 +38,7 @@ class RunOptions:
 
 
 class RunBrokenError(Exception):
-    """A process that every run needs has ended; says which one and how."""
+    """A process that every run needs has ended; the text names it with its end."""
 
 
 @dataclass(frozen=True)
@@ -46,12 +46,12 @@ class Outcome:
     """How a run ended."""
 
     exit_code: int
-    """0: all went well; 1: a component failed or the run broke."""
+    """0: success; 1: a component failed or the run broke."""
     ticks: int
     logical_s: float
     wall_s: float
     reason: str
-    """Why it ended, as text: `600 ticks done`, `interrupted`, `cyan1/base failed: ...`."""
+    """Reason for the end, as text: `600 ticks done`, `interrupted`, `cyan1/base failed: ...`."""
     status: status_t = field(default_factory=status_t)
     """The supervisor's last status."""
     newest: dict[str, Any] = field(default_factory=dict)
@@ -59,4 +59,4 @@ class Outcome:
     unrecorded: int = 0
     """Messages that were lost on their way to the recording."""
     deleted: str = ""
-    """Says which file of the run was deleted during the run; empty: none."""
+    """File of the run that was deleted during the run, as text; empty: none."""

@@ -19,7 +19,7 @@ class PluginRequests:
         self._lifecycle = lifecycle
 
     def decide(self, request: plugin_request_t) -> None:
-        """Sets the desired states that a component asks for; a request that cannot be granted is refused in the log."""
+        """Sets the desired states that a component requests; a refused request is logged."""
         sender = self._core.plan.components[request.component].name
         action = cast(Action, PLUGIN_ACTIONS[request.action])
         try:

@@ -5,7 +5,7 @@ _AT_FIRST_US = 20_000
 
 
 class RetransmissionTimeout:
-    """Learns how long a stage usually takes, as TCP learns round trips (RFC 6298): smoothed time and deviation."""
+    """Learns the usual duration of a stage, as TCP learns round trips (RFC 6298): smoothed time and deviation."""
 
     def __init__(self) -> None:
         self._usual_us = _AT_FIRST_US

@@ -1,4 +1,4 @@
-"""The central clock: the logical time of each tick, from its one source, and the wall time at which it may begin."""
+"""The run clock: the logical time of each tick, from its one source, and the wall time at which it may begin."""
 
 from fwk.clock import US_PER_S, Clock
 from fwk.model.plan import Plan
@@ -54,11 +54,11 @@ class RunClock:
         self._paused, self._steps = True, 0
 
     def resume(self) -> None:
-        """Lets ticks begin again, at the speed of before."""
+        """Lets ticks begin again, at the previous speed."""
         self._paused, self._steps, self._anchor = False, 0, None
 
     def step(self, ticks: int) -> None:
-        """Lets so many more ticks begin, then none."""
+        """Lets the given number of further ticks begin, then none."""
         self._paused, self._steps, self._anchor = True, ticks, None
 
     @property

@@ -51,7 +51,7 @@ class Schedule:
         self._holding.ask(tick, step, plan.components[request.component].name, order)
 
     def left(self, host: HostProcess) -> None:
-        """Takes note that a host ended or leaves the loop."""
+        """Notes that a host ended or leaves the loop."""
         self._holding.left([self._core.plan.components[index].name for index in self._core.components_of(host)])
 
     def decide(self, tick: int) -> bool:

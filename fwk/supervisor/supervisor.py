@@ -72,14 +72,14 @@ class Signals(Protocol):
 
 @dataclass(frozen=True)
 class Machine:
-    """Everything that a supervisor uses beside the run's buses; what is left out does not exist."""
+    """Parts of the machine that a supervisor uses besides the run's buses; missing ones do not exist."""
 
     starter: ProcessStarter
     signals: Signals | None = None
     listen: Listen | None = None
     """Opens the control server."""
     rings: Mapping[str, Ring] = field(default_factory=dict)
-    """Where the frames of cameras lie."""
+    """Descriptors of the rings with the frames of cameras."""
     host_sockets: Mapping[int, socket.socket] = field(default_factory=dict)
     """The hosts' own sockets, by port."""
     debug: DebugRequest | None = None
@@ -142,17 +142,17 @@ class Supervisor:
         return self._core.clock.time_us
 
     def work(self, gateway: GatewayProcess) -> Steps[tuple[str, bool]]:
-        """Starts everything and runs the main loop; returns why it ended and whether that is a failure."""
+        """Starts everything and runs the main loop; returns the reason for its end and whether it is a failure."""
         self._core.events.watch(gateway, partial(self._on_gateway_end, gateway))
         try:
             return (yield from self._work())
         except RunBrokenError as broken:
             self.wall_s = self._status.wall_s
-            self.log.error(f"{broken}; the run cannot go on")
+            self.log.error(f"{broken}; the run cannot continue")
             return f"broken: {broken}", True
 
     def stop(self) -> Steps[tuple[status_t, list[str]]]:
-        """Stops every process; returns the last view of them, and what failed meanwhile: components in finalize."""
+        """Stops every process; returns the last view of them, and the components that failed in finalize."""
         self._control.close()
         status = self._publish_status()
         before = self._hosts.failed_components()
@@ -167,7 +167,7 @@ class Supervisor:
         raise RunBrokenError(f"the gateway ended: {gateway.gateway_end()}")
 
     def _work(self) -> Steps[tuple[str, bool]]:
-        # Until the gateway listens: it would miss what is sent before.
+        # Until the gateway listens: it would miss earlier messages.
         yield from self.loop.tick_log.wait_for(0, self._interrupted)
         try:
             yield from self._hosts.start_all(self._report)
@@ -188,7 +188,7 @@ class Supervisor:
         return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
 
     def _stop_hosts(self) -> Steps[list[str]]:
-        """Stops all hosts, whichever other process ends meanwhile; returns how those ended."""
+        """Stops all hosts, even if other processes end in between; returns the ends of those."""
         broken: list[str] = []
         while True:
             try:
@@ -210,7 +210,7 @@ class Supervisor:
             return False
         received = self._signals.received
         if self._debugged and self._debugged.pid and self._debugged.incarnation == 1:
-            while signal.SIGINT in received:  # Ctrl-C belongs to the debugger as long as there is one
+            while signal.SIGINT in received:  # Ctrl-C belongs to a debugger as long as there is one
                 received.remove(signal.SIGINT)
                 self._starter.signal(self._debugged.pid, signal.SIGINT)
         return bool(received)

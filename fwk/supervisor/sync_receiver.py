@@ -1,4 +1,4 @@
-"""Receives what hosts and gateway report to the supervisor: dones and states."""
+"""Receives the reports of hosts and gateway to the supervisor: dones and states."""
 
 import struct
 from collections.abc import Callable
@@ -13,7 +13,7 @@ from lcmtypes.core import actual_t, done_t
 
 
 class SyncReceiver:
-    """The supervisor's socket for dones and states; refuses, counts and names what does not belong there."""
+    """The supervisor's socket for dones and states; refuses, counts and names foreign messages."""
 
     def __init__(self, events: EventLoop, ports: Ports, run: int, complain: Callable[[str, str], None]) -> None:
         self._emit = events.emit

@@ -19,7 +19,7 @@ from fwk.supervisor.host_process import Change
 from lcmtypes.core import announcement_t, protocol_t, recorded_t, settings_change_t, tick_record_t, tick_t, void_t
 
 KEPT = 64
-"""Ticks that are kept at the least; all that the gateway has not taken yet are kept besides."""
+"""Number of ticks that are kept; those that the gateway has not taken yet are kept as well."""
 FIRST_WAIT_US = 20_000
 LONGEST_WAIT_US = 100_000
 STALLED_US = 200_000
@@ -41,7 +41,7 @@ class TickLog:
         self._marks: dict[int, int] = {}
         self._changes: list[Change] = []
         ports = core.ports
-        # Hosts, too, refuse datagrams of other programs and name them, so nothing is said about them here.
+        # Hosts also refuse datagrams of other programs and name them, so they are not reported here.
         self._own = Receiver(core.sender.socket, ports.members, "of this run", "fwk/fetch_records", _ignore)
         core.events.watch(self._own, self._answer_fetch)
 
@@ -65,7 +65,7 @@ class TickLog:
     def announce(self, change: Change, longest_us: int, interrupted: Callable[[], bool]) -> Steps[None]:
         """Waits until the gateway listens to the channels that a change opens, `longest_us` at most; 0: no limit.
 
-        The tick's record names them, too, but by then a writer may have sent a message and died.
+        The tick's record names them too, but by then a writer may have sent a message and died.
         """
         core = self._core
         announcement = announcement_t()
@@ -96,7 +96,7 @@ class TickLog:
         self._core.sender.publish(sync.RECORD, data, self._core.ports.record)
 
     def wait_for(self, tick: int, interrupted: Callable[[], bool]) -> Steps[None]:
-        """Waits until the gateway has `tick`; sends it again what it may have lost."""
+        """Waits until the gateway has `tick`; repeats records that it may have lost."""
         now_us = self._core.now_us
         wait_us, began_us = FIRST_WAIT_US, now_us()
         while self.taken < tick and not interrupted():
@@ -109,7 +109,7 @@ class TickLog:
         self.stalled = False
 
     def _repeat(self, first: int, last: int) -> None:
-        """Sends the records of these ticks again, a limited number at once."""
+        """Repeats the records of these ticks, a limited number at once."""
         for tick, data in self._kept:
             if first <= tick <= min(last, first + KEPT):
                 self._core.sender.publish(sync.RECORD, data, self._core.ports.record)
@@ -126,7 +126,7 @@ class TickLog:
 
 
 def _ignore(_channel: str, _reason: str) -> None:
-    """Says nothing about a refused datagram."""
+    """Ignores a refused datagram."""
 
 
 def put_changes(message: tick_t | tick_record_t, changes: Iterable[Change]) -> None:

@@ -12,7 +12,7 @@ from lcmtypes.core import protocol_t, tick_t
 
 
 class Tick(NamedTuple):
-    """The tick that runs."""
+    """The running tick."""
 
     number: int
     time_us: int
@@ -30,7 +30,7 @@ class TickSender:
         self._unanswered: dict[int, tuple[bytes, int]] = {}  # by late host: the tick, and its stage
 
     def broadcast(self, tick: Tick, turn: Turn, outstanding: AbstractSet[int]) -> None:
-        """Sends a tick to the hosts of a stage that have not answered yet, with all that any of them has not seen."""
+        """Sends a tick to the hosts of a stage that have not answered yet, with everything that any of them lacks."""
         told = [host for host in turn.hosts if host.index in outstanding and host.running]
         if not told:
             return
@@ -51,7 +51,7 @@ class TickSender:
     def keep_for(self, host: HostProcess, turn: Turn) -> None:
         """Keeps the newest tick for a host that is late with it.
 
-        It names all other hosts absent: a host that is started meanwhile must not take it for its first tick.
+        The copy names all other hosts as absent: a host that starts later must not take it as its first tick.
         """
         tick: tick_t = sync.decode_tick(self._sent)
         tick.absent = [other.index for other in turn.hosts if other is not host]

@@ -15,7 +15,7 @@ _NAMES_MAX = 5
 
 
 class WaitReport:
-    """The wait that is under way, if it is a long one. `component_of` names the component that a host executes."""
+    """The present wait, if it is a long one; `component_of` names the component that a host executes."""
 
     def __init__(self, now_us: Callable[[], int], component_of: Callable[[HostProcess], str], log: Logger) -> None:
         self._now_us = now_us
@@ -27,7 +27,7 @@ class WaitReport:
 
     @property
     def hosts(self) -> list[HostProcess]:
-        """The hosts that are waited for longer than a moment."""
+        """Hosts that have been waited for longer than a moment."""
         return list(self._hosts) if self._now_us() >= self._began_us + SHORT_US else []
 
     @property
@@ -36,7 +36,7 @@ class WaitReport:
         return [self._component_of(host) for host in self.hosts]
 
     def waiting(self, began_us: int, hosts: Iterable[HostProcess], subject: str) -> None:
-        """Takes note that `subject`, such as "tick 7", waits for hosts since the wall time `began_us`."""
+        """Notes that `subject`, such as "tick 7", waits for hosts since the wall time `began_us`."""
         now_us = self._now_us()
         if began_us != self._began_us:
             self._began_us, self._line_us = began_us, began_us + FIRST_LINE_US
@@ -47,7 +47,7 @@ class WaitReport:
             self._line_us = now_us + min(waited_us, LONGEST_PAUSE_US)
 
     def ended(self) -> None:
-        """Takes note that the wait is over."""
+        """Notes the end of the wait."""
         self._hosts = ()
 
     def _names(self) -> str:

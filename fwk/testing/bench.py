@@ -1,4 +1,4 @@
-"""Test bench for one component: put messages in, iterate, check what it sent. No process, no bus."""
+"""Test bench for one component: put messages in, iterate, check sent messages. No process, no bus."""
 
 from typing import Any
 
@@ -25,7 +25,7 @@ class Bench:
     Each port of the component is an attribute of its bench. A port of many instances is a mapping from the namespaces
     given in `namespaces`: `bench.motors["cyan1"]`. A port whose name the bench uses itself is `bench.port("tick")`.
 
-    Commands go to a component that carries them out by `bench.kick.put(speed_m_s=3.0)`, its answers are in `sent`.
+    `bench.kick.put(speed_m_s=3.0)` sends a command to a component that carries it out; its answers are in `sent`.
     Commands that a component sends are in `sent`, too; `bench.owner_of("kick").answer()` answers the newest.
     """
 
@@ -45,7 +45,7 @@ class Bench:
         self.tick = 0
         self.time_us = 0
         self._ports: dict[str, PortBench] = {}
-        self._by_name: dict[str, PortBench] = {}  # what a test sees of them
+        self._by_name: dict[str, PortBench] = {}  # the parts that a test sees
         self._camera: dict[str, VisionMaster] = {}
         self._by_attribute: dict[str, list[str]] = {}
         channels = {}
@@ -155,7 +155,7 @@ class Bench:
         return self._ports[full]
 
     def _open(self) -> set[str]:
-        """Grants what was asked in the last iteration; returns opened channels that the component does not read now."""
+        """Grants the requests of the last iteration; returns dynamic channels that the component does not read now."""
         assert self._opening
         list(self._opening.decide())
         for channel, kind in self._opening.types.items():

@@ -32,9 +32,9 @@ T = TypeVar("T")
 class MemorySystem:
     """Components in lockstep, each in a host of its own: the same `Host` as in a process, driven by a loop in memory.
 
-    `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those of
-    the same components in processes. A test writes the channels of `outside`, given with their types, with `come_in`.
-    `turns` are `every` and `offset` of components, where they differ from the class.
+    `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those
+    of the same components in processes. A test writes the channels of `outside`, given with their types, with
+    `come_in`. `turns` are `every` and `offset` of components, where they differ from the class.
 
     Raises:
         ValueError: the components do not fit together.
@@ -53,7 +53,7 @@ class MemorySystem:
     ) -> None:
         for name, kind in components.items():
             if "plugins" in declaration(kind).aspects.values():
-                raise ValueError(f"{name} asks for PluginControl, which needs processes; use Bench, or a run")
+                raise ValueError(f"{name} declares PluginControl, which needs processes; use Bench, or a run")
         plan = plan_of(
             components,
             settings,
@@ -173,7 +173,7 @@ class MemorySystem:
         return names.index(self._holding.holder) if self._holding.holder else NOBODY
 
     def _taken(self, component: ComponentPlan, written: Written, done: done_t) -> Written:
-        """Takes a done: the time of the next tick, and what the component requested."""
+        """Takes a done: the time of the next tick, and the requests of the component."""
         if component.index in self._time_source:
             self._next_us = done.next_time_us
         for request in done.main_loop:

@@ -31,7 +31,7 @@ class Opening:
             self._openings.ask(tick, place, runner.name, wishes)
 
     def decide(self) -> Iterator[tuple[str, str, int]]:
-        """Decides between two ticks; yields component, channel and index of its first message there; -1: it stops."""
+        """Decides between two ticks; yields component, channel, index of its first message; -1: it ceases to read."""
         if not self._openings.asked:
             return
         facts, _ = self._openings.decide()
@@ -45,7 +45,7 @@ class Opening:
                     yield runner.name, fact.opening.name, [len(sent), *alike][-1] if done == "opened" else -1
 
     def of_their_types(self, runner: Runner, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
-        """Drops messages of other types, which a channel has that was opened again with another type."""
+        """Drops messages of other types on a channel that was opened again with another type."""
         for channel in fresh.keys() & self.types.keys():
             begins = envelope.fingerprint(runner.readers[channel].message_type)
             fresh[channel] = [data for data in fresh[channel] if data.startswith(begins)]

@@ -48,7 +48,7 @@ class OtherSender(PortBench):
         self.sent = answers.sent
 
     def put(self, message: Any = None, header: Any = None, expires_s: float | None = None, **fields: Any) -> None:
-        """Sends a command, which is not to be begun after `expires_s` of logical time on the bench's clock."""
+        """Sends a command, which must not begin after `expires_s` of logical time on the bench's clock."""
         if expires_s is not None:
             fields["command"] = command_t()
             fields["command"].expires_us = round(expires_s * US_PER_S)

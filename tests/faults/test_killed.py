@@ -79,7 +79,7 @@ def test_an_acknowledged_setting_survives_a_crash(
         assert acknowledged.result()["settings"]
     if moment == "after":
         os.kill(counter, signal.SIGKILL)
-    run.until("r/counter runs again, start number 2")
+    run.until("r/counter runs again, incarnation 2")
     steered.ticks_pass(5)
     first = steered.json("bb", "show", "r/imu")["value"]
     steered.ticks_pass(3)

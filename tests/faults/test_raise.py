@@ -52,14 +52,14 @@ def test_a_failing_component_is_named_and_restarted(
     after.note(run)
     recording = after.check(run, tracebacks=True)
     assert says in run.text
-    assert "d/player runs again, start number 2" in run.text
+    assert "d/player runs again, incarnation 2" in run.text
     assert len(recording.messages["d/note"]) == 60
     assert recording.gaps() == {}
 
 
 def test_a_child_program_ends_with_its_killed_component(launch: Launch, faulty: Path, after: Aftermath) -> None:
     run = launch(*RUN, *wrong("loop:child and die"))
-    run.until("d/player runs again, start number 2")
+    run.until("d/player runs again, incarnation 2")
     after.note(run)
     child = int((faulty / "child").read_text())
     run.until_true(lambda: not alive(child), "the end of the program")

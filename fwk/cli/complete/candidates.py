@@ -1,4 +1,4 @@
-"""Words that may follow what has been typed: commands, options, and names of running and recorded things."""
+"""Candidates for the next word of a command line: commands, options, and names of running and recorded things."""
 
 import os
 from collections.abc import Callable, Iterable

@@ -47,7 +47,7 @@ def compare(
         raise typer.Exit(DIFFERENT if difference else EQUAL)
     for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
         if skipped:
-            typer.echo(f"{path}: {skipped} damaged bytes passed over", err=True)
+            typer.echo(f"{path}: {skipped} damaged bytes skipped", err=True)
     if result.difference:
         typer.echo(f"different: {result.difference}")
         raise typer.Exit(DIFFERENT)
@@ -55,7 +55,7 @@ def compare(
 
 
 def _different_conditions(names: tuple[str, str], logs: tuple[Path, Path]) -> Iterator[str]:
-    """Yields what the two runs did not have in common: the BLAS kernel and the content of modules."""
+    """Yields the different conditions of the two runs: the BLAS kernel and the content of modules."""
     plans = plan_in(logs[0]), plan_in(logs[1])
     if plans[0] is None or plans[1] is None:
         return

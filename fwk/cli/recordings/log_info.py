@@ -50,7 +50,7 @@ def _summary(info: LogInfo) -> list[str]:
     if info.dropped:
         made.append(f"{info.dropped} events were dropped by the program that wrote the log")
     if info.damaged_bytes:
-        made.append(f"{info.damaged_bytes} damaged bytes passed over")
+        made.append(f"{info.damaged_bytes} damaged bytes skipped")
     return made
 
 

@@ -90,7 +90,7 @@ def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, obj
 def _replay(
     log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None
 ) -> tuple[Replay, list[str]]:
-    """Replays a log; returns the replay, and what was not as in the run."""
+    """Replays a log; returns the replay, and its differences to the conditions of the run."""
     recording = Recording(log)
     use_folders(recording.plan.folders)
     made = Replay(recording, only)

@@ -1,4 +1,4 @@
-"""Folders of a recorded run, in which its own modules and message types lie."""
+"""Folders of a recorded run with its own modules and message types."""
 
 from collections.abc import Sequence
 from pathlib import Path

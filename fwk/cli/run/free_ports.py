@@ -9,7 +9,7 @@ from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 
 _TRIES = 24
-_BLOCK = 64  # ports are locked in blocks of so many
+_BLOCK = 64  # size of the lock blocks of ports
 _PORTS_END = 65536
 _URL_PORT = re.compile(r"(?<=:)\d+(?=\?|$)")
 
@@ -33,7 +33,7 @@ def on_free_ports(plan: Plan) -> Plan:
             continue
         return moved
     raise PortsInUseError(
-        f"{plan.name}: no {length} free ports from {plan.bus_port} on; end another run, or say --bus-port"
+        f"{plan.name}: no {length} free ports from {plan.bus_port} on; end another run, or use --bus-port"
     )
 
 

@@ -170,7 +170,7 @@ def launch(
         finally:
             restore(0, terminal)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)  # repeated signals mean the run, which has ended
+        signal.signal(number, signal.SIG_IGN)  # repeated signals are meant for the run, which has ended
     write_result(run_dir, outcome.exit_code, outcome.reason, outcome.ticks, outcome.wall_s)
     for line in summary(plan, options, outcome):
         typer.echo(line)

@@ -23,7 +23,7 @@ _NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
 
 
 class RunDirError(Exception):
-    """A run directory cannot be created; the text says which and why."""
+    """A run directory cannot be created; the text names the folder and the reason."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def prune(runs: Path, keep: int, max_bytes: int) -> list[RunDir]:
 
 @contextlib.contextmanager
 def _alone(folder: Path) -> Iterator[None]:
-    """Keeps other processes from creating and removing run directories meanwhile."""
+    """Prevents other processes from creating and removing run directories in the meantime."""
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(descriptor, fcntl.LOCK_EX)

@@ -24,10 +24,10 @@ class Descriptors:
         self._known: set[str] = set()
 
     def note(self) -> None:
-        """Takes down the descriptors before a call."""
+        """Notes the open descriptors before a call."""
         if _lowest_free() != self._lowest:
             self._lowest = _lowest_free()
-            self._known = set(os.listdir(_OPEN)) - {str(self._lowest)}  # which the listing itself took
+            self._known = set(os.listdir(_OPEN)) - {str(self._lowest)}  # the descriptor of the listing itself
 
     def opened(self) -> str:
         """Describes a device or connection that was opened since `note`; empty: none."""
@@ -74,7 +74,7 @@ def _own_terminal(number: int) -> str:
 def _reached(number: int, own_terminals: set[str]) -> str:
     try:
         mode, name = os.fstat(number).st_mode, os.readlink(_OPEN / str(number))
-    except OSError:  # closed meanwhile
+    except OSError:  # closed in between
         return ""
     if stat.S_ISSOCK(mode):
         return _connection(number)

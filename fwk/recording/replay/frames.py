@@ -1,4 +1,4 @@
-"""Camera frames of a replay: each component gets those that it got in the run."""
+"""Camera frames of a replay: each component gets the frames that it got in the run."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -9,7 +9,7 @@ from fwk.recording.pictures import RecordedPicture
 from fwk.recording.replay.recording import RecordingError
 
 _HELD = 2  # one for a late iteration, one for `finalize`
-_KEPT = 32  # components do not read frames older than the newest announced ones
+_KEPT = 32  # components never read frames older than the newest announced ones
 
 
 class FrameSource(Protocol):
@@ -58,7 +58,7 @@ class RecordedFrames:
         if picture is None:
             raise RecordingError(
                 f"{self._log}: frame {number} of {self._channel} is not in the recording, and the run's log says why; "
-                "replay what is before it with --to-tick, or with --only those who do not look at that camera"
+                "replay the ticks before it with --to-tick, or choose components without that camera with --only"
             )
         if self._decoded is None or self._decoded[0] != number:
             pixels = picture.pixels()
@@ -69,7 +69,7 @@ class RecordedFrames:
 
 
 class View:
-    """View of a camera for one life of a component, without the frames that it lost in the run."""
+    """View of a camera for one incarnation of a component, without the frames that it lost in the run."""
 
     def __init__(self, source: FrameSource) -> None:
         self._source = source
@@ -77,7 +77,7 @@ class View:
         self._held: dict[int, Callable[[], Frame | None]] = {}
 
     def miss(self, number: int) -> None:
-        """Keeps a frame from the component: in the run it was overwritten before the component read it."""
+        """Withholds a frame from the component: in the run it was overwritten before the component read it."""
         self._missed.add(number)
 
     def hold(self, number: int, size: int) -> None:

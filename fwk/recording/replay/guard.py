@@ -24,7 +24,7 @@ _SIGNALS = ("os.kill", "os.killpg")
 _NETWORK = ("socket.connect", "socket.bind", "socket.sendto", "socket.sendmsg")
 _MACHINE = ("/sys/", "/proc/")
 _LOOKUPS = ("ctypes.util", "platform")
-"""Modules of Python that ask programs about the machine, for libraries that are being imported."""
+"""Modules of Python that start programs to examine the machine, for libraries that are being imported."""
 
 
 class ReachesOutsideError(BaseException):
@@ -32,10 +32,10 @@ class ReachesOutsideError(BaseException):
 
 
 class Guard:
-    """Refuses what components do to the world outside: while it watches them, and in the threads that they start.
+    """Refuses access of components to the world outside: while it watches them, and in the threads that they start.
 
-    It hears of files, sockets and programs through Python's audit events, before anything is opened. A library in C
-    opens a device without Python; that is noticed as soon as the call that opened it returns.
+    It observes files, sockets and programs through Python's audit events, before anything is opened. A library in C
+    opens a device without Python; the guard notices that as soon as the call that opened it returns.
     """
 
     def __init__(self) -> None:
@@ -44,7 +44,7 @@ class Guard:
         self._watched = ""  # component that is being executed in the thread of the replay
         self._thread = 0  # thread of the replay
         self._threads: weakref.WeakKeyDictionary[threading.Thread, str] = weakref.WeakKeyDictionary()
-        """Every thread beside that of the replay, with the component that started it; empty: none that is watched."""
+        """Every thread besides that of the replay, with the component that started it; empty: none that is watched."""
         self._elsewhere = False  # a watched component started a thread
         self._installed = False
         self._descriptors = Descriptors()
@@ -95,7 +95,7 @@ class Guard:
 
 
 def _attempt(event: str, arguments: tuple[Any, ...]) -> str:
-    """Describes what reaches outside; empty: the event does not."""
+    """Describes the access to the outside; empty: there is none."""
     if event == "open":
         return _opening(arguments[0], arguments[2])
     if event in _PROGRAMS:

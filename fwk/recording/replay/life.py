@@ -1,4 +1,4 @@
-"""One life of a replayed component: its host participant, the ticks that it owes answers to, and its view of frames."""
+"""One incarnation of a replayed component: its host, its unanswered ticks, and its view of frames."""
 
 from collections import deque
 from collections.abc import Mapping, Sequence
@@ -25,9 +25,9 @@ class Life:
     Args:
         plan: the plan with a host for each component, of the same index.
         component: the component.
-        start: what this incarnation was started with.
-        rings: where replayed cameras put their frames.
-        frames: where the frames of each camera are.
+        start: state of the run at the start of this incarnation.
+        rings: rings into which replayed cameras put their frames.
+        frames: sources of the frames of each camera.
         ledger: the marks of the run.
         further_stages: stages in which other components of its host in the run took part.
     """
@@ -63,11 +63,11 @@ class Life:
         self.host.put(channel, data)
 
     def miss_frame(self, channel: str, number: int) -> None:
-        """Keeps a frame from the component that was overwritten before the component read it."""
+        """Withholds a frame from the component that was overwritten before the component read it."""
         self._views[channel].miss(number)
 
     def hold_newest_frames(self, newest: Newest) -> None:
-        """Holds the frames of now: the next iteration is late and looks at them later."""
+        """Holds the present frames: the next iteration is late and looks at them later."""
         for channel in self.host.runners[self.plan.name].images:
             data = newest.get(self._channels[channel])
             if data:
@@ -85,8 +85,8 @@ class Life:
     def hears(self, tick: int, stage: int) -> bool:
         """Returns whether a tick that the component's host in the run answered in a stage concerns the component.
 
-        A tick of a stage in which only other components took part does so before an iteration that catches up: what
-        the host had then may have been the newest message that it ever got.
+        A tick of a stage in which only other components took part does so before an iteration that catches up: the
+        message that the host had then may have been the newest that it ever got.
         """
         return stage in self.plan.stages or self._catch_up.applies(tick) or self.host.has_changes
 
@@ -97,7 +97,7 @@ class Life:
         return self.host.tick(tick, stage)[0]
 
     def tell(self, tick: tick_t) -> None:
-        """Tells a continuous component the marks of a tick."""
+        """Gives a continuous component the marks of a tick."""
         self._told.append(tick)
 
     def iterate_on(self, tick: int) -> Written:

@@ -8,7 +8,7 @@ from fwk.recording.replay.recording import RecordedTick, RecordingError
 from lcmtypes.core import header_t
 
 MESSAGES_MAX = 1_000_000
-"""Of a channel in one tick; a record that names more is damaged."""
+"""Most messages of a channel in one tick; a record that names more is damaged."""
 
 
 class RecordedMessages:
@@ -41,7 +41,7 @@ class RecordedMessages:
             if mark - before > MESSAGES_MAX:
                 raise RecordingError(
                     f"{self._path}: damaged: {channel} cannot have {mark - before} messages in tick "
-                    f"{tick.record.tick}; replay what is before it with --to-tick {tick.record.tick - 1}"
+                    f"{tick.record.tick}; replay the ticks before it with --to-tick {tick.record.tick - 1}"
                 )
             if len(here.get(channel, ())) < mark - before:
                 lost = {*range(before + 1, mark + 1)} - {*here.get(channel, ())}
@@ -50,7 +50,8 @@ class RecordedMessages:
     def take(self, channel: str, tick: int, step: int) -> list[bytes]:
         """Returns the messages of a done on a channel, oldest first.
 
-        What components of one host wrote in `finalize` carries the tick of each component's own last iteration.
+        Messages that components of one host wrote in `finalize` carry the tick of each component's own last
+        iteration.
         """
         if step != header_t.FINAL:
             return self._hidden.pop((channel, tick, step), [])

@@ -96,19 +96,19 @@ class Recording:
                 header = header_of(event.data)
                 if header:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
-                elif event.channel in types:  # passed over, it would be taken for lost and never be compared
+                elif event.channel in types:  # skipped, it would count as lost and never be compared
                     raise RecordingError(f"{self.path}: damaged: {event.channel} has a message without a whole header")
 
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes
         cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or they were removed"
-        before = f"; replay what is before it with --to-tick {tick}" if tick else ""
+        before = f"; replay the ticks before it with --to-tick {tick}" if tick else ""
         return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
 
     def _other_type(self, event: Event, expected: bytes) -> str:
         if marked(event.data[:8]) == expected:
             return (
-                f"{self.path}: {event.channel} has a message without the stamp that says what readers saw of it when; "
+                f"{self.path}: {event.channel} has a message without the stamp that holds its header; "
                 "fwk did not record it, or the stamp was removed"
             )
         return (
@@ -136,7 +136,7 @@ class Recording:
         if not sound:
             raise RecordingError(
                 f"{self.path}: damaged: event {event.number}, a record of the main loop, cannot be read; "
-                "replay what is before it with --to-tick"
+                "replay the ticks before it with --to-tick"
             )
         return record, events
 

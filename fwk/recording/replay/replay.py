@@ -45,7 +45,7 @@ from fwk.recording.replay.selection import choose, reaches_outside, unrepeatable
 from lcmtypes.core import channels_change_t, header_t, settings_change_t, tick_record_t
 
 Made = list[tuple[Life, Written]]
-"""What the lives of a host wrote in one step of a tick."""
+"""Messages of the incarnations of a host in one step of a tick."""
 
 
 class Replay:
@@ -87,10 +87,10 @@ class Replay:
         self._ledger = Visibility(self._plan)
         self._table = ChannelTable(plan)
         self._names = {channel.index: channel.name for channel in plan.channels}  # with dynamic channels
-        self._indices = {channel.name: channel.index for channel in plan.channels}  # of what is written now
+        self._indices = {channel.name: channel.index for channel in plan.channels}  # of the messages written now
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
         self._lives: dict[int, list[Life]] = {}  # by host of the run
-        self._leaving: dict[int, list[Life]] = {}  # lives that were asked to stop and have not finalized yet
+        self._leaving: dict[int, list[Life]] = {}  # incarnations that were asked to stop and have not finalized yet
         self._owed: dict[StageDone, list[Owed]] = {}
         self._holder = NOBODY  # component that has the main loop
         self._settings: dict[int, list[settings_change_t]] = {}  # by component
@@ -119,7 +119,7 @@ class Replay:
             begins(tick.record.tick)
             self._tick(tick)
         for component in self._plan.components:
-            if component.name in self._guard.refused and component.index in self._chosen:  # a thread of its own did
+            if component.name in self._guard.refused and component.index in self._chosen:  # one of its threads did
                 self._leave_out(component, self._guard.refused[component.name])
 
     def _types(self) -> dict[str, bytes]:
@@ -171,7 +171,7 @@ class Replay:
             self._ledger.publish(index, mark)  # includes messages that the recording lost
 
     def _take_event(self, event: TickEvent) -> None:
-        """Handles an event that changes who takes part, or what is missing."""
+        """Handles an event that changes the participants, or the missing messages."""
         if isinstance(event, HostStarted):
             self._start(event.host, event.incarnation, event.change)
         elif isinstance(event, HostStopped):
@@ -227,7 +227,7 @@ class Replay:
         if component in self._chosen and (reason := unrepeatable(plan, settings)):
             raise RecordingError(
                 f"{self.recording.path}: {plan.name} cannot be replayed with the settings of tick {tick}: {reason}; "
-                f"replay what is before it with --to-tick {tick - 1}, or others with --only"
+                f"replay the ticks before it with --to-tick {tick - 1}, or others with --only"
             )
 
     def _start(self, host: int, incarnation: int, newest_change: int) -> None:
@@ -282,9 +282,9 @@ class Replay:
         self._owed = {done: owed for done, owed in self._owed.items() if done.host != host}
 
     def _owe(self, done: StageDone, stage: int, time_us: int) -> None:
-        """Sends a tick with the marks of now to a host.
+        """Sends a tick with the present marks to a host.
 
-        Its components run when its done comes: a host that is late may die over its iteration, or leave without it.
+        Its components run when its done comes: a late host may die during its iteration, or leave without it.
         """
         self._owed[done] = [
             Owed(life, life.host.compose(done.tick, done.step, time_us, self._holder), stage)
@@ -303,7 +303,7 @@ class Replay:
         return made
 
     def _tell(self, record: tick_record_t) -> None:
-        """Tells the marks of a tick to the continuous components."""
+        """Gives the continuous components the marks of a tick."""
         for lives in self._lives.values():
             for life in lives:
                 if life.plan.rate_hz is not None:
@@ -349,12 +349,12 @@ class Replay:
                 raise cause from error
             trace = "".join(traceback.format_exception(cause)).rstrip()
             raise RecordingError(
-                f"{self.recording.path}: {component.name} fails in {moment} as it did not in the run: the recording is "
+                f"{self.recording.path}: {component.name} fails in {moment}, unlike in the run: the recording is "
                 f"damaged, or the component was changed or depends on something else\n{trace}"
             ) from cause
 
     def _leave_out(self, component: ComponentPlan, reason: str) -> None:
-        """Ends a component that a replay must not run; its recorded messages stand for it."""
+        """Ends a component that a replay must not run; its recorded messages replace it."""
         said = f"{reason}, which would reach the real world; declare 'reaches_outside' in its class"
         self.left_out[component.name] = said
         self._chosen.discard(component.index)
@@ -388,7 +388,7 @@ class Replay:
             self._publish(channel, data)
 
     def _reveal(self) -> None:
-        """Begins a step of the tick: what was published so far is visible from here on."""
+        """Begins a step of the tick: everything published so far is visible from here on."""
         self._ledger.begin()
         for channel, data in self._revealed:
             self._newest[channel] = data[-1]

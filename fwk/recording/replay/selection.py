@@ -47,7 +47,7 @@ def unrepeatable(component: ComponentPlan, settings: Any) -> str:
     declared = _declaration(component)
     try:
         return declared.component.unrepeatable(declared.config.model_validate(settings))
-    except ValidationError:  # its settings are others now, which its start will say
+    except ValidationError:  # its settings differ now, which its start reports
         return ""
 
 

@@ -1,1 +1,1 @@
-"""Requests that steer a running system, and the views that it gives."""
+"""Control requests to a running system, and the views that it gives."""

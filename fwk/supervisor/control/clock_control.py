@@ -21,7 +21,7 @@ class ClockControl:
         self._log = log
 
     def ask(self, request: Clock) -> Callable[[], dict[str, Any] | None]:
-        """Carries a request out; the function that is returned gives the reply as soon as it has taken effect.
+        """Carries a request out; the returned function gives the reply as soon as the request has taken effect.
 
         Raises:
             RequestError: the run follows the wall clock.
@@ -32,7 +32,7 @@ class ClockControl:
         if clock.wall:
             raise RequestError(
                 f"the wall clock cannot be {_WORDS[request.verb]}, and this run follows it; "
-                "for a simulation say 'clock: simulated' in the launch file"
+                "for a simulation set 'clock: simulated' in the launch file"
             )
         if request.verb == "step":
             return self._step(request.ticks)

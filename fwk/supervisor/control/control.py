@@ -1,4 +1,4 @@
-"""Answers control requests; what changes the run waits for the next boundary."""
+"""Answers control requests; those that change the run wait for the next boundary."""
 
 import os
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from fwk.supervisor.processes.attach import Attach
 from fwk.supervisor.processes.hosts import Hosts
 from lcmtypes.core import status_t
 
-_FRESH_US = 2 * US_PER_S  # rates older than this say nothing
+_FRESH_US = 2 * US_PER_S  # older rates are meaningless
 
 Listen = Callable[[Answer], Server]
 """Opens the control server that hands requests to an answer."""
@@ -32,11 +32,11 @@ Reply = dict[str, Any] | None
 
 @dataclass(frozen=True)
 class _Pending:
-    """A request that is answered when something has happened."""
+    """A request that is answered once its effect has occurred."""
 
     connection: Connection
     happened: Callable[[], Reply]
-    """Returns the reply, when it has."""
+    """Returns the reply once there is one."""
 
 
 class Control:
@@ -86,7 +86,7 @@ class Control:
         core.events.after_each_wait(self._answer_pending)
 
     def close(self) -> None:
-        """Takes no more requests and answers none."""
+        """Stops taking and answering requests."""
         self._pending = []
         if self._server:
             self._core.events.unwatch(self._server)
@@ -97,7 +97,7 @@ class Control:
         self._status, self._status_us = status, self._core.now_us()
 
     def take(self, line: bytes, connection: Connection) -> None:
-        """Answers a control request at once, later, or again and again."""
+        """Answers a control request at once, later, or repeatedly."""
         try:
             request = requests.parsed(requests.to_supervisor, line)
             reply = self._handlers[type(request)](request, connection)
@@ -218,7 +218,7 @@ class Control:
         if not all(each.number for each in asked):
             return None
         newest = max((each.number for each in asked), default=0)
-        paused = self._loop.paused  # then components have the settings before they do anything else
+        paused = self._loop.paused  # then components have the settings before any other step
         waiting = (change.number for each in asked for change in self._core.host_of(each.new.component).changes)
         if not paused and any(number <= newest for number in waiting):
             return None

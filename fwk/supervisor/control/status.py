@@ -12,7 +12,7 @@ PERIOD_US = US_PER_S // 2
 
 
 class StatusReport:
-    """Makes status messages and measures how fast the run is."""
+    """Makes status messages and measures the speed of the run."""
 
     def __init__(self, core: Core, loop: MainLoop) -> None:
         self._core = core
@@ -22,7 +22,7 @@ class StatusReport:
 
     @property
     def due(self) -> bool:
-        """Whether it is time for the next message."""
+        """Returns whether it is time for the next message."""
         return self._core.now_us() >= self._before[0] + PERIOD_US
 
     @property

@@ -40,7 +40,7 @@ def component_view(plan: Plan, component: ComponentPlan, entry: HostProcess) -> 
 
 
 def period_us(plan: Plan, component: ComponentPlan) -> int:
-    """From iteration to iteration; 0 if a component goes on as fast as it can."""
+    """Time between iterations; 0 if a component continues as fast as it can."""
     if component.rate_hz is None:
         return plan.period_us * component.every
     return round(US_PER_S / component.rate_hz) if component.rate_hz else 0

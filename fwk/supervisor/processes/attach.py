@@ -15,7 +15,7 @@ from fwk.supervisor.processes.hosts import Hosts
 
 
 class Attach:
-    """Puts external processes into the places of hosts, if these can be had, and tells them what they have to know."""
+    """Lets external processes take the places of hosts, and sends them what they need to know."""
 
     def __init__(
         self, core: Core, hosts: Hosts, rings: Mapping[str, Ring], sockets: Mapping[int, socket.socket]
@@ -29,7 +29,7 @@ class Attach:
         """Gives a host's place to the process at the other end at the next boundary, and answers it then.
 
         Raises:
-            RequestError: the process cannot have the place; says why.
+            RequestError: the process cannot have the place; the text gives the reason.
         """
         entry = self._core.hosts[host]
         other = self._hosts.external_process(entry)
@@ -40,7 +40,7 @@ class Attach:
                 connection.pid, held, lambda start: self._begin(host, connection, start), self._core.events
             )
         except OSError as error:
-            raise RequestError(f"the process that asks cannot be seen from here: {error.strerror}") from error
+            raise RequestError(f"the requesting process cannot be seen from here: {error.strerror}") from error
         self._hosts.hand_over(entry, process)
 
     def _begin(self, host: int, connection: Connection, start: Start) -> None:

@@ -10,9 +10,9 @@ from fwk.supervisor.event_loop import EventLoop
 
 
 class ExternalProcess:
-    """A process that waits to take a host's place in the loop; `begin` tells it that it has the place.
+    """A process that waits to take a host's place in the loop; `begin` informs it that it has the place.
 
-    A process descriptor never comes to mean another process, and it reports the end however that happens.
+    A process descriptor never comes to mean another process, and it reports the end in any case.
 
     Raises:
         ProcessLookupError: the process has ended.
@@ -21,7 +21,7 @@ class ExternalProcess:
     def __init__(self, pid: int, held: bool, begin: Callable[[Start], None], events: EventLoop) -> None:
         self.pid = pid
         self.held = held
-        """Whether a debugger has it: no time limit applies then."""
+        """Whether a debugger holds it, so that no time limit applies."""
         self.begin = begin
         self._events = events
         self._descriptor = os.pidfd_open(pid)
@@ -31,11 +31,11 @@ class ExternalProcess:
         self._events.watch(self._descriptor, on_end)
 
     def signal(self, number: int) -> None:
-        """Signals the process, unless it has ended meanwhile."""
+        """Signals the process, unless it has ended."""
         with contextlib.suppress(ProcessLookupError):
             signal.pidfd_send_signal(self._descriptor, number)
 
     def close(self) -> None:
-        """Gives the descriptor back."""
+        """Closes the descriptor."""
         self._events.unwatch(self._descriptor)
         os.close(self._descriptor)

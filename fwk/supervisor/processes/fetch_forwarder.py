@@ -7,7 +7,7 @@ from fwk.supervisor.core import Core
 
 
 class FetchForwarder:
-    """Owns the port of a host while that has no process."""
+    """Holds the port of a host without a process."""
 
     def __init__(self, core: Core, host: int) -> None:
         port = core.ports.host(host)
@@ -19,7 +19,7 @@ class FetchForwarder:
         core.events.watch(self._own, self._forward)
 
     def close(self) -> None:
-        """Gives the port back to the host."""
+        """Returns the port to the host."""
         self._events.unwatch(self._own)
         self._sender.socket.close()
 

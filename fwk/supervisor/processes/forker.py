@@ -59,9 +59,9 @@ class Forker:
         """Serves requests until the supervisor closes the connection; returns the exit code."""
         preload(self._plan)
         gc.collect()
-        give_memory_back()  # what a fork costs, and what hosts would fill with other things
+        give_memory_back()  # things that a fork costs, and that hosts would fill with other contents
         gc.freeze()
-        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake us
+        signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake this process
         # It ends when its connection is closed: hosts need their parent to finalize when all processes of a run are
         # asked to end at once, as systemd does.
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
@@ -105,7 +105,8 @@ class Forker:
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             self._connection.close()
             if not debugged:  # a debugged process keeps the terminal
-                # A session each: Linux spreads the processes of one session (its autogroup) badly over the processors.
+                # A session for each: Linux spreads the processes of one session (its autogroup) badly over the
+                # processors.
                 os.setsid()
                 os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
                 os.dup2(output_write, 1)
@@ -137,7 +138,7 @@ class Forker:
 
 
 def _drain(source: socket.socket) -> None:
-    """Drops what was sent to the host's previous process."""
+    """Drops datagrams for the host's previous process."""
     with contextlib.suppress(BlockingIOError):
         while True:
             source.recv(1, socket.MSG_DONTWAIT)

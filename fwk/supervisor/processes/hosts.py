@@ -1,4 +1,4 @@
-"""The host processes of a run: starts them, hears of their states and ends, starts them again as their policy says."""
+"""The host processes of a run: starts them, follows their states and ends, restarts them by their policies."""
 
 import signal
 
@@ -22,10 +22,10 @@ from fwk.supervisor.wait_report import WaitReport
 from lcmtypes.core import actual_t
 
 STOP_GRACE_US = 3 * US_PER_S
-"""How long hosts have to end when the whole run ends."""
+"""Time that hosts have to end when the whole run ends."""
 LOOK_US = 100_000
 NAMED_AFTER_US = US_PER_S // 2
-"""A host that waits longer for hosts that it needs is named."""
+"""Wait for needed hosts after which a host is named."""
 
 
 class StartFailedError(Exception):
@@ -95,11 +95,11 @@ class Hosts:
         return any(host.unsettled for host in self._core.hosts)
 
     def request(self, host: HostProcess) -> None:
-        """Notes that the desired state of a host was changed: the next boundary sees to it."""
+        """Notes that the desired state of a host was changed; the next boundary realises it."""
         self._asked.add(host.index)
 
     def enforce_timeouts(self) -> None:
-        """Kills processes that did not become ready, or did not end, in the time that they have."""
+        """Kills processes that did not become ready, or did not end, within their time."""
         now_us = self._core.now_us()
         for host in self._core.hosts:
             if host.not_ready_in_time(now_us):
@@ -112,7 +112,7 @@ class Hosts:
                 self.kill(host)
 
     def retire(self) -> None:
-        """At a boundary: takes hosts that shall stop out of the loop and asks their processes to end."""
+        """At a boundary, takes hosts that have to stop out of the loop and asks their processes to end."""
         now_us = self._core.now_us()
         for host in [self._core.hosts[index] for index in sorted(self._asked)]:
             if host.settled:
@@ -126,7 +126,7 @@ class Hosts:
                 self._core.events.emit(HostLeaves(host))
 
     def admit(self) -> None:
-        """At a boundary: lets hosts that shall join the loop start as soon as what they need runs."""
+        """At a boundary, lets hosts that have to join the loop start as soon as their needs run."""
         now_us = self._core.now_us()
         for host in [self._core.hosts[index] for index in sorted(self._asked)]:
             if host.must_join and (host.state is not HostState.WAITING or host.restart_us > now_us):
@@ -137,11 +137,11 @@ class Hosts:
         self._start_due(HostState.WAITING)
 
     def kill(self, host: HostProcess) -> None:
-        """Ends a process that cannot be asked any more."""
+        """Kills a process that does not respond."""
         self._signal(host, signal.SIGKILL)
 
     def external_process(self, host: HostProcess) -> int:
-        """Returns the number of the external process that has a host's place or waits for it; 0: there is none."""
+        """Returns the number of the external process that has a host's place or waits for it; 0: none."""
         return self._external[host.index].pid if host.index in self._external else 0
 
     def hand_over(self, host: HostProcess, process: ExternalProcess) -> None:
@@ -157,12 +157,12 @@ class Hosts:
         return self._core.plan.components[working].name if working != NOBODY else host.name
 
     def failed_components(self) -> dict[str, str]:
-        """Returns the names of components that have failed, and why."""
+        """Returns the names of components that have failed, with the reasons."""
         components = (component for host in self._core.hosts for component in host.components)
         return {component.name: component.reason for component in components if component.state == "failed"}
 
     def stop_all(self) -> Steps[list[str]]:
-        """Asks all hosts to stop, also those that stand still; kills those that do not and returns their names."""
+        """Asks all hosts to stop, also stopped processes; kills those that do not end and returns their names."""
         self._stopping = True
         killed = []
         self._starter.wake()
@@ -266,7 +266,7 @@ class Hosts:
     def _take_start(self, event: Started) -> None:
         host = self._core.hosts[event.host]
         host.pid = event.pid
-        if host.state is HostState.STOPPING or self._stopping:  # asked to stop before there was a process to ask
+        if host.state is HostState.STOPPING or self._stopping:  # asked to stop before there was a process
             self._signal(host, signal.SIGTERM)
         if event.streams:
             self.output.listen(host.name, *event.streams)
@@ -298,10 +298,10 @@ class Hosts:
         again = ""
         if host.state is HostState.WAITING and self._started:  # a failure before the start ends the run
             wait_us = max(0, host.restart_us - self._core.now_us())
-            again = f"; starting it again in {wait_us / US_PER_S:.1f} s"
+            again = f"; restart in {wait_us / US_PER_S:.1f} s"
         log = self._log.info if code == LEFT else self._log.error
         others = [name for name in self._component_names(host) if name != culprit]
-        went = f"; with it went {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
+        went = f"; its process also held {', '.join(others)}" if len(others) + bool(culprit) > 1 else ""
         log(f"{host.name} ended: {host.reason}{went}{again}")
 
     def _component_names(self, host: HostProcess) -> list[str]:

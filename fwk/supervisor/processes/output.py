@@ -26,7 +26,7 @@ class CapturedStream:
         self._level = level
         self._lines = 0
         self._rest = b""
-        self._waits = b""  # what of it was there at the last look already
+        self._waits = b""  # part of it that was there at the last call
         self.open = True
         os.set_blocking(descriptor, False)
         events.watch(descriptor, self._read)
@@ -40,7 +40,7 @@ class CapturedStream:
         self._tell_dropped()
 
     def _tell_dropped(self) -> None:
-        """Reports how many lines were dropped, if that second is over or the stream has ended."""
+        """Reports how many lines were dropped, once that second is over or the stream has ended."""
         dropped = self._limit.dropped() if self.open else self._limit.rest()
         if dropped:
             text = f"{dropped} lines dropped in the last second: more than {self._limit.per_s}"

@@ -1,4 +1,4 @@
-"""Makes what all components of a class share once, before processes are forked."""
+"""Work shared by all components of a class, done once before processes are forked."""
 
 import json
 from contextlib import suppress

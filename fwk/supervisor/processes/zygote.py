@@ -1,4 +1,4 @@
-"""The zygote: a process that has imported everything and forks hosts when asked, so that they start in no time."""
+"""The zygote: a process that has imported everything and forks hosts on request, so that they start quickly."""
 
 import gc
 import os
@@ -45,7 +45,7 @@ class Zygote:
         self._progress = CrashMarker(len(plan.hosts))
         parent = os.getpid()
         gc.collect()
-        gc.freeze()  # hosts share the memory of what is here now as long as no process writes to it
+        gc.freeze()  # hosts share the present memory as long as no process writes to it
         self.pid = os.fork()
         if self.pid == 0:
             own.close()

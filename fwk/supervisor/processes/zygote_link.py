@@ -47,7 +47,7 @@ class SupervisorEnd:
         return self._socket.fileno()
 
     def send(self, request: StartRequest | SignalRequest) -> None:
-        """Sends a request; the events tell if the zygote has ended."""
+        """Sends a request; the events report if the zygote has ended."""
         kind = "start" if isinstance(request, StartRequest) else "signal"
         self._socket.setblocking(True)
         with contextlib.suppress(ConnectionError):
@@ -58,7 +58,7 @@ class SupervisorEnd:
         """Returns the events since the last call.
 
         Raises:
-            ZygoteEndedError: there will be no more.
+            ZygoteEndedError: the zygote has ended.
         """
         found: list[Started | Ended] = []
         while True:
@@ -102,7 +102,7 @@ class ZygoteEnd:
         return SignalRequest(**request)
 
     def send(self, event: Started | Ended) -> None:
-        """Reports an event; the streams of a started process go along as descriptors."""
+        """Reports an event; the streams of a started process travel along as descriptors."""
         data = dataclasses.asdict(event)
         streams = data.pop("streams", None)
         kind = "started" if isinstance(event, Started) else "ended"

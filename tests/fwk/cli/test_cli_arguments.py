@@ -29,5 +29,5 @@ def test_a_speed_is_a_factor_or_max(typed: str, meant: float) -> None:
 @pytest.mark.parametrize("typed", ["0", "-1", "fast", "nan", "inf", "1e-9", "1e30", ""])
 @pytest.mark.parametrize("read", [speed, seconds])
 def test_speeds_and_durations_that_no_clock_can_wait_for(read: type, typed: str) -> None:
-    with pytest.raises(typer.BadParameter, match=f"'{typed}' is not a .*; say "):
+    with pytest.raises(typer.BadParameter, match=f"'{typed}' is not a .*; use "):
         read(typed)

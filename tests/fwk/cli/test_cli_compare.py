@@ -55,4 +55,4 @@ def test_damage_is_mentioned(tmp_path: Path, fwk: typer.Typer) -> None:
     Path(a).write_bytes(Path(a).read_bytes() + b"\xed\xa1")
     result = CliRunner().invoke(fwk, [a, a])
     assert result.exit_code == 0
-    assert f"{a}: 2 damaged bytes passed over" in result.stderr
+    assert f"{a}: 2 damaged bytes skipped" in result.stderr

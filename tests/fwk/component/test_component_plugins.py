@@ -46,5 +46,5 @@ def test_an_iteration_with_too_many_requests_is_refused() -> None:
 
 
 def test_a_system_in_memory_has_no_processes_to_control() -> None:
-    with pytest.raises(ValueError, match="r/director asks for PluginControl, which needs processes"):
+    with pytest.raises(ValueError, match="r/director declares PluginControl, which needs processes"):
         MemorySystem({"r/director": Director})

@@ -68,7 +68,7 @@ def test_a_full_disk_leaves_the_old_file(tmp_path: Path) -> None:
     limits = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (10, limits[1]))
     try:
-        with pytest.raises(KeepError, match=r"soccer\.host\.yaml: cannot be written: File too large; it is as it was"):
+        with pytest.raises(KeepError, match=r"soccer\.host\.yaml: cannot be written: File too large; it is unchanged"):
             keep(file, [Kept.of("a/b.other=12345678")])
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, limits)
@@ -84,7 +84,7 @@ def test_a_missing_folder_is_named(tmp_path: Path) -> None:
 def test_the_later_of_two_equal_keys_wins_and_is_named(tmp_path: Path) -> None:
     file = tmp_path / "soccer.host.yaml"
     file.write_text('config:\n  a/b: {gain: 1}\n  "*/b": {gain: 3}\n')
-    with pytest.raises(KeepError, match=r"'\*/b' further down says 3 of 'gain' and wins"):
+    with pytest.raises(KeepError, match=r"'\*/b' further down sets 3 for 'gain' and wins"):
         keep(file, [Kept.of("a/b.gain=2")])
     assert "{gain: 1}" in file.read_text()
 

@@ -58,7 +58,7 @@ def values(settings: RunSettings, pattern: str) -> dict[str, object]:
 def test_a_fixed_setting_stays_as_it_is(settings: RunSettings) -> None:
     (row,) = settings.rows(["a/turner.fixed"])
     assert (row["setting"], row["editable"]) == ("fixed.deep", False)
-    text = "a/turner: 'fixed.deep' stays as it is while the run goes on; set it in the launch file and start"
+    text = "a/turner: 'fixed.deep' cannot change during a run; set it in the launch file and restart"
     with pytest.raises(RequestError, match=re.escape(text)):
         settings.check(["a/turner.fixed.deep=2", "a/turner.gain=1"])
     assert [new.said for new in settings.check(["a/turner.fixed.deep=1"])] == [{"fixed.deep": 1}]

@@ -74,7 +74,7 @@ def names(entries: list[HostProcess]) -> list[str]:
     ("action", "patterns", "error"),
     [
         ("stop", ["r/camra"], "no component 'r/camra'; did you mean 'r/camera'?"),
-        ("stop", [], "stop what?"),
+        ("stop", [], "stop: no components given"),
         (
             "unload",
             ["r/camera"],
@@ -128,5 +128,5 @@ def test_reload_checks_the_code_first(steering: Lifecycle, tmp_path: Path, monke
     broken = tmp_path / "broken.py"
     broken.write_text("x = 1\ndef (:\n")
     monkeypatch.setattr(Sources, "files", lambda *_: {broken})
-    with pytest.raises(RequestError, match=r"broken\.py:2: .*; not reloaded, so the old code runs on: r/camera"):
+    with pytest.raises(RequestError, match=r"broken\.py:2: .*; not reloaded, so the old code continues: r/camera"):
         steering.hosts("reload", ["r/camera"])

@@ -71,8 +71,8 @@ def test_a_pattern_is_quoted() -> None:
             "config:\n  a/b: &x {gain: 1}\n  c/d: *x\n",
             "'config.a/b.gain' cannot be changed there without touching other",
         ),
-        ("config: [\n", "the text is not YAML; correct it first: fwk check says where"),
-        ("a: 1\na: 2\n", "the text is not YAML; correct it first: fwk check says where"),
+        ("config: [\n", "the text is not YAML; correct it first: fwk check names the place"),
+        ("a: 1\na: 2\n", "the text is not YAML; correct it first: fwk check names the place"),
     ],
 )
 def test_a_change_that_would_damage_the_file_is_refused(text: str, error: str) -> None:

@@ -124,7 +124,7 @@ def test_a_message_is_stamped_and_recorded_when_a_mark_names_it(opened: Opened) 
         (imu_t().encode(), "not a robot.motor_command_t: fingerprint"),
         (wish()[:-1], "bytes do not decode"),
         (wish() + b"x", "1 bytes more than a robot.motor_command_t"),
-        (wish() + bytes(BYTES_MAX), f"from outside come at most {BYTES_MAX}"),
+        (wish() + bytes(BYTES_MAX), f"a message from outside has at most {BYTES_MAX}"),
         (b"", "not a robot.motor_command_t"),
     ],
 )
@@ -136,7 +136,7 @@ def test_message_of_another_type_is_refused_with_its_sender(opened: Opened, data
     port = opened.other._sender.getsockname()[1]
     assert line.startswith(f"{WISH}: from port {port} on the public bus: ")
     assert reason in line
-    assert line.endswith("; not taken")
+    assert line.endswith("; refused")
 
 
 def test_flood_is_bounded_and_reported_until_the_next_tick(opened: Opened) -> None:

@@ -81,7 +81,7 @@ def test_no_port_can_be_taken_while_a_host_restarts(launch: Launch, traced: Path
             for options in ((), (socket.SO_REUSEADDR,))
             if bound(thieves, address, port, options) == 0
         ]
-        run.until("f/player runs again, start number 2")
+        run.until("f/player runs again, incarnation 2")
     assert taken == []
     run.until_ticks("f/player", 3)
     run.signal(signal.SIGINT)

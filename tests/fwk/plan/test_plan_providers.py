@@ -43,7 +43,7 @@ def test_guide_takes_the_provider_that_its_template_names(load: Load) -> None:
 @rows(
     Broken(
         "it.yaml:2: a/guide: no component provides Way, which a/guide asks for as 'way'; add a component whose class "
-        "says 'provides = Way'",
+        "has 'provides = Way'",
         """
         components:
           a/guide: {use: plan_parts:Guide}

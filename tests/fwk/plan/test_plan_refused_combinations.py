@@ -35,7 +35,7 @@ ROWS = [
     ),
     (
         "f/guide: {use: plan_parts:Guide}",
-        "f/guide: 2 components provide Way, which f/guide asks for as 'way': g/farer and h/farer; keep one, or say "
+        "f/guide: 2 components provide Way, which f/guide asks for as 'way': g/farer and h/farer; keep one, or set "
         "'providers: {way: g/farer}'",
     ),
     ("g/farer: {use: plan_parts:Wayfarer}", ""),
@@ -43,13 +43,13 @@ ROWS = [
     (
         "i/follower: {use: combined:Follower}",
         "i/follower: no component provides Alone, which i/follower asks for as 'alone'; add a component whose class "
-        "says 'provides = Alone'",
+        "has 'provides = Alone'",
     ),
     ("j/sun: {use: plan_parts:Sun}", ""),
     ("k/sun: {use: plan_parts:Sun}", "k/sun: two time sources: j/sun (it.yaml:{j/sun}) and k/sun; keep one"),
     (
         "l/mute: {use: combined:Mute}",
-        "l/mute: combined.Mute: it provides Way, which reads 'odometry' of it; add odometry: Writes[odometry_t]",
+        "l/mute: combined.Mute: it provides Way, which reads its channel 'odometry'; add odometry: Writes[odometry_t]",
     ),
     (
         "m/one: {use: plan_parts:Watcher, needs: two}",

@@ -85,7 +85,7 @@ def test_failures_are_reported(tmp_path: Path) -> None:
             log, tmp_path / "out.mp4", lambda n: np.zeros((10 * n("cyan1/odometry").header.tick, 64, 3), np.uint8)
         )
     for name in ("no.such:module", "fwk.clock:nothing", ""):
-        with pytest.raises(VideoError, match=f"no drawing '{name}': .*; say module:name"):
+        with pytest.raises(VideoError, match=f"no drawing '{name}': .*; use module:name"):
             drawing(name)
 
 

@@ -102,7 +102,7 @@ def test_a_flood_from_outside_is_bounded_and_reported(launch: Launch, tmp_path: 
     os.kill(run.launched.process.pid, signal.SIGSTOP)  # no tick can take anything in between
     for _ in range(64 + 100):
         joystick.publish(1.0)
-    run.launched.until("64 messages wait for the next tick already; not taken (100 times)")
+    run.launched.until("64 messages wait for the next tick already; refused (100 times)")
     os.kill(run.launched.process.pid, signal.SIGCONT)
     run.launched.until_true(lambda: joystick.taken == 64, "what fits into a tick")
     joystick.published = 64

@@ -60,7 +60,7 @@ def test_messages_of_a_dying_iteration_are_never_seen(launch: Launch, folder: Pa
     run = launch(*RUN, "--ticks", "30", "--set", f"d/player.trouble={moment}", "--set", "d/player.trouble_tick=15")
     assert run.wait() == 0, run.text
     assert "d/player ended: " in run.text
-    assert "d/player runs again, start number 2" in run.text
+    assert "d/player runs again, incarnation 2" in run.text
     assert "lost 0" in run.text
     recording = Recording(folder / "log.lcm")
     assert contradictions(recording) == []

@@ -112,7 +112,7 @@ def test_the_wall_clock_refuses_the_control_of_time(start: Start, tmp_path: Path
     file.write_text(file.read_text() + "clock: wall\n")
     run = start()
     for words in (("pause",), ("resume",), ("step",), ("speed", "2")):
-        assert "this run follows it; for a simulation say 'clock: simulated'" in run.fwk(*words, code=2)
+        assert "this run follows it; for a simulation set 'clock: simulated'" in run.fwk(*words, code=2)
     assert not json.loads(run.fwk("speed", "--json"))["paused"]
     for fields in ({"ticks": 0}, {"ticks": 1.5}, {"speed": -1}):
         with pytest.raises(RefusedError, match="not a request"):

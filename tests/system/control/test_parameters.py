@@ -43,7 +43,7 @@ def test_state_period_stages_time_awake_and_parameters(run: Steered) -> None:
 
 def test_set_refuses_fixed_settings_and_reload_reads_files(run: Steered, tmp_path: Path) -> None:
     assert "r/counter.step = 3.0 since tick" in run.fwk("config", "set", "r/counter.step=3")
-    assert "'size' stays as it is while the run goes on" in run.fwk("config", "set", "r/counter.size=6", code=2)
+    assert "'size' cannot change during a run" in run.fwk("config", "set", "r/counter.size=6", code=2)
     file = tmp_path / "small.yaml"
     file.write_text(file.read_text() + 'config: {r/counter: {step: 7, size: 8}, "*": {log_level: warning}}\n')
     said = run.fwk("config", "reload")

@@ -56,7 +56,7 @@ def test_a_syntax_error_keeps_the_old_code_running(run: Steered, tmp_path: Path)
     assert "noted, tick" in run.fwk("note", "here", "it", "begins")
     run.launched.until("here it begins")
     (tmp_path / "helper.py").write_text("ADDED = \n")
-    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
+    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code continues: r/helped")
     run.ticks_pass()
     assert starts(run)["helped"] == 1
     assert "helper.py:1: invalid syntax" in run.fwk("reload", "r/helped", code=2)
@@ -72,9 +72,9 @@ def test_a_syntax_error_keeps_the_old_code_running(run: Steered, tmp_path: Path)
 
 def test_a_briefly_missing_file_stops_no_component(run: Steered, tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("ADDED = \n")
-    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code runs on: r/helped")
+    run.launched.until("helper.py:1: invalid syntax; not reloaded, so the old code continues: r/helped")
     (tmp_path / "helper.py").unlink()
-    run.launched.until("helper.py: cannot be read: No such file or directory; not reloaded, so the old code runs on")
+    run.launched.until("helper.py: cannot be read: No such file or directory; not reloaded, so the old code continues")
     run.ticks_pass()
     assert starts(run)["helped"] == 1
     (tmp_path / "new.py").write_text("ADDED = -1000.0\n")

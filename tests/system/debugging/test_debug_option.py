@@ -53,7 +53,7 @@ def test_quitting_the_debugger_gives_the_component_back(terminal: Open) -> None:
     debugged = terminal("--debug", "r/world_model")
     debugged.prompt()
     debugged.type("q")
-    debugged.child.expect("r/world_model runs again, start number 2")
+    debugged.child.expect("r/world_model runs again, incarnation 2")
     assert debugged.end() == 0
     assert debugged.turns == 40
 

@@ -156,8 +156,8 @@ def test_a_changed_component_is_found_by_the_replay(alone: Callable[..., Launche
 @pytest.mark.parametrize(
     ("kept", "said"),
     [
-        pytest.param(slice(0), "MOTORS has a message without the stamp that says what readers saw", id="no stamp"),
-        pytest.param(slice(-2), "MOTORS has a message without the stamp that says what readers saw", id="half a stamp"),
+        pytest.param(slice(0), "MOTORS has a message without the stamp that holds its header", id="no stamp"),
+        pytest.param(slice(-2), "MOTORS has a message without the stamp that holds its header", id="half a stamp"),
     ],
 )
 def test_a_recording_without_stamps_is_refused(

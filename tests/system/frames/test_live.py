@@ -89,7 +89,7 @@ def test_killed_readers_and_cameras_return_to_whole_frames(launch: Launch, frame
         os.kill(int((frames / f"{name}.pid").read_text()), signal.SIGKILL)
         full = "r/camera" if name == "camera" else name.replace("-", "/")
         starts = 3 if name == "camera" and run.component(full)["starts"] > 1 else 2
-        run.launched.until(f"{full} runs again, start number {starts}")
+        run.launched.until(f"{full} runs again, incarnation {starts}")
         run.ticks_pass()
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text

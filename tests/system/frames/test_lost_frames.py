@@ -47,7 +47,7 @@ def test_frames_lost_by_a_slow_reader_are_lost_in_replay(launch: Launch, watch: 
     for start in (2, 3):
         run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost")
         os.kill(int((watch / "b-watcher.pid").read_text()), signal.SIGKILL)
-        run.launched.until(f"runs again, start number {start}")
+        run.launched.until(f"runs again, incarnation {start}")
         run.ticks_pass(60)  # the figures are those of the new incarnation
     run.launched.until_true(lambda: run.component("b/watcher")["lost"] > 2, "frames lost again")
     run.launched.signal(signal.SIGINT)

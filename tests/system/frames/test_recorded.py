@@ -101,7 +101,7 @@ def test_a_killed_reader_of_recorded_frames_replays(launch: Launch, eyes: Path, 
     run = Steered(launch("eyes.yaml", "--record", "log.lcm"), ports)
     run.ticks_pass(10)
     os.kill(run.component("a/watcher")["pid"], signal.SIGKILL)
-    run.launched.until("a/watcher runs again, start number 2")
+    run.launched.until("a/watcher runs again, incarnation 2")
     run.ticks_pass(10)
     run.launched.signal(signal.SIGINT)
     assert run.launched.wait() == 0, run.launched.text

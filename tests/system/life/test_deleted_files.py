@@ -44,7 +44,7 @@ def test_a_deleted_run_directory_fails_the_run(launch: Launch, folder: Path) -> 
     assert run.wait() == 1
     last = run.text.splitlines()[-8:]
     assert f"counted: broken: the run directory {run_dir} was deleted during the run" in last
-    assert f"the run directory {run_dir} was deleted during the run; what is written there is lost" in run.text
+    assert f"the run directory {run_dir} was deleted during the run; files written there are lost" in run.text
     assert not any(line.startswith(("recording: ", "run directory: ")) for line in last)
     assert not run_dir.exists()
 

@@ -72,8 +72,8 @@ def test_a_killed_supervisor_ends_all_and_leaves_a_log(launch: Launch, traced: P
 def test_a_killed_component_is_named_and_the_run_goes_on(launch: Launch, traced: Path) -> None:
     run = running(launch)
     os.kill(run.host("c/player"), signal.SIGKILL)
-    run.until("c/player ended: killed by signal 9; starting it again")
-    run.until("c/player runs again, start number 2")
+    run.until("c/player ended: killed by signal 9; restart in")
+    run.until("c/player runs again, incarnation 2")
     run.until_ticks("f/player", 3)
     run.signal(signal.SIGINT)
     assert run.wait(STOP_S) == 0, run.text
@@ -134,7 +134,7 @@ def test_a_component_that_fails_once_is_restarted(launch: Launch, folder: Path, 
     run = launch(FILE, *trouble(what), "--ticks", "8", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     assert says in run.text
-    assert "d/player runs again, start number 2" in run.text
+    assert "d/player runs again, incarnation 2" in run.text
     assert len(Recording(folder / "log.lcm").messages["d/note"]) == 8
 
 
@@ -177,8 +177,8 @@ def test_a_crash_in_a_shared_host_names_cause_and_victims(launch: Launch, folder
     assert run.wait() == (1 if "init" in what else 0), run.text
     assert says in run.text
     if "loop" in what:
-        assert "; with it went a/player, e/player; starting it again" in run.text
-        assert "strings runs again, start number 2" in run.text
+        assert "; its process also held a/player, e/player; restart in" in run.text
+        assert "strings runs again, incarnation 2" in run.text
         assert len(Recording(folder / "log.lcm").messages["e/note"]) == 8
 
 

@@ -75,7 +75,7 @@ def test_a_segmentation_fault_leaves_traceback_and_core_dump(parts: Launch, tmp_
     _, hard = resource.getrlimit(resource.RLIMIT_CORE)
     pattern = Path("/proc/sys/kernel/core_pattern").read_text().strip()
     dumped = ", core dumped" if hard and pattern else ""
-    assert f"r/glutton ended: killed by signal {signal.SIGSEGV.value}{dumped}; starting it again" in log
+    assert f"r/glutton ended: killed by signal {signal.SIGSEGV.value}{dumped}; restart in" in log
     if dumped and pattern == "core":
         assert list(tmp_path.glob("core*"))
     ticks = [header.tick for header in Recording(tmp_path / "log.lcm").headers("r/pose")]

@@ -86,7 +86,7 @@ def test_a_missed_ready_timeout_after_a_restart_is_named(start: Start, ports: Po
 
 def test_a_component_outside_the_launch_file_is_not_loaded(run: Steered) -> None:
     said = run.fwk("load", "r/folower", code=2)
-    assert "no component 'r/folower'; did you mean 'r/follower'?; what can be loaded stands in the launch file" in said
+    assert "no component 'r/folower'; did you mean 'r/follower'?; only components of the launch file" in said
 
 
 def test_a_component_that_is_loaded_later_replays(run: Steered, tmp_path: Path) -> None:

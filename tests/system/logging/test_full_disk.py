@@ -73,7 +73,7 @@ def test_a_setting_that_cannot_be_kept_is_not_set(
     before = file.read_text()
     big = fill(disk)
     refused = run.fwk("config", "set", "r/counter.step=4", "--save", code=1)
-    assert "small.host.yaml: cannot be written: No space left on device; it is as it was; nothing was set" in refused
+    assert "small.host.yaml: cannot be written: No space left on device; it is unchanged; nothing was set" in refused
     assert (run.fwk("config", "get", "r/counter.step"), file.read_text()) == ("3.0\n", before)
     assert not list(disk.glob(".*"))
     run.ticks_pass()

@@ -56,6 +56,6 @@ def test_a_reader_of_log_lines_hears_others_and_replays(
 def test_log_lines_beyond_the_limit_of_a_tick_are_counted(tmp_path: Path, ports: PortBlock, launch: Launch) -> None:
     written(tmp_path, ports, lines=150)
     run = launch("alarm.yaml", "--record", "log.lcm")
-    run.until("lines did not reach the components that ask for lines: too many in one tick")
+    run.until("lines did not reach the components with LogLines: too many in one tick")
     Steered(run, ports).end()
     replayed(tmp_path)

@@ -98,8 +98,8 @@ def test_lines_carry_the_tick_in_which_they_were_written(
     assert run.wait() == 0, run.text
     assert [line["tick"] for line in lines_of(run, "b/talker") if line["text"] == "begins"] == [0, 7]
     times = {line["text"]: (line["tick"], line["time_us"]) for line in lines_of(run, "supervisor")}
-    assert times["b/talker ended: exit code 3; starting it again in 0.1 s"] == (7, 350_000)
-    assert times["b/talker runs again, start number 2"] == (7, 350_000)
+    assert times["b/talker ended: exit code 3; restart in 0.1 s"] == (7, 350_000)
+    assert times["b/talker runs again, incarnation 2"] == (7, 350_000)
 
 
 @pytest.mark.parametrize("hosting", ["process", "single"])

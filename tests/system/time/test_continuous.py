@@ -82,7 +82,7 @@ def test_a_killed_and_restarted_planner_replays(start: Start, folder: Path) -> N
     until_planned(run, 3)
     pid = int((folder / "planner.pid").read_text())
     os.kill(pid, signal.SIGKILL)
-    run.launched.until("r/planner runs again, start number 2")
+    run.launched.until("r/planner runs again, incarnation 2")
     until_planned(run, 3)
     run.ask("set", changes=["r/planner.gain=3", "r/planner.takes_s=0.01"])
     until_planned(run, 3)

@@ -87,7 +87,7 @@ def test_the_loop_does_not_wait_for_a_killed_component(launch: Launch, wall: Pat
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     os.kill(run.host("c/player"), signal.SIGKILL)
-    run.until("c/player runs again, start number 2")
+    run.until("c/player runs again, incarnation 2")
     run.until_ticks("c/player", 3)
     run.signal(signal.SIGINT)
     assert run.wait() == 0, run.text
