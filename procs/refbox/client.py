@@ -1,0 +1,107 @@
+"""Obeys a RefBox: hands its commands on to the referee."""
+
+import socket
+
+from pydantic import Field, PositiveFloat
+
+from fwk import Call as Sent
+from fwk import Calls, Clock, Component, Config, Logger, channel
+from lcmtypes.soccer import referee_command_t
+from procs.refbox.protocol import PORT, Command, ProtocolError, Stream, decode
+
+_IGNORED = frozenset({"WELCOME", "RESET", "IS_ALIVE"})
+_OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
+_TIMEOUT_S = 1.0
+
+
+class ClientConfig(Config):
+    """Where the RefBox is."""
+
+    host: str = "127.0.0.1"
+    """Its address."""
+    port: int = Field(default=PORT, ge=1, le=65_535)
+    """Its TCP port."""
+    retry_s: PositiveFloat = 1.0
+    """A RefBox that cannot be reached is tried again after this time."""
+    connect_s: PositiveFloat = 0.2
+    """Longest wait for a connection."""
+    addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
+    """Multicast address that names each team."""
+
+
+class RefBoxClient(Component):
+    """Leads the match as an official RefBox wants; the referee's setting `automatic` should be false."""
+
+    stage = "sensor_acquire"
+    reaches_outside = True
+
+    config: ClientConfig
+    clock: Clock
+    log: Logger
+    referee_command: Calls[referee_command_t] = channel("world/referee_command")
+
+    def init(self) -> None:
+        self._connection: socket.socket | None = None
+        self._stream = Stream()
+        self._again_us = 0
+        self._sent: list[Sent] = []
+
+    def loop(self) -> None:
+        for call in [each for each in self._sent if each.finished]:
+            self._sent.remove(call)
+            if not call.done:
+                self.log.warning(f"the referee does not obey: {call.reason}")
+        if self._connection is None and self.clock.now_us >= self._again_us:
+            self._connect()
+        for message in self._messages():
+            self._hand_on(message)
+
+    def finalize(self) -> None:
+        """Leaves the RefBox."""
+        if self._connection:
+            self._connection.close()
+
+    def _connect(self) -> None:
+        place = (self.config.host, self.config.port)
+        try:
+            self._connection = socket.create_connection(place, timeout=self.config.connect_s)
+        except OSError as error:
+            self._again_us = self.clock.now_us + round(self.config.retry_s * 1e6)
+            self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {error}")
+            return
+        self._connection.setblocking(False)
+        self._stream = Stream()
+        self.log.info(f"connected with the RefBox at {place[0]}:{place[1]}")
+
+    def _messages(self) -> list[bytes]:
+        if self._connection is None:
+            return []
+        try:
+            data = self._connection.recv(65_536)
+            if data:
+                return list(self._stream.feed(data))
+            reason = "it has ended"
+        except BlockingIOError:
+            return []
+        except (OSError, ProtocolError) as error:
+            reason = str(error)
+        self.log.warning(f"lost the RefBox: {reason}")
+        self._connection.close()
+        self._connection, self._again_us = None, self.clock.now_us + round(self.config.retry_s * 1e6)
+        return []
+
+    def _hand_on(self, message: bytes) -> None:
+        try:
+            command = decode(message, self.config.addresses)
+        except ProtocolError as error:
+            self.log.warning(f"RefBox: {error}")
+            return
+        if command.name not in _IGNORED:
+            self._call(command)
+
+    def _call(self, command: Command) -> None:
+        asked = self.referee_command.value
+        asked.name = _OTHER_NAMES.get(command.name, command.name).lower()
+        asked.team = command.team
+        asked.robot = f"{command.team}{command.robot}" if command.robot else ""
+        self._sent.append(self.referee_command.call(timeout_s=_TIMEOUT_S))

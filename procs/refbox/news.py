@@ -1,0 +1,64 @@
+"""Commands of a RefBox that lead from one state of the game to the next."""
+
+from lcmtypes.soccer import game_event_t, game_state_t
+from procs.model.robot import number_of
+from procs.refbox.protocol import Command
+
+TEAMS = {game_state_t.TEAM_CYAN: "cyan", game_state_t.TEAM_MAGENTA: "magenta"}
+_SET_PIECES = {
+    game_state_t.KICK_OFF: "KICKOFF",
+    game_state_t.DROP_BALL: "DROP_BALL",
+    game_state_t.PENALTY: "PENALTY",
+    game_state_t.CORNER_KICK: "CORNER",
+    game_state_t.THROW_IN: "THROWIN",
+    game_state_t.FREE_KICK: "FREEKICK",
+    game_state_t.GOAL_KICK: "GOALKICK",
+}
+_HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
+_CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
+
+
+def news(before: game_state_t | None, now: game_state_t) -> list[Command]:
+    """Returns the commands between two states, in their order; without a state before, those that lead to this one."""
+    if before is None:
+        return _half(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
+    commands = _scores(before, now) + _cards(before, now)
+    breaks = (game_state_t.HALF_TIME, game_state_t.FROZEN)
+    if now.state != before.state and now.state in breaks:
+        return [*commands, Command("STOP"), Command("HALF_TIME" if now.state == game_state_t.HALF_TIME else "END_GAME")]
+    if now.half != before.half:
+        commands += _half(now)
+    if now.stopped and _piece(now) != _piece(before):
+        commands += [Command("STOP"), *_stopped(now)] if not before.stopped else _stopped(now)
+    if before.stopped and not now.stopped:
+        commands.append(Command("START"))
+    return commands
+
+
+def _piece(state: game_state_t) -> tuple[bool, int, int, float, float]:
+    return state.stopped, state.state, state.state_team, state.ball_x_m, state.ball_y_m
+
+
+def _half(now: game_state_t) -> list[Command]:
+    return [Command(_HALVES[now.half])] if now.half in _HALVES else []
+
+
+def _stopped(now: game_state_t) -> list[Command]:
+    return [Command(_SET_PIECES[now.state], TEAMS.get(now.state_team, ""))] if now.state in _SET_PIECES else []
+
+
+def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
+    commands = []
+    for team in TEAMS.values():
+        more = getattr(now, f"score_{team}") - getattr(before, f"score_{team}")
+        commands += [Command("GOAL" if more > 0 else "SUBGOAL", team)] * abs(more)
+    return commands
+
+
+def _cards(before: game_state_t, now: game_state_t) -> list[Command]:
+    new = now.history[len(before.history) :]
+    return [
+        Command(_CARDS[event.card], TEAMS.get(event.team, ""), number_of(event.robot))
+        for event in new
+        if event.card in _CARDS
+    ]

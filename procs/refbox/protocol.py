@@ -1,0 +1,78 @@
+"""Protocol of the RefBox of the middle size league: JSON objects over TCP, each followed by a NUL byte.
+
+`{"command": "KICKOFF", "targetTeam": "224.16.32.1"}`; a team is named by its multicast address, both teams by an empty
+text. Commands about a robot have its number as `robotID`.
+"""
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+PORT = 28097
+"""Port of the RefBox for base stations."""
+LONGEST = 65_536
+"""A peer that sends more bytes without a NUL does not speak the protocol."""
+
+
+class ProtocolError(ValueError):
+    """Bytes that are not a message of the RefBox."""
+
+
+class Command(NamedTuple):
+    """A command of the RefBox."""
+
+    name: str
+    """In capitals: START, KICKOFF ..."""
+    team: str = ""
+    """cyan, magenta, or empty for both."""
+    robot: int = 0
+    """Number of the robot; 0 without one."""
+
+
+def encode(command: Command, addresses: Mapping[str, str]) -> bytes:
+    """Returns the bytes of a command; `addresses` are those of the teams by name."""
+    message: dict[str, Any] = {"command": command.name, "targetTeam": addresses.get(command.team, "")}
+    if command.robot:
+        message["robotID"] = command.robot
+    return json.dumps(message).encode() + b"\0"
+
+
+def decode(data: bytes, addresses: Mapping[str, str]) -> Command:
+    """Returns the command in a message without its NUL.
+
+    Raises:
+        ProtocolError: it is not a command, or it is for a team that does not play.
+    """
+    try:
+        message = json.loads(data)
+    except ValueError as error:
+        raise ProtocolError(f"{data[:60]!r} is not JSON") from error
+    if not isinstance(message, dict) or not isinstance(message.get("command"), str):
+        raise ProtocolError(f"{data[:60]!r} has no command")
+    address, robot = message.get("targetTeam", ""), message.get("robotID", 0)
+    teams = {each: team for team, each in addresses.items()} | {"": ""}
+    if address not in teams:
+        raise ProtocolError(f"no team has the address {address!r}; there are {', '.join(sorted(addresses.values()))}")
+    if isinstance(robot, str) and robot.isdecimal():
+        robot = int(robot)
+    if not isinstance(robot, int) or not 0 <= robot < 100:
+        raise ProtocolError(f"{robot!r} is not the number of a robot")
+    return Command(message["command"].upper(), teams[address], robot)
+
+
+class Stream:
+    """Cuts the bytes of a connection into messages."""
+
+    def __init__(self) -> None:
+        self._rest = b""
+
+    def feed(self, data: bytes) -> Iterator[bytes]:
+        """Yields the messages that are complete, without their NUL.
+
+        Raises:
+            ProtocolError: a message is too long.
+        """
+        *whole, self._rest = (self._rest + data).split(b"\0")
+        yield from (message for message in whole if message.strip())
+        if len(self._rest) > LONGEST:
+            raise ProtocolError(f"more than {LONGEST} bytes without a NUL")

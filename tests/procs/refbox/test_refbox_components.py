@@ -1,0 +1,112 @@
+"""RefBox server and client over TCP, with the other side written from the protocol's description."""
+
+import contextlib
+import socket
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+
+from fwk.testing import Bench, MemorySystem
+from lcmtypes.soccer import game_state_t
+from procs.refbox.client import RefBoxClient
+from procs.refbox.server import RefBoxServer
+from procs.referee.referee import Referee
+from procs.simulation.simulator import Simulator
+from tests.procs.refbox.base_station import BaseStation, say
+
+CYAN, MAGENTA = "224.16.32.1", "224.16.32.2"
+
+
+@pytest.fixture
+def server() -> Iterator[Bench]:
+    bench = Bench(RefBoxServer, "world/refbox", port=0)
+    yield bench
+    bench.finalize()
+
+
+@pytest.fixture
+def refbox() -> Iterator[socket.socket]:
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        listening.settimeout(5.0)
+        yield listening
+
+
+def show(bench: Bench, kind: int, team: int, stopped: bool) -> None:
+    bench.port("game_state").put(state=kind, state_team=team, stopped=stopped, half=1)
+    bench.iterate()
+
+
+def names(messages: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    return [(message["command"], message["targetTeam"]) for message in messages]
+
+
+def test_base_station_hears_where_the_game_is_and_what_follows(server: Bench) -> None:
+    with contextlib.closing(BaseStation(server.component.port)) as station:
+        show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+        assert names(station.heard(3)) == [("WELCOME", ""), ("FIRST_HALF", ""), ("KICKOFF", CYAN)]
+        show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
+        show(server, game_state_t.PLAY, game_state_t.TEAM_NONE, False)
+        show(server, game_state_t.CORNER_KICK, game_state_t.TEAM_MAGENTA, True)
+        assert names(station.heard(3)) == [("START", ""), ("STOP", ""), ("CORNER", MAGENTA)]
+
+
+def test_base_station_that_has_left_does_not_matter(server: Bench) -> None:
+    gone = BaseStation(server.component.port)
+    show(server, game_state_t.PLAY, 0, False)
+    gone.close()
+    with contextlib.closing(BaseStation(server.component.port)) as station:
+        for stopped in (True, False, True, False):
+            show(server, game_state_t.DROP_BALL, 0, stopped)
+        assert names(station.heard(3))[0] == ("WELCOME", "")
+
+
+def test_client_leads_the_referee(refbox: socket.socket) -> None:
+    system = MemorySystem(
+        {
+            "world/refbox": RefBoxClient,
+            "world/referee": Referee,
+            "world/simulator": Simulator,
+        },
+        settings={"world/refbox": {"port": refbox.getsockname()[1]}, "world/referee": {"automatic": False}},
+    )
+    system.tick()
+    connection, _ = refbox.accept()
+    with connection:
+        states = []
+        for command, team in (("STOP", ""), ("CORNER", MAGENTA), ("START", ""), ("GOAL", CYAN), ("GAMEOVER", "")):
+            connection.sendall(say(command, team))
+            for _ in range(40):
+                before = len(system.sent["world/referee_command@world/refbox"])
+                system.tick()
+                if len(system.sent["world/referee_command@world/refbox"]) > before:
+                    break
+            system.tick(2)
+            game = system.newest("world/game_state")
+            states.append((game.state, game.state_team, game.stopped, game.score_cyan))
+    system.runners["world/refbox"].component.finalize()
+    corner = game_state_t.CORNER_KICK
+    assert states[1:] == [(corner, 2, True, 0), (corner, 2, False, 0), (2, 2, True, 1), (0, 0, True, 1)]
+
+
+def test_client_tries_again_and_says_why(refbox: socket.socket) -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        free = taken.getsockname()[1]
+    bench = Bench(RefBoxClient, "world/refbox", port=free, retry_s=0.2)
+    bench.iterate(9)
+    assert sum("no RefBox at 127.0.0.1" in line.text for line in bench.logged) == 3
+    bench.finalize()
+
+
+def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
+    bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1])
+    bench.iterate()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(b"hello\0")
+        for _ in range(100):
+            bench.iterate()
+            if any("is not JSON" in line.text for line in bench.logged):
+                break
+    assert any("RefBox: b'hello' is not JSON" in line.text for line in bench.logged)
+    bench.finalize()

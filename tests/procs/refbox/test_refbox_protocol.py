@@ -1,0 +1,83 @@
+"""The RefBox protocol: bytes, and commands between states of the game."""
+
+import pytest
+
+from lcmtypes.soccer import game_event_t, game_state_t
+from procs.refbox.news import news
+from procs.refbox.protocol import LONGEST, Command, ProtocolError, Stream, decode, encode
+
+ADDRESSES = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
+
+
+def state(kind: int, team: int = 0, stopped: bool = True, **more: int) -> game_state_t:
+    made = game_state_t()
+    made.state, made.state_team, made.stopped, made.half = kind, team, stopped, 1
+    for name, value in more.items():
+        setattr(made, name, value)
+    return made
+
+
+KICK_OFF = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN)
+PLAY = state(game_state_t.PLAY, stopped=False)
+
+
+@pytest.mark.parametrize(
+    ("command", "data"),
+    [
+        (Command("START"), b'{"command": "START", "targetTeam": ""}\0'),
+        (Command("KICKOFF", "magenta"), b'{"command": "KICKOFF", "targetTeam": "224.16.32.2"}\0'),
+        (Command("RED_CARD", "cyan", 3), b'{"command": "RED_CARD", "targetTeam": "224.16.32.1", "robotID": 3}\0'),
+    ],
+)
+def test_command_as_bytes_and_back(command: Command, data: bytes) -> None:
+    assert encode(command, ADDRESSES) == data
+    assert decode(data[:-1], ADDRESSES) == command
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (b"STOP", "b'STOP' is not JSON"),
+        (b"[1]", "b'[1]' has no command"),
+        (b'{"targetTeam": ""}', "has no command"),
+        (b'{"command": "GOAL", "targetTeam": "10.0.0.1"}', "no team has the address '10.0.0.1'; there are 224"),
+        (b'{"command": "REPAIR", "robotID": -1}', "-1 is not the number of a robot"),
+    ],
+)
+def test_bytes_that_are_no_command(data: bytes, message: str) -> None:
+    with pytest.raises(ProtocolError, match=message.replace("[", r"\[")):
+        decode(data, ADDRESSES)
+
+
+def test_stream_is_cut_at_nul_bytes_wherever_they_arrive() -> None:
+    stream = Stream()
+    assert [list(stream.feed(part)) for part in (b"ab", b"c\0d", b"\0\0e\0")] == [[], [b"abc"], [b"d", b"e"]]
+    with pytest.raises(ProtocolError, match="without a NUL"):
+        list(stream.feed(b"x" * (LONGEST + 1)))
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "names"),
+    [
+        (None, KICK_OFF, ["FIRST_HALF", "KICKOFF cyan"]),
+        (None, PLAY, ["FIRST_HALF", "START"]),
+        (KICK_OFF, KICK_OFF, []),
+        (KICK_OFF, state(game_state_t.KICK_OFF, 1, stopped=False), ["START"]),
+        (PLAY, state(game_state_t.THROW_IN, 2), ["STOP", "THROWIN magenta"]),
+        (PLAY, state(game_state_t.DROP_BALL), ["STOP", "DROP_BALL"]),
+        (PLAY, state(game_state_t.KICK_OFF, 2, score_cyan=1), ["GOAL cyan", "STOP", "KICKOFF magenta"]),
+        (state(1, score_cyan=1), state(1), ["SUBGOAL cyan"]),
+        (PLAY, state(game_state_t.HALF_TIME), ["STOP", "HALF_TIME"]),
+        (PLAY, state(game_state_t.FROZEN), ["STOP", "END_GAME"]),
+        (state(game_state_t.HALF_TIME), state(game_state_t.KICK_OFF, 2, half=2), ["SECOND_HALF", "KICKOFF magenta"]),
+    ],
+)
+def test_commands_between_states(before: game_state_t | None, now: game_state_t, names: list[str]) -> None:
+    assert [f"{command.name} {command.team}".strip() for command in news(before, now)] == names
+
+
+def test_card_names_team_and_robot() -> None:
+    now, event = state(game_state_t.PLAY, stopped=False), game_event_t()
+    event.card, event.team, event.robot = game_event_t.DOUBLE_YELLOW, game_state_t.TEAM_MAGENTA, "magenta4"
+    now.history = [event]
+    assert news(PLAY, now) == [Command("DOUBLE_YELLOW", "magenta", 4)]
