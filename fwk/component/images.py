@@ -116,8 +116,10 @@ class VisionMaster:
         self._announcement = announcement
         self._ring = ring
 
-    def publish(self, pixels: Frame) -> None:
+    def publish(self, pixels: Frame, capture_us: int = 0) -> None:
         """Puts a frame into the ring and announces it at the end of the iteration.
+
+        `capture_us` is the logical time of the exposure; 0 if it is not known.
 
         Raises:
             FrameError: the frame is larger than a slot or not a uint8 array of two or three dimensions, or the ring
@@ -137,6 +139,7 @@ class VisionMaster:
         self._ring.put(frame.frame, np.ascontiguousarray(pixels))
         frame.height_px, frame.width_px = pixels.shape[:2]
         frame.channels = _channels(pixels)
+        frame.capture_us = capture_us
         frame.encoding = "bgr8" if frame.channels == 3 else "gray8"
         self._announcement.write()
 

@@ -1,16 +1,17 @@
 """Resolves the components of a launch file: their classes, stages, settings and needs."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from fwk.component.declaration import Declaration
-from fwk.model.errors import Problems
+from fwk.model.errors import Problems, hint
 from fwk.model.selection import matches, nearest
 from fwk.plan.classes import UnusableError, find_class
 from fwk.plan.files.launch_file import Files
 from fwk.plan.files.settings import effective
+from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
 from fwk.plan.files.templates import Asked
 from fwk.plan.stages import stages_in, turns_of, without_former_every
@@ -86,6 +87,7 @@ def resolve(
             files.gaps.add(asked.namespace)
             continue
         report = partial(_report, problems, asked.name)
+        _add_shared(files, asked, declared, report)
         layers, former = without_former_every(asked, declared, problems)
         config, origins = effective(declared.config, layers, asked.node.place, report)
         _check_ports(asked, declared, problems)
@@ -93,7 +95,27 @@ def resolve(
         every, offset = turns_of(asked, declared, former, problems)
         found.append(Resolved(asked, declared, indices, config, origins, every, offset))
     _check_time_sources(found, problems)
+    _check_shared(files, found, problems)
     return found
+
+
+def _add_shared(files: Files, asked: Asked, declared: Declaration, report: Callable[[str, str], None]) -> None:
+    """Puts the settings of the `shared:` sections that the class has before the others of the same file."""
+    for number, layer in reversed(list(enumerate(files.layers))):
+        known = (name for name in layer.content.shared if name in declared.config.model_fields)
+        kept = {name: layer.node.at("shared", name) for name in known}
+        if kept and (filled := substitute(Node(kept, layer.node.at("shared").place), asked.values, report)):
+            asked.config.insert(0, (number, filled))
+
+
+def _check_shared(files: Files, found: Sequence[Resolved], problems: Problems) -> None:
+    """Reports shared settings that no component has."""
+    known = {name for each in found for name in each.declaration.config.model_fields}
+    for layer in files.layers:
+        for name in layer.content.shared:
+            if name not in known and not files.gaps:
+                place = layer.node.at("shared", name).place
+                problems.add(place, "", f"no component has a setting '{name}'; {hint(name, sorted(known))}")
 
 
 def _class_or_reason(use: str, folders: Sequence[str]) -> Declaration | str:

@@ -5,10 +5,12 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from procs.behaviour.view import Robot
+from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad, wrap_rad
+from procs.model.robot import ROBOT
 
-_BLOCK_M = 0.25 + 0.11  # a ball's middle passes a robot's middle at this distance
+_BLOCK_M = ROBOT.radius_m + BALL.radius_m  # a ball's middle passes a robot's middle at this distance
 _REACTION_S = 0.25
 _STEP_ASIDE_M_S = 0.8
 _BALL_M_S = 9.0
@@ -50,7 +52,7 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
     """Returns the point of the opponents' goal line with the most room, seen from the ball at `start`."""
     in_the_way = list(robots)
     posts = field.goal_posts(1.0)
-    post_m = field.post_diameter_m / 2 + 0.11
+    post_m = field.post_diameter_m / 2 + BALL.radius_m
     inner_m = field.goal_width_m / 2 - 0.15
     best = Aim(field.goal_centre(1.0), -math.pi)
     for index in range(_TARGETS):

@@ -4,8 +4,9 @@ import math
 from typing import NamedTuple
 
 from procs.behaviour.view import Ball
-from procs.model.ball import ROLLING_M_S2, ROLLING_SHARE, SLIDING_M_S2
+from procs.model.ball import BALL, ROLLING_M_S2, ROLLING_SHARE, SLIDING_M_S2
 from procs.model.field import Point
+from procs.model.robot import ROBOT
 
 _STEP_S = 0.1
 _HORIZON_S = 4.0
@@ -61,7 +62,7 @@ _WAYS = [(step * _STEP_S, way_m(step * _STEP_S)) for step in range(round(_HORIZO
 class Course:
     """The ball's way during the next four seconds, and how far a robot can get meanwhile."""
 
-    def __init__(self, ball: Ball, contact_m: float = 0.33) -> None:
+    def __init__(self, ball: Ball, contact_m: float = ROBOT.held_ball_m(BALL)) -> None:
         """`contact_m` is the distance of the middles of ball and robot when they touch."""
         self._ball = ball
         self._contact_m = contact_m

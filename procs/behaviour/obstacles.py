@@ -5,11 +5,13 @@ from collections.abc import Iterable
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.path import Disc
+from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
+from procs.model.robot import ROBOT
 
-_ROBOT_M = 0.25
-_BALL_M = 0.11
+_ROBOT_M = ROBOT.radius_m
+_BALL_M = BALL.radius_m
 _MARGIN_M = 0.12
 _BALL_MARGIN_M = 0.1
 _FORESIGHT_S = 0.8

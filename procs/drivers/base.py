@@ -7,6 +7,7 @@ from lcmtypes.robot import motor_command_t, odometry_t, wheel_command_t, wheel_s
 from procs.drivers.odometry import Odometry
 from procs.drivers.ramp import Ramp, within_wheel_limit
 from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
+from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
 _PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, not even when they are pushed
@@ -16,10 +17,8 @@ _LONGEST_GAP_S = 0.5  # a measurement after a longer silence says nothing about 
 class BaseConfig(Config):
     """Settings of the wheels' driver."""
 
-    wheel_distance_m: PositiveFloat = 0.2
-    """From the robot's middle to each wheel."""
-    wheel_limit_m_s: PositiveFloat = 3.5
-    """Highest rim speed of a wheel."""
+    robot: RobotModel = ROBOT
+    """Geometry of the robot, and the limit of its wheels."""
     speed_m_s: PositiveFloat = 3.5
     """Highest speed over the ground."""
     acceleration_m_s2: PositiveFloat = 3.0
@@ -76,14 +75,15 @@ class Base(Component):
 
     def _add(self, state: wheel_state_t) -> None:
         first, second, third = state.measured_m_s
-        if not all(abs(speed) <= _PLAUSIBLE * self.config.wheel_limit_m_s for speed in state.measured_m_s):
+        if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in state.measured_m_s):
             self.log.warning(f"wheels say {first}, {second}, {third} m/s, which cannot be; ignored")
             return
         passed_s = (state.header.time_us - self._measured_us) / US_PER_S
         self._measured_us = state.header.time_us
+        self.odometry.value.capture_us = state.capture_us or state.header.time_us
         if not 0 < passed_s <= _LONGEST_GAP_S:
             passed_s = self.clock.period_s
-        self._odometry.advance(velocity_of((first, second, third), self.config.wheel_distance_m), passed_s)
+        self._odometry.advance(velocity_of((first, second, third), self.config.robot.wheel_distance_m), passed_s)
 
     def _report(self) -> None:
         report, odometry = self.odometry.value, self._odometry
@@ -93,10 +93,10 @@ class Base(Component):
         self.odometry.write()
 
     def _drive(self) -> None:
-        config = self.config
+        robot = self.config.robot
         velocity = self._ramp.advance(self._wanted(), self.clock.period_s)
-        possible = within_wheel_limit(velocity, config.wheel_limit_m_s, config.wheel_distance_m)
-        self.wheel_command.value.wheel_m_s = list(wheels_of(possible, config.wheel_distance_m))
+        possible = within_wheel_limit(velocity, robot.wheel_limit_m_s, robot.wheel_distance_m)
+        self.wheel_command.value.wheel_m_s = list(wheels_of(possible, robot.wheel_distance_m))
         self.wheel_command.write()
 
     def _wanted(self) -> Velocity:

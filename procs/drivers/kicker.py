@@ -1,10 +1,15 @@
 """Driver of the kicker: carries out kicks once ball and charge are there, and handles the ball."""
 
+import math
+
 from pydantic import PositiveFloat
 
 from fwk import Clock, Component, Config, Logger, Reads, Request, Serves, Writes
 from lcmtypes.robot import dribble_command_t, kick_command_t, kicker_drive_t, kicker_sensor_t, kicker_state_t
+from procs.model.geometry import clamp
 
+_NO_KICK = (0.0, 0.0)
+_STEEPEST_RAD = math.pi / 3  # of a lob
 _KICKS_MAX = 2**31 - 1
 """Kicks are numbered from 1 to this number, then from 1 again."""
 
@@ -38,7 +43,7 @@ class Kicker(Component):
 
     def init(self) -> None:
         self._kicks = 0
-        self._asked_m_s = 0.0  # speed of the newest kick that the hardware was told
+        self._asked = _NO_KICK  # speed in m/s and elevation in rad of the newest kick that the hardware was told
         self._asked_us = 0  # when it was told
         self._late = False
 
@@ -59,28 +64,32 @@ class Kicker(Component):
 
     def _kicked(self, kick_id: int) -> None:
         self._kicks += 1
-        self.kicker_state.value.kick_id = kick_id
-        self.kicker_state.value.kick_speed_m_s = self._asked_m_s
-        self._asked_m_s = 0.0
+        state = self.kicker_state.value
+        state.kick_id = kick_id
+        state.kick_speed_m_s, state.kick_elevation_rad = self._asked
+        self._asked = _NO_KICK
         for request in self.kick.open:
             request.done()
 
     def _report(self) -> None:
         state, sensor = self.kicker_state.value, self.kicker_sensor.value
         state.ball_held, state.charged, state.kicks = sensor.ball_held, sensor.charged, self._kicks
+        state.charge = sensor.charge
+        state.capture_us = sensor.capture_us or sensor.header.time_us
         self.kicker_state.write()
         if self.clock.since_s(self._asked_us) > self.config.command_timeout_s:
             self._fail_open("the hardware has not kicked")
 
     def _act(self) -> None:
         sensor, drive = self.kicker_sensor.value, self.kicker_drive.value
-        drive.kick_id, drive.kick_m_s = sensor.kick_id, 0.0
+        drive.kick_id, (drive.kick_m_s, drive.elevation_rad) = sensor.kick_id, _NO_KICK
         if sensor.ball_held and sensor.charged and (request := self._next_kick()):
             self._fail_open("a newer kick replaced it", besides=request)
             request.accept()
             drive.kick_id = sensor.kick_id % _KICKS_MAX + 1
             drive.kick_m_s = min(request.value.speed_m_s, self.config.speed_limit_m_s)
-            self._asked_m_s, self._asked_us = drive.kick_m_s, self.clock.now_us
+            drive.elevation_rad = clamp(request.value.elevation_rad, 0.0, _STEEPEST_RAD)
+            self._asked, self._asked_us = (drive.kick_m_s, drive.elevation_rad), self.clock.now_us
         drive.dribble = self._is_fresh() and self.dribble_command.value.on
         self.kicker_drive.write()
 

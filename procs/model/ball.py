@@ -1,12 +1,35 @@
 """The ball of the middle size league: a football of size 5 on short carpet."""
 
-RADIUS_M = 0.11
-MASS_KG = 0.43
-SLIDING_M_S2 = 3.0
-"""Deceleration while the ball slides, as it does after a kick."""
-ROLLING_M_S2 = 0.4
-"""Deceleration while it rolls."""
-INERTIA = 2 / 3
-"""Moment of inertia divided by mass and squared radius: 2/3 for a thin shell."""
-ROLLING_SHARE = 1 / (1 + INERTIA)
-"""Share of a kick's speed that is left when the ball begins to roll."""
+from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
+
+
+class BallModel(BaseModel):
+    """Size, mass and friction; simulator, vision, world model and behaviour use the same."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    radius_m: PositiveFloat = 0.11
+    """Rule book of 2016: a circumference of 0.68 to 0.70 m."""
+    mass_kg: PositiveFloat = 0.43
+    """Rule book of 2016: 0.41 to 0.45 kg."""
+    sliding_m_s2: PositiveFloat = 3.0
+    """Deceleration while the ball slides, as it does after a kick. TIGERs: 3.0, ER-Force: 2.8 to 3.9."""
+    rolling_m_s2: PositiveFloat = 0.4
+    """Deceleration while it rolls. Small size league: 0.26 to 0.5; nothing is published for the middle size league."""
+    bounce: float = Field(default=0.6, ge=0.0, le=1.0)
+    """Share of the vertical speed after a bounce on carpet. FIFA: at least 0.82 on steel; carpet takes some."""
+    inertia: PositiveFloat = 2 / 3
+    """Moment of inertia divided by mass and squared radius: 2/3 for a thin shell, 2/5 for a solid ball."""
+
+    @property
+    def rolling_share(self) -> float:
+        """Share of a kick's speed that is left when the ball begins to roll."""
+        return 1 / (1 + self.inertia)
+
+
+BALL = BallModel()
+"""The usual ball."""
+RADIUS_M = BALL.radius_m
+SLIDING_M_S2 = BALL.sliding_m_s2
+ROLLING_M_S2 = BALL.rolling_m_s2
+ROLLING_SHARE = BALL.rolling_share

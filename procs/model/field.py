@@ -6,7 +6,7 @@ field and areas are measured to the outer edges of their lines.
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from pydantic import BaseModel, ConfigDict
 
@@ -164,3 +164,8 @@ class Field(BaseModel):
     def _in_area(self, x_m: float, y_m: float, side: float, width_m: float, depth_m: float, margin_m: float) -> bool:
         from_goal_line_m = self.half_length_m - side * x_m
         return -margin_m <= from_goal_line_m <= depth_m + margin_m and abs(y_m) <= width_m / 2 + margin_m
+
+
+def field_of(measures: Any) -> Field:
+    """Returns the field of a message that has the measures as members."""
+    return Field(**{name: getattr(measures, name) for name in Field.model_fields})

@@ -1,12 +1,71 @@
-"""Team and number in a robot's name: `cyan3` is number 3 of team cyan, which defends the goal at negative x."""
+"""The robot of the middle size league: its geometry, and the players of a match by team and number."""
 
+import math
 import re
+from collections.abc import Mapping
+from typing import Literal
+
+from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
+
+from procs.model.ball import BallModel
 
 CYAN, MAGENTA = "cyan", "magenta"
-RADIUS_M = 0.25
-"""Of the round robots of the middle size league."""
+"""Cyan defends the goal at negative x."""
 
 _NAME = re.compile(r"(.*?)(\d*)")
+
+
+class RobotModel(BaseModel):
+    """A round robot on three omnidirectional wheels with a flat mouth in front; all robots of a match are equal."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    radius_m: PositiveFloat = 0.25
+    """Of the body. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
+    height_m: PositiveFloat = 0.6
+    """Of the body; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
+    mass_kg: PositiveFloat = 35.0
+    """The robots of simatch have 31 to 39 kg."""
+    wheel_distance_m: PositiveFloat = 0.2
+    """From the robot's middle to each wheel."""
+    wheel_limit_m_s: PositiveFloat = 3.5
+    """Highest rim speed."""
+    mouth_half_angle_deg: PositiveFloat = 30.0
+    """The front is cut off between these angles to the left and the right of forward."""
+
+    @property
+    def mouth_m(self) -> float:
+        """From the robot's middle to the plane of the mouth."""
+        return self.radius_m * math.cos(math.radians(self.mouth_half_angle_deg))
+
+    def held_ball_m(self, ball: BallModel) -> float:
+        """Returns the distance from the robot's middle to the middle of a ball in the mouth."""
+        return self.mouth_m + ball.radius_m
+
+
+ROBOT = RobotModel()
+"""The usual robot."""
+RADIUS_M = ROBOT.radius_m
+
+
+class Player(BaseModel):
+    """A robot's place in the match."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    team: Literal["cyan", "magenta"]
+    """Cyan defends the goal at negative x."""
+    number: PositiveInt
+    """On the robot's back; no two players of a team have the same."""
+
+
+Players = dict[str, Player]
+"""Namespace of each robot to its team and number."""
+
+PLAYERS: Mapping[str, Player] = {
+    f"{team}{number}": Player(team=team, number=number) for team in ("cyan", "magenta") for number in range(1, 6)
+}
+"""Five against five, by their usual names."""
 
 
 def team_of(robot: str) -> str:

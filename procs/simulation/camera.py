@@ -8,12 +8,18 @@ from pydantic import Field as Setting
 
 from fwk import Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t, true_robot_t
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.realism import Realism, chosen
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.units import US_PER_S
+from procs.simulation.camera_errors import PRESETS
+from procs.simulation.past import Past
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig
-from procs.vision.colours import CYAN, MAGENTA
+from procs.vision.colours import COLOURS, MAGENTA
 
 _FARTHEST = 1e4  # metres, radians, metres a second
 
@@ -27,24 +33,32 @@ class CameraConfig(Config):
     """Uncalibrated tilt of the mirror about the robot's x axis."""
     pitch_deg: float = Setting(default=0.0, ge=-5.0, le=5.0)
     """Uncalibrated tilt of the mirror about the robot's y axis."""
-    shake_px: float = Setting(default=0.2, ge=0.0, le=3.0)
+    realism: Realism = "realistic"
+    """How far the camera is from ideal: none, friendly, realistic or harsh. Settings that are not null override it."""
+    latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """From the exposure until the frame is published; rendering shows the world as it was then."""
+    shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Standard deviation by which the standing robot's mirror shakes the picture."""
-    shake_px_per_m_s: float = Setting(default=0.3, ge=0.0, le=3.0)
+    shake_px_per_m_s: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Growth of that deviation with each m/s of the robot."""
-    noise_levels: float = Setting(default=5.0, ge=0.0, le=60.0)
+    noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
     brightness: float = Setting(default=1.0, gt=0.0, le=4.0)
     """Factor on all colours."""
-    flicker: float = Setting(default=0.0, ge=0.0, le=0.5)
+    flicker: float | None = Setting(default=None, ge=0.0, le=0.5)
     """Standard deviation of the brightness from frame to frame, as a part of it."""
+    blur_px: float | None = Setting(default=None, ge=0.0, le=5.0)
+    """Standard deviation of the blur of lens and motion."""
+    vignette: float | None = Setting(default=None, ge=0.0, le=0.9)
+    """Part of the brightness that is missing at the picture's edge."""
     field: Field = Field()
     """Measures of the field."""
-    robot_radius_m: float = Setting(default=0.25, gt=0.0)
-    """Of all robots; they are round."""
-    robot_height_m: float = Setting(default=0.6, ge=0.5)
-    """Of all robots; the team markers are below."""
-    ball_radius_m: float = Setting(default=0.11, gt=0.0)
-    """Of the ball."""
+    players: Players = dict(PLAYERS)
+    """Team of each robot, which its marker shows."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size of the ball."""
 
 
 class Camera(Component):
@@ -66,27 +80,34 @@ class Camera(Component):
         cv2.setNumThreads(1)
         self._robot = self.name.rpartition("/")[0]
         self._missing = False
+        self._past = Past()
         self._noise_seed = int(self.rng.integers(1 << 32))
         self._apply_settings()
 
     def loop(self) -> None:
         if not self.ground_truth.refreshed:
             return
-        own = self._own_robot(self.ground_truth.value)
+        for truth in self.ground_truth.fresh:
+            self._past.add(truth)
+        capture_us = self.ground_truth.header.time_us - round(self._errors.latency_s * US_PER_S)
+        truth = self._past.at(capture_us)
+        own = self._own_robot(truth)
         if own is not None:
-            frame = self._renderer.render(self._scene(own, self.ground_truth.value), self._shake_px(own))
-            self.image.publish(self._noise.apply(frame, self.rng))
+            frame = self._renderer.render(self._scene(own, truth), self._shake_px(own))
+            self.image.publish(self._noise.apply(frame, self.rng), max(1, capture_us))
 
     def config_changed(self) -> None:
         self._apply_settings()
 
     def _apply_settings(self) -> None:
         config = self.config
+        errors = self._errors = chosen(PRESETS[config.realism], config)
         mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
         self._renderer = Renderer(mirror, config.field, _bodies(config))
         self._noise = SensorNoise(
-            config.mirror.size_px, config.noise_levels, config.brightness, config.flicker, self._noise_seed
+            config.mirror.size_px, errors.noise_levels, config.brightness, errors.flicker, self._noise_seed
         )
+        self._noise.spoil_lens(errors.blur_px, errors.vignette)
 
     def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
         own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
@@ -98,22 +119,22 @@ class Camera(Component):
 
     def _scene(self, own: true_robot_t, truth: ground_truth_t) -> Scene:
         others = [
-            (robot.x_m, robot.y_m, CYAN if robot.name.startswith("cyan") else MAGENTA)
+            (robot.x_m, robot.y_m, COLOURS.get(robot.team, MAGENTA))
             for robot in truth.robots
             if robot.name != self._robot and _is_here(robot)
         ]
-        ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self.config.ball_radius_m)
+        ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self.config.ball.radius_m)
         return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if _near(*ball_m) else None)
 
     def _shake_px(self, own: true_robot_t) -> tuple[float, float]:
         speed_m_s = math.hypot(own.vx_m_s, own.vy_m_s)
-        deviation_px = self.config.shake_px + self.config.shake_px_per_m_s * speed_m_s
+        deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * speed_m_s
         right_px, down_px = deviation_px * self.rng.standard_normal(2)
         return float(right_px), float(down_px)
 
 
 def _bodies(config: CameraConfig) -> Bodies:
-    return Bodies(config.robot_radius_m, config.robot_height_m, config.ball_radius_m)
+    return Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
 
 
 def _is_here(robot: true_robot_t) -> bool:

@@ -5,18 +5,27 @@ from pydantic import Field
 
 from fwk import Clock, Component, Config, Each, Reads, Writes
 from lcmtypes.soccer import team_inbox_t, team_message_t
-from procs.simulation.radio_links import RadioLinks, RadioSettings
+from procs.model.realism import Realism, chosen
+from procs.simulation.radio_links import PRESETS, RadioLinks
 
 
 class RadioConfig(Config):
     """Quality of the radio."""
 
-    loss: float = Field(default=0.03, ge=0.0, le=1.0)
+    realism: Realism = "realistic"
+    """How far the radio is from ideal: none, friendly, realistic or harsh. Settings that are not null override it."""
+    loss: float | None = Field(default=None, ge=0.0, le=1.0)
     """Probability that a message does not reach a mate, independent for each mate; 1 switches the radio off."""
-    delay_s: float = Field(default=0.0, ge=0.0)
+    delay_s: float | None = Field(default=None, ge=0.0)
     """Time from sending to arrival, besides the tick that every message takes."""
-    delay_jitter_s: float = Field(default=0.02, ge=0.0)
+    delay_jitter_s: float | None = Field(default=None, ge=0.0)
     """Largest further delay of a message."""
+    outages_1_min: float | None = Field(default=None, ge=0.0)
+    """Interruptions of the link between two robots in a minute."""
+    outage_s: float | None = Field(default=None, ge=0.0)
+    """Mean duration of an interruption."""
+    bandwidth_bit_s: float | None = Field(default=None, ge=0.0)
+    """Rate of the team's channel, to which messages beyond it are lost; 0: no limit. Rule book of 2016: 2.2 Mbit/s."""
 
 
 class Radio(Component):
@@ -39,10 +48,12 @@ class Radio(Component):
 
     def loop(self) -> None:
         """Sends the messages of this tick, delivers those that have arrived."""
-        settings = RadioSettings(self.config.loss, self.config.delay_s, self.config.delay_jitter_s)
+        settings = chosen(PRESETS[self.config.realism], self.config)
+        self._links.pass_time(self.clock.now_us, settings)
         for robot, said in self.messages.items():
             for message in said.fresh:
-                self._links.send(robot, message, self.clock.now_us, settings)
+                size_bytes = len(message.encode()) if settings.bandwidth_bit_s else 0
+                self._links.send(robot, message, self.clock.now_us, settings, size_bytes)
         for robot, arrived in self._links.receive(self.clock.now_us).items():
             inbox = self.inboxes[robot]
             inbox.value.messages = arrived

@@ -1,24 +1,47 @@
 """A team's radio: each message reaches each mate or not, some time later, independently of the others."""
 
 import heapq
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Generic, TypeVar
 
 import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from procs.model.realism import Realism
 
 T = TypeVar("T")
 
+_BURST_S = 0.2  # the channel makes up for idle time of that length
 
-@dataclass(frozen=True)
-class RadioSettings:
-    """Quality of the radio."""
+
+class RadioSettings(BaseModel):
+    """Quality of the radio. 0: ideal."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
     loss: float = 0.0
-    """Probability that a message does not arrive, for each receiver on its own."""
+    """Probability that a message does not arrive, for each receiver on its own. ER-Force: 3 % of the commands."""
     delay_s: float = 0.0
+    """From sending to arrival."""
     delay_jitter_s: float = 0.0
     """A message takes up to that much longer; drawn evenly, so messages may overtake each other."""
+    outages_1_min: float = 0.0
+    """Interruptions of each link in a minute."""
+    outage_s: float = 0.0
+    """Mean duration of an interruption."""
+    bandwidth_bit_s: float = 0.0
+    """Rate of the team's channel; what is beyond it is lost. 0: no limit. Rule book of 2016: 2.2 Mbit/s."""
+
+
+PRESETS: dict[Realism, RadioSettings] = {
+    "none": RadioSettings(),
+    "friendly": RadioSettings(loss=0.01, delay_jitter_s=0.01, bandwidth_bit_s=2.2e6),
+    "realistic": RadioSettings(loss=0.03, delay_jitter_s=0.02, outages_1_min=0.5, outage_s=0.3, bandwidth_bit_s=2.2e6),
+    "harsh": RadioSettings(
+        loss=0.1, delay_s=0.02, delay_jitter_s=0.06, outages_1_min=2.0, outage_s=1.0, bandwidth_bit_s=1.1e6
+    ),
+}
 
 
 class RadioLinks(Generic[T]):
@@ -29,14 +52,39 @@ class RadioLinks(Generic[T]):
         self._rng = rng
         self._sent = 0
         self._under_way: list[tuple[int, int, str, T]] = []
+        self._pairs = [(one, two) for place, one in enumerate(self._receivers) for two in self._receivers[:place]]
+        self._back_us: dict[frozenset[str], int] = {}
+        """Pair of robots to the time at which the newest interruption of their link ends."""
+        self._passed_us = -1
+        self._credit_bit = 0.0
 
-    def send(self, sender: str, message: T, now_us: int, settings: RadioSettings) -> None:
+    def pass_time(self, now_us: int, settings: RadioSettings) -> None:
+        """Interrupts links and refills the channel; call it once a tick, before messages are sent."""
+        passed_s = 0.0 if self._passed_us < 0 else (now_us - self._passed_us) / 1e6
+        burst_bit = settings.bandwidth_bit_s * _BURST_S
+        first = self._passed_us < 0
+        self._passed_us = now_us
+        self._credit_bit = (
+            burst_bit if first else min(burst_bit, self._credit_bit + settings.bandwidth_bit_s * passed_s)
+        )
+        drawn = self._rng.random((len(self._pairs), 2))
+        likely = -math.expm1(-settings.outages_1_min * passed_s / 60)
+        for pair, (luck, length) in zip(self._pairs, drawn.tolist(), strict=True):
+            if luck < likely:
+                self._back_us[frozenset(pair)] = now_us + round(-settings.outage_s * math.log1p(-length) * 1e6)
+
+    def send(self, sender: str, message: T, now_us: int, settings: RadioSettings, size_bytes: int = 0) -> None:
         """Sends to all receivers but the sender. Draws two random numbers a receiver, whatever the settings."""
+        self._credit_bit -= 8 * size_bytes
+        too_much = settings.bandwidth_bit_s > 0 and self._credit_bit < 0
+        if too_much:
+            self._credit_bit += 8 * size_bytes
         for receiver in self._receivers:
             if receiver == sender:
                 continue
             luck, jitter = self._rng.random(2).tolist()
-            if luck < settings.loss:
+            cut = self._back_us.get(frozenset((sender, receiver)), 0) > now_us
+            if luck < settings.loss or cut or too_much:
                 continue
             arrival_us = now_us + round((settings.delay_s + jitter * settings.delay_jitter_s) * 1e6)
             self._sent += 1

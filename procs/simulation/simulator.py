@@ -6,18 +6,33 @@ import numpy as np
 from pydantic import Field as Setting
 from pydantic import PositiveFloat
 
-from fwk import Clock, Component, Config, Each, Logger, Reads, TimeSource, Writes, channel
+from fwk import Clock, Component, Config, Each, Logger, Reads, Serves, TimeSource, Writes, channel
 from lcmtypes.robot import imu_t, kicker_drive_t, kicker_sensor_t, wheel_command_t, wheel_state_t
-from lcmtypes.soccer import ball_placement_t, ground_truth_t, match_events_t
+from lcmtypes.soccer import (
+    ball_placement_t,
+    field_t,
+    freeze_world_t,
+    ground_truth_t,
+    match_events_t,
+    place_ball_t,
+    place_robot_t,
+    reset_world_t,
+)
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.realism import Realism
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
+from procs.simulation.field_crew import FieldCrew
 from procs.simulation.physics.kick_mechanism import KickerCommand
-from procs.simulation.physics.realism import PRESETS, Realism
-from procs.simulation.physics.reports import event_message, robot_message
+from procs.simulation.physics.realism import Changes, noise_of
+from procs.simulation.physics.reports import event_message, field_message, robot_message
 from procs.simulation.physics.sensors import Encoders, Imu
 from procs.simulation.physics.settings import PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
+
+_FIELD_TICKS = 100  # from one message with the measures of the field to the next, for readers that come late
 
 
 class SimulatorConfig(Config):
@@ -25,10 +40,18 @@ class SimulatorConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
     physics: PhysicsSettings = PhysicsSettings()
-    """Ball, robots, kickers."""
+    """Motors, mouths, kickers."""
     realism: Realism = "realistic"
     """How far actuators and sensors are from ideal: none, friendly, realistic or harsh."""
+    errors: Changes = {}
+    """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
     starts: dict[str, tuple[float, float, float]] = {}
     """Where robots begin: name to x in m, y in m and heading in rad (world frame); others take the default place."""
     period_s: float = Setting(0.0, ge=0.0)
@@ -45,6 +68,11 @@ class Simulator(Component):
     wheel_command: Each[Reads[wheel_command_t]] = channel("*/wheel_command")
     kicker_drive: Each[Reads[kicker_drive_t]] = channel("*/kicker_drive")
     ball_placement: Reads[ball_placement_t] = channel("world/ball_placement")
+    place_robot: Serves[place_robot_t]
+    place_ball: Serves[place_ball_t]
+    freeze: Serves[freeze_world_t]
+    reset: Serves[reset_world_t]
+    field: Writes[field_t]
     ground_truth: Writes[ground_truth_t]
     match_events: Writes[match_events_t]
     wheel_state: Each[Writes[wheel_state_t]] = channel("*/wheel_state")
@@ -62,12 +90,23 @@ class Simulator(Component):
         Raises:
             ValueError: `starts` names a robot that is not there.
         """
-        config, noise = self.config, PRESETS[self.config.realism]
+        config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)
         for stranger in sorted(set(config.starts) - set(robots)):
             raise ValueError(f"{self.name}: starts: no robot '{stranger}'; there are: {', '.join(robots) or 'none'}")
         starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
-        self._world = World(robots, self.rng, config.field, config.physics, noise, starts)
+        self._world = World(
+            robots,
+            self.rng,
+            config.field,
+            config.robot,
+            config.ball,
+            config.physics,
+            noise,
+            starts,
+            config.players,
+        )
+        self._crew = FieldCrew(self._world, config.field)
         self._encoders = {robot: Encoders(noise, self.rng) for robot in robots}
         self._imus = {robot: Imu(noise, self.rng) for robot in robots}
         self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
@@ -80,8 +119,9 @@ class Simulator(Component):
         self._before_us = now_us
         self.time_source.next_us = now_us + self._period_us
         self._place_ball()
+        self._crew.carry_out(self.place_robot, self.place_ball, self.freeze, self.reset)
         self._command_robots()
-        events = self._world.advance(passed_us)
+        events = [] if self._crew.frozen else self._world.advance(passed_us)
         self._sense(passed_us / US_PER_S)
         self._report_truth()
         report = self.match_events.value
@@ -89,8 +129,11 @@ class Simulator(Component):
         report.ball_x_m, report.ball_y_m = self._world.ball.body.position
         report.ball_speed_m_s = self._world.ball.speed_m_s
         report.last_touch = self._world.last_touch
-        report.events = [event_message(event) for event in events]
+        report.events = [event_message(event, self.config.players) for event in events]
         self.match_events.write()
+        if self.clock.tick % _FIELD_TICKS == 1:
+            self.field.value = field_message(self.config.field)
+            self.field.write()
 
     def _place_ball(self) -> None:
         for placement in self.ball_placement.fresh:
@@ -114,7 +157,7 @@ class Simulator(Component):
             if robot not in self.kicker_drive:
                 continue
             drives = self.kicker_drive[robot]
-            wishes = [KickerCommand(drive.kick_id, drive.kick_m_s, drive.dribble) for drive in drives.fresh]
+            wishes = [_command(drive) for drive in drives.fresh]
             for wish in wishes if self._is_fresh(drives) else [KickerCommand(0, 0.0, dribble=False)]:
                 world.kickers[robot].command(wish, world.time_us)
 
@@ -124,28 +167,41 @@ class Simulator(Component):
 
     def _sense(self, passed_s: float) -> None:
         # All sensors are read, with or without a reader: readers must not change the random numbers.
+        now_us = self.clock.now_us
         for name, robot in self._world.robots.items():
-            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s())
-            heading_rad, yaw_rate_rad_s = self._imus[name].read(robot.body.angle, robot.body.angular_velocity, passed_s)
+            body = robot.body
+            moves = not self._crew.frozen
+            wheels_m_s = self._encoders[name].read(robot.drive.measured_m_s() if moves else (0.0, 0.0, 0.0), passed_s)
+            turning_rad_s = body.angular_velocity if moves else 0.0
+            inertial = self._imus[name].read(body.angle, turning_rad_s, body.velocity, passed_s)
             if name in self.wheel_state:
-                self.wheel_state[name].value.measured_m_s = wheels_m_s
+                state = self.wheel_state[name].value
+                state.measured_m_s, state.capture_us = wheels_m_s, now_us
                 self.wheel_state[name].write()
             if name in self.imu:
                 imu = self.imu[name].value
-                imu.heading_rad, imu.yaw_rate_rad_s = heading_rad, yaw_rate_rad_s
+                imu.heading_rad, imu.yaw_rate_rad_s, imu.ax_m_s2, imu.ay_m_s2 = inertial
+                imu.capture_us = now_us
                 self.imu[name].write()
             if name in self.kicker_sensor:
                 sensor, kicker = self.kicker_sensor[name].value, self._world.kickers[name]
                 sensor.ball_held = kicker.mouth.holds_ball
                 sensor.charged = kicker.charged(self._world.time_us)
-                sensor.kick_id = kicker.kick_id
+                sensor.charge = kicker.charge(self._world.time_us)
+                sensor.kick_id, sensor.capture_us = kicker.kick_id, now_us
                 self.kicker_sensor[name].write()
 
     def _report_truth(self) -> None:
-        truth, ball = self.ground_truth.value, self._world.ball.body
-        truth.ball_x_m, truth.ball_y_m = ball.position
-        truth.ball_z_m = 0.0
-        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.velocity
-        truth.ball_vz_m_s = 0.0
-        truth.robots = [robot_message(robot) for robot in self._world.robots.values()]
+        truth, ball, players = self.ground_truth.value, self._world.ball, self.config.players
+        truth.ball_x_m, truth.ball_y_m = ball.body.position
+        truth.ball_z_m = ball.z_m
+        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.body.velocity
+        truth.ball_vz_m_s = ball.vz_m_s
+        truth.robots = [robot_message(robot, players.get(name)) for name, robot in self._world.robots.items()]
         self.ground_truth.write()
+
+
+def _command(drive: kicker_drive_t) -> KickerCommand:
+    """Returns the command of a driver; an elevation that cannot be is none."""
+    elevation_rad = drive.elevation_rad if 0.0 <= drive.elevation_rad <= math.pi / 3 else 0.0
+    return KickerCommand(drive.kick_id, drive.kick_m_s, drive.dribble, elevation_rad)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from lcmtypes.soccer import game_event_t, game_state_t
+from procs.model.field import field_of
 from procs.view.field_drawing import field_drawing
 
 Newest = Callable[[str], Any]
@@ -12,7 +13,8 @@ Newest = Callable[[str], Any]
 
 GAME_STATE = "world/game_state"
 TRUTH = "world/ground_truth"
-CHANNELS = (GAME_STATE, TRUTH)
+MEASURES = "world/field"
+CHANNELS = (GAME_STATE, TRUTH, MEASURES)
 """What the display sends here."""
 
 STATES = {
@@ -62,7 +64,8 @@ def headline(newest: Newest) -> str:
 def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str]]]:
     """Returns the field with robots and ball for the display; nothing before the simulator has told where they are."""
     truth = newest(TRUTH)
-    return field_drawing(truth, columns, rows) if truth else []
+    measures = newest(MEASURES)
+    return field_drawing(truth, columns, rows, field_of(measures) if measures else None) if truth else []
 
 
 def summary(newest: Newest) -> list[str]:

@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
-from procs.model.field import Field
-from procs.model.robot import number_of, team_of
+from procs.model.ball import RADIUS_M as _BALL_RADIUS_M
+from procs.model.field import Field, field_of
+from procs.model.robot import ROBOT, number_of, team_of
 from procs.view.beliefs import draw_beliefs
 from procs.view.canvas import Canvas, Colour, Picture, write
 from procs.view.ground import draw_ground
@@ -25,10 +26,10 @@ BAR: Colour = (32, 28, 26)
 TEXT: Colour = (245, 245, 245)
 
 TRUTH = "world/ground_truth"
+MEASURES = "world/field"
 
-_ROBOT_RADIUS_M = 0.25
-_MOUTH_RAD = math.radians(30)
-_BALL_RADIUS_M = 0.11
+_ROBOT_RADIUS_M = ROBOT.radius_m
+_MOUTH_RAD = math.radians(ROBOT.mouth_half_angle_deg)
 _TAIL_S = 0.12
 
 
@@ -102,7 +103,7 @@ class TopView:
 def picture(newest: Callable[[str], Any]) -> Picture | None:
     """Draws the newest messages, decoded, of a running or recorded match; None before the world was seen."""
     truth = newest(TRUTH)
-    return None if truth is None else _view().draw(truth, newest(GAME_STATE))
+    return None if truth is None else _view(_field(newest)).draw(truth, newest(GAME_STATE))
 
 
 def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
@@ -112,12 +113,18 @@ def picture_with_beliefs(newest: Callable[[str], Any]) -> Picture | None:
         return None
     models = {robot.name: newest(f"{robot.name}/world_model") for robot in truth.robots}
     beliefs = {name: model for name, model in models.items() if model is not None}
-    return _view().draw(truth, newest(GAME_STATE), beliefs)
+    return _view(_field(newest)).draw(truth, newest(GAME_STATE), beliefs)
 
 
 @cache
-def _view() -> TopView:
-    return TopView()
+def _view(field: Field) -> TopView:
+    return TopView(field=field)
+
+
+def _field(newest: Callable[[str], Any]) -> Field:
+    """Returns the field of the match; the usual one where the simulator has not stated it."""
+    measures = newest(MEASURES)
+    return Field() if measures is None else field_of(measures)
 
 
 def _outline(robot: true_robot_t, radius_m: float) -> list[tuple[float, float]]:

@@ -7,6 +7,7 @@ import cv2
 import numpy as np
 
 from procs.model.algebra import Floats, weighted_mean
+from procs.model.ball import BALL
 from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
 from procs.vision.mirror import Mirror
 from procs.vision.uncertainty import ground_covariance
@@ -46,7 +47,7 @@ class BallFinder:
 
     mirror: Mirror
     colour: ColourRange
-    radius_m: float = 0.11
+    radius_m: float = BALL.radius_m
     deviation_px: float = 0.3
     """Standard deviation of the found centre."""
     least_fit: float = 0.4

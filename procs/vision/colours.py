@@ -17,6 +17,8 @@ BLACK: Bgr = (30, 28, 28)
 ORANGE: Bgr = (22, 108, 236)
 CYAN: Bgr = (214, 196, 40)
 MAGENTA: Bgr = (186, 48, 198)
+COLOURS: dict[str, Bgr] = {"cyan": CYAN, "magenta": MAGENTA}
+"""Of the markers of the teams."""
 FLOOR: Bgr = (124, 120, 112)
 
 Hsv = tuple[int, int, int]

@@ -16,7 +16,7 @@ class DetectorConfig(Config):
     mirror: MirrorConfig = MirrorConfig()
     """Calibration of the camera."""
     latency_s: float = Field(default=0.0, ge=0.0, le=1.0)
-    """From the exposure of a frame until its camera publishes it."""
+    """From the exposure of a frame until its camera publishes it, for cameras that do not state the exposure."""
 
 
 class Detector(Component, ABC):
@@ -35,7 +35,8 @@ class Detector(Component, ABC):
     @property
     def capture_us(self) -> int:
         """Logical time of the newest frame's exposure; 0 if it is not known."""
-        return max(0, self.image.announcement.header.time_us - round(self.config.latency_s * US_PER_S))
+        stated_us = self.image.announcement.value.capture_us
+        return stated_us or max(0, self.image.announcement.header.time_us - round(self.config.latency_s * US_PER_S))
 
     def loop(self) -> None:
         if not self.image.changed:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from procs.model.algebra import Floats, product
+from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Mask, Picture
 from procs.vision.mirror import Mirror
 from procs.vision.scan import Scan
@@ -36,7 +37,7 @@ class ObstacleFinder:
     black: ColourRange
     carpet: tuple[ColourRange, ...]
     """Colours of the carpet and its lines."""
-    radius_m: float = 0.25
+    radius_m: float = ROBOT.radius_m
     deviation_px: tuple[float, float] = (0.5, 0.8)
     """Standard deviation of the found middle in the picture, along and across the ray."""
     least_rays: int = 2

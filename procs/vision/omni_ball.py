@@ -4,6 +4,7 @@ from pydantic import Field as Setting
 
 from fwk import Writes
 from lcmtypes.soccer import ball_percept_t
+from procs.model.ball import BALL, BallModel
 from procs.vision.ball_finder import BallFinder, BallSighting
 from procs.vision.colours import ColourRange, Hsv, Picture
 from procs.vision.detector import Detector, DetectorConfig
@@ -16,8 +17,8 @@ class OmniBallConfig(DetectorConfig):
     """Least hue (0..179), saturation and value (0..255) of the ball's colour."""
     ball_high: Hsv = (20, 255, 255)
     """Greatest hue, saturation and value of the ball's colour."""
-    ball_radius_m: float = Setting(default=0.11, gt=0.0)
-    """Radius of the ball."""
+    ball: BallModel = BALL
+    """Size of the ball."""
     deviation_px: float = Setting(default=0.5, gt=0.0)
     """Standard deviation of the ball's centre in the picture, the shaking of the mirror included."""
     least_fit: float = Setting(default=0.4, gt=0.0, lt=1.0)
@@ -37,7 +38,7 @@ class OmniBall(Detector):
         colour = ColourRange(config.ball_low, config.ball_high)
         mirror = config.mirror.mirror()
         self._finder = BallFinder(
-            mirror, colour, config.ball_radius_m, config.deviation_px, config.least_fit, config.farthest_m
+            mirror, colour, config.ball.radius_m, config.deviation_px, config.least_fit, config.farthest_m
         )
 
     def detect(self, pixels: Picture) -> None:

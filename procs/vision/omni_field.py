@@ -6,6 +6,7 @@ from pydantic import Field as Setting
 from fwk import Writes
 from lcmtypes.soccer import line_points_t, obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
+from procs.model.robot import ROBOT, RobotModel
 from procs.vision.colours import ColourRange, Hsv, Picture, to_hsv
 from procs.vision.detector import Detector, DetectorConfig
 from procs.vision.line_finder import LineFinder
@@ -26,8 +27,8 @@ class OmniFieldConfig(DetectorConfig):
     """Radii of the circles that meet those lines which run towards the robot."""
     most_points: int = Setting(default=150, ge=1)
     """Line points sent at most, picked evenly from those found."""
-    robot_radius_m: float = Setting(default=0.25, gt=0.0)
-    """Radius of the other robots."""
+    robot: RobotModel = ROBOT
+    """Geometry of the other robots."""
     deviation_px: tuple[float, float] = (0.6, 1.5)
     """Standard deviation of a robot's middle in the picture, along and across the ray."""
     green_low: Hsv = (38, 70, 40)
@@ -72,7 +73,7 @@ class OmniField(Detector):
         self._star, self._rings = _star(config), _rings(config)
         self._lines = LineFinder(green, white)
         self._obstacles = ObstacleFinder(
-            mirror, self._star, black, (green, white), config.robot_radius_m, config.deviation_px
+            mirror, self._star, black, (green, white), config.robot.radius_m, config.deviation_px
         )
 
     def _find(self, pixels: Picture) -> tuple[Floats, list[Obstacle]]:
@@ -93,7 +94,7 @@ class OmniField(Detector):
     def _message(self, obstacle: Obstacle) -> obstacle_t:
         message = obstacle_t()
         message.x_m, message.y_m = obstacle.x_m, obstacle.y_m
-        message.radius_m = self.config.robot_radius_m
+        message.radius_m = self.config.robot.radius_m
         message.covariance_m2 = obstacle.covariance_m2.tolist()
         return message
 

@@ -30,6 +30,10 @@ class Mate:
     localized: bool
     covariance_m2: Floats = field(default_factory=_least_m2)
     """(2, 2) of the position at `told_s`, as the mate stated it."""
+    number: int = 0
+    """On the mate's back."""
+    holds_ball: bool = False
+    """The ball was in its mouth at `told_s`."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""

@@ -25,6 +25,8 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
         localized=message.localized,
         covariance_m2=covariance_m2 if proper else np.zeros((2, 2)),
+        number=message.number,
+        holds_ball=bool(message.ball_held),
     )
 
 

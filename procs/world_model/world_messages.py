@@ -64,7 +64,7 @@ def _ball(ball: BallTracker) -> ball_estimate_t:
 
 def _mate(mate: Mate, now_s: float) -> robot_estimate_t:
     estimate = robot_estimate_t()
-    estimate.name = mate.name
+    estimate.name, estimate.number = mate.name, mate.number
     estimate.x_m, estimate.y_m = mate.position_at(now_s).tolist()
     estimate.heading_rad = mate.heading_rad
     estimate.vx_m_s, estimate.vy_m_s = mate.velocity_m_s.tolist()

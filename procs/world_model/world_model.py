@@ -19,9 +19,10 @@ from lcmtypes.soccer import (
     team_message_t,
     world_model_t,
 )
-from procs.model.ball import RADIUS_M
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.frames import plausible
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.world_model.ball_tracker import BallTracker, Sighting
 from procs.world_model.opponents import OpponentSettings, strangers
@@ -33,6 +34,7 @@ from procs.world_model.told import ball_of, held_ball_of, mate_of, mouth_of, obs
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
+_HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
 _TOUCH_M = 0.9  # a robot this near to the ball may touch it within a tick
 
 
@@ -43,10 +45,12 @@ class WorldModelConfig(Config):
     """Measures of the field."""
     ball_timeout_s: float = Setting(default=2.0, gt=0.0)
     """The ball is unknown after that time without a sighting."""
-    ball_rolling_m_s2: float = Setting(default=0.4, ge=0.0)
-    """Deceleration of the rolling ball."""
-    mouth_m: float = Setting(default=0.33, gt=0.0)
-    """From the robot's middle to the middle of a ball that it holds."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
+    ball: BallModel = BALL
+    """Size and friction of the ball."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
     opponent_timeout_s: float = Setting(default=0.6, gt=0.0)
     """An opponent is forgotten after that time without a sighting."""
     mate_timeout_s: float = Setting(default=5.0, gt=0.0)
@@ -110,6 +114,7 @@ class WorldModel(Component):
         self._follow_ball(view, mates, told, passed_s)
         self._follow_opponents(view, mates, told, passed_s)
         fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
+        self.world_model.value.ball_holder = self._holder(mates)
         self.world_model.write()
         if self._message_due():
             self._tell_team(view)
@@ -130,18 +135,18 @@ class WorldModel(Component):
         kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
         self._kicks = kicker.kicks
         if kicked:
-            velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, config.mouth_m)
+            velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, self._mouth_m)
             self._ball.kick(velocity_m_s)
             message = self.team_message.value
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told)
         contact = self._in_contact(view, mates)
-        self._ball.advance(passed_s, config.ball_timeout_s, config.ball_rolling_m_s2, contact)
+        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact)
         if self._ball.known:
             self._ball.track.stay_within(*self._arena_m())
         if kicker.ball_held and view.localized and not kicked:
-            self._ball.hold(self._robot, *view.held_ball(config.mouth_m))
+            self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
         if self.ball_percept.refreshed:
             percept = self.ball_percept.value
             age_s = self._age_s(percept.capture_us)
@@ -152,14 +157,15 @@ class WorldModel(Component):
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
             self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
-            held = held_ball_of(message, mate, config.mouth_m)
+            held = held_ball_of(message, mate, self._mouth_m)
             self._see(mate.name, held, self.clock.since_s(message.header.time_us))
 
     def _arena_m(self) -> tuple[float, float]:
         """Returns how far along x and y the middle of the ball can get: to the wall, or to the net of a goal."""
+        radius_m = self.config.ball.radius_m
         field, (_, y_m) = self.config.field, self._ball.track.state[:2]
         depth_m = field.goal_depth_m if abs(y_m) < field.goal_width_m / 2 else field.border_m
-        return field.half_length_m + depth_m - RADIUS_M, field.half_width_m + field.border_m - RADIUS_M
+        return field.half_length_m + depth_m - radius_m, field.half_width_m + field.border_m - radius_m
 
     def _in_contact(self, view: OwnView, mates: list[Mate]) -> bool:
         """Returns whether a robot, or the wall around the field, is near the ball."""
@@ -189,7 +195,7 @@ class WorldModel(Component):
             age_s = self.clock.since_s(message.kick_us)
             sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s) and 0.0 <= age_s <= _STALE_S
             if message.kicks != known and sound:
-                mouth = mouth_of(mate, self.config.mouth_m, message.kick_us / US_PER_S)
+                mouth = mouth_of(mate, self._mouth_m, message.kick_us / US_PER_S)
                 self._ball.kick(np.array((message.kick_vx_m_s, message.kick_vy_m_s)), age_s, mouth)
 
     def _follow_opponents(
@@ -213,6 +219,25 @@ class WorldModel(Component):
                 seen = strangers(seen, team, now_s - age_s, rules)
                 self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
 
+    @property
+    def _mouth_m(self) -> float:
+        """From the robot's middle to the middle of a ball that it holds."""
+        return self.config.robot.held_ball_m(self.config.ball)
+
+    def _holder(self, mates: list[Mate]) -> str:
+        """Returns the robot of the team that has the ball in its mouth, `?` for an opponent at the ball, or nothing."""
+        if self.kicker_state.value.ball_held:
+            return self._robot
+        for mate in mates:
+            if mate.holds_ball and self.clock.now_s - mate.told_s <= _HOLDER_S:
+                return mate.name
+        if self._ball.known and len(self._opponents.sure):
+            away_m = self._opponents.states[self._opponents.sure, :2] - self._ball.track.state[:2]
+            near_m = self._mouth_m + 2 * float(np.sqrt(np.trace(self._ball.track.covariance[:2, :2])))
+            if (np.hypot(away_m[:, 0], away_m[:, 1]) < min(near_m, _TOUCH_M)).any():
+                return "?"
+        return ""
+
     def _message_due(self) -> bool:
         """Returns whether to send now: about once a period, and rather in a tick with a new sighting.
 
@@ -229,8 +254,9 @@ class WorldModel(Component):
 
     def _tell_team(self, view: OwnView) -> None:
         """Sends the own state with the newest own sightings, each once."""
+        player = self.config.players.get(self._robot)
         message = self.team_message.value
-        message.robot = self._robot
+        message.robot, message.number = self._robot, player.number if player else 0
         message.role, message.intention = self.role.value.role, self.role.value.intention
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)

@@ -125,6 +125,8 @@ class HostFile(_Entry):
     """`module:function` that draws a recording."""
     config: SettingsByComponent = {}
     """Settings by name pattern."""
+    shared: dict[str, Any] = {}
+    """Settings that go to every component whose class has a setting of that name."""
 
 
 class LaunchFile(HostFile):

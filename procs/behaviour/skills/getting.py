@@ -5,11 +5,13 @@ from abc import abstractmethod
 
 from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
+from procs.model.ball import BALL
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
+from procs.model.robot import ROBOT
 
 _HANDLING_ON_M = 1.0
-_PUSH_M = 0.27  # middles of robot and ball when the ball is pressed into the mouth; they touch at 0.33
+_PUSH_M = ROBOT.held_ball_m(BALL) - 0.06  # middles of robot and ball when the ball is pressed into the mouth
 _STAGING_M = 0.75
 _ALIGNED_RAD = 0.35
 _ENTRY_M_S = 0.5

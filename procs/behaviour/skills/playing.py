@@ -6,11 +6,13 @@ from abc import abstractmethod
 from procs.behaviour import ballistics
 from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
 from procs.behaviour.view import Robot
+from procs.model.ball import BALL
 from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, clamp, wrap_rad
+from procs.model.robot import ROBOT
 
 _LOST_S = 0.3  # a ball that the light barrier misses for longer is lost
-_MOUTH_M = 0.33  # from the robot's middle to the middle of the ball in the mouth
+_MOUTH_M = ROBOT.held_ball_m(BALL)  # from the robot's middle to the middle of the ball in the mouth
 _LEAST_KICK_M_S = 1.0
 _DRIBBLE_M_S = 2.7
 _THERE_M = 0.3

@@ -7,11 +7,24 @@ from procs.model.field import SIDES, Field, Point
 WALL, BALL, ROBOT, HULL = 1, 2, 3, 4
 """Collision types; a robot's round body meets everything but the ball, its hull with the mouth only the ball."""
 
-_BALL_BIT, _SOLID_BIT = 1, 2
-BALL_FILTER = pymunk.ShapeFilter(categories=_BALL_BIT)
+_BALL_BIT, _SOLID_BIT, _HULL_BIT, _GOAL_BIT = 1, 2, 4, 8
 WALL_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT)
-ROBOT_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT, mask=_SOLID_BIT)
-HULL_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT, mask=_BALL_BIT)
+GOAL_FILTER = pymunk.ShapeFilter(categories=_GOAL_BIT)
+ROBOT_FILTER = pymunk.ShapeFilter(categories=_SOLID_BIT, mask=_SOLID_BIT | _GOAL_BIT)
+HULL_FILTER = pymunk.ShapeFilter(categories=_HULL_BIT, mask=_BALL_BIT)
+_BALL_FILTERS = {
+    (over_robots, over_goals): pymunk.ShapeFilter(
+        categories=_BALL_BIT, mask=_SOLID_BIT | (0 if over_robots else _HULL_BIT) | (0 if over_goals else _GOAL_BIT)
+    )
+    for over_robots in (False, True)
+    for over_goals in (False, True)
+}
+
+
+def ball_filter(over_robots: bool = False, over_goals: bool = False) -> pymunk.ShapeFilter:
+    """Returns what a ball at some height meets: always the walls, and what it does not fly over."""
+    return _BALL_FILTERS[over_robots, over_goals]
+
 
 _BOUNCE_WALL, _BOUNCE_POST, _BOUNCE_NET = 0.5, 0.7, 0.05
 _WALL_RADIUS_M = 0.05
@@ -24,22 +37,22 @@ def build_arena(space: pymunk.Space, field: Field) -> None:
     y_m = field.half_width_m + field.border_m + _WALL_RADIUS_M
     corners = [Point(-x_m, -y_m), Point(x_m, -y_m), Point(x_m, y_m), Point(-x_m, y_m)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
-        _add_segment(space, start, end, _WALL_RADIUS_M, _BOUNCE_WALL)
+        _add(space, pymunk.Segment(space.static_body, start, end, _WALL_RADIUS_M), _BOUNCE_WALL, WALL_FILTER)
     for side in SIDES:
         posts = field.goal_posts(side)
         back_m = side * (field.half_length_m + field.goal_depth_m + _NET_RADIUS_M)
         for post in posts:
             circle = pymunk.Circle(space.static_body, field.post_diameter_m / 2, post)
-            _add(space, circle, _BOUNCE_POST)
-            _add_segment(space, post, Point(back_m, post.y_m), _NET_RADIUS_M, _BOUNCE_NET)
-        _add_segment(space, Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m), _NET_RADIUS_M, _BOUNCE_NET)
+            _add(space, circle, _BOUNCE_POST, GOAL_FILTER)
+            _add_net(space, post, Point(back_m, post.y_m))
+        _add_net(space, Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m))
 
 
-def _add_segment(space: pymunk.Space, start: Point, end: Point, radius_m: float, bounce: float) -> None:
-    _add(space, pymunk.Segment(space.static_body, start, end, radius_m), bounce)
+def _add_net(space: pymunk.Space, start: Point, end: Point) -> None:
+    _add(space, pymunk.Segment(space.static_body, start, end, _NET_RADIUS_M), _BOUNCE_NET, GOAL_FILTER)
 
 
-def _add(space: pymunk.Space, shape: pymunk.Shape, bounce: float) -> None:
-    shape.collision_type, shape.filter = WALL, WALL_FILTER
+def _add(space: pymunk.Space, shape: pymunk.Shape, bounce: float, meets: pymunk.ShapeFilter) -> None:
+    shape.collision_type, shape.filter = WALL, meets
     shape.elasticity, shape.friction = bounce, 0.5
     space.add(shape)

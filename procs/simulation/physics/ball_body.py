@@ -4,24 +4,41 @@ import math
 
 import pymunk
 
-from procs.simulation.physics.arena import BALL, BALL_FILTER
+from procs.model.ball import BallModel
+from procs.model.robot import ROBOT
+from procs.simulation.physics.arena import BALL, ball_filter
 from procs.simulation.physics.rolling import RollingFriction
-from procs.simulation.physics.settings import BallSettings
 
+GRAVITY_M_S2 = 9.81
+_LEAST_REBOUND_M_S = 0.5  # the ball stays on the ground after a softer one
 _UPRIGHT_SPIN_S = 0.5  # time constant with which the ground stops a spin around the vertical
 
 
 class Ball:
-    """A ball that stays on the ground; positions in the world frame."""
+    """A ball on the ground or in flight; positions in the world frame."""
 
-    def __init__(self, space: pymunk.Space, ball: BallSettings, friction_scale: float = 1.0) -> None:
+    def __init__(
+        self,
+        space: pymunk.Space,
+        ball: BallModel,
+        friction_scale: float = 1.0,
+        robot_height_m: float = ROBOT.height_m,
+        goal_height_m: float = 1.0,
+    ) -> None:
+        """The ball meets robots and goals while its lowest point is not above them."""
+        self.z_m = 0.0
+        """Height of its lowest point above the ground."""
+        self.vz_m_s = 0.0
+        self._robot_height_m, self._goal_height_m = robot_height_m, goal_height_m
+        self._bounce = ball.bounce
         self.radius_m = ball.radius_m
         self.mass_kg = ball.mass_kg
         self.friction = RollingFriction(ball, friction_scale)
         self.body = pymunk.Body(ball.mass_kg, ball.inertia * ball.mass_kg * ball.radius_m**2)
         shape = pymunk.Circle(self.body, ball.radius_m)
         shape.collision_type, shape.elasticity, shape.friction = BALL, 1.0, 1.0
-        shape.filter = BALL_FILTER
+        shape.filter = ball_filter()
+        self._shape = shape
         space.add(self.body, shape)
 
     @property
@@ -29,13 +46,33 @@ class Ball:
         """Speed over the ground."""
         return math.hypot(*self.body.velocity)
 
+    @property
+    def flies(self) -> bool:
+        """True if the ball is above the ground."""
+        return self.z_m > 0.0 or self.vz_m_s > 0.0
+
+    def fall(self, duration_s: float) -> None:
+        """Lets gravity act on a ball in flight for a while; on the ground it bounces."""
+        if not self.flies:
+            return
+        self.z_m += self.vz_m_s * duration_s - GRAVITY_M_S2 * duration_s**2 / 2
+        self.vz_m_s -= GRAVITY_M_S2 * duration_s
+        if self.z_m <= 0.0:
+            rebound_m_s = -self._bounce * self.vz_m_s
+            self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > _LEAST_REBOUND_M_S else 0.0
+        self._shape.filter = ball_filter(self.z_m > self._robot_height_m, self.z_m > self._goal_height_m)
+
     def rub(self, duration_s: float) -> None:
-        """Lets the ground act on the ball for a while."""
+        """Lets the ground act on the ball for a while, unless it flies."""
+        if self.flies:
+            return
         self.body.angular_velocity *= math.exp(-duration_s / _UPRIGHT_SPIN_S)
         self.body.velocity = self.friction.advance(*self.body.velocity, duration_s)
 
     def put(self, x_m: float, y_m: float) -> None:
         """Lays the ball down at rest."""
+        self.z_m = self.vz_m_s = 0.0
+        self._shape.filter = ball_filter()
         self.body.position = (x_m, y_m)
         self.body.velocity = (0.0, 0.0)
         self.body.angular_velocity = 0.0

@@ -3,10 +3,10 @@
 import math
 
 from procs.model.kinematics import SIN_60, Velocity, Wheels, wheels_of
+from procs.model.robot import RobotModel
+from procs.simulation.physics.ball_body import GRAVITY_M_S2
 from procs.simulation.physics.delay import DelayLine
-from procs.simulation.physics.settings import RobotSettings
-
-GRAVITY_M_S2 = 9.81
+from procs.simulation.physics.settings import DriveSettings
 
 
 class Drive:
@@ -16,11 +16,12 @@ class Drive:
     its rim over the ground and is limited by the grip, so hard acceleration makes wheels slip and encoders lie.
     """
 
-    def __init__(self, robot: RobotSettings, delay_s: float = 0.0) -> None:
+    def __init__(self, robot: RobotModel, settings: DriveSettings, delay_s: float = 0.0) -> None:
         self.wheels_m_s: Wheels = (0.0, 0.0, 0.0)
         """Rim speeds now."""
         self._robot = robot
-        self._grip_n = robot.traction * robot.mass_kg * GRAVITY_M_S2 / 3
+        self._settings = settings
+        self._grip_n = settings.traction * robot.mass_kg * GRAVITY_M_S2 / 3
         self._line: DelayLine[Wheels] = DelayLine(round(delay_s * 1e6))
         self._wanted_m_s: Wheels = (0.0, 0.0, 0.0)
         self._travelled_m: Wheels = (0.0, 0.0, 0.0)
@@ -36,8 +37,8 @@ class Drive:
         """Lets the motors follow their commands for a while."""
         for wanted in self._line.due(now_us):
             self._wanted_m_s = wanted
-        share = -math.expm1(-duration_s / self._robot.motor_time_s)
-        catching_up_s = self._robot.motor_time_s * share
+        share = -math.expm1(-duration_s / self._settings.motor_time_s)
+        catching_up_s = self._settings.motor_time_s * share
         (a, b, c), (to_a, to_b, to_c) = self.wheels_m_s, self._wanted_m_s
         self.wheels_m_s = a + (to_a - a) * share, b + (to_b - b) * share, c + (to_c - c) * share
         way_a, way_b, way_c = self._travelled_m
@@ -50,7 +51,7 @@ class Drive:
 
     def push(self, velocity: Velocity) -> tuple[float, float, float]:
         """Returns force in N along x and y of the robot frame and torque in Nm on a body that moves at `velocity`."""
-        distance_m, full_slip_m_s = self._robot.wheel_distance_m, self._robot.full_slip_m_s
+        distance_m, full_slip_m_s = self._robot.wheel_distance_m, self._settings.full_slip_m_s
         (rim_1, rim_2, rim_3), (ground_1, ground_2, ground_3) = self.wheels_m_s, wheels_of(velocity, distance_m)
         first = self._grip_n * math.tanh((rim_1 - ground_1) / full_slip_m_s)
         second = self._grip_n * math.tanh((rim_2 - ground_2) / full_slip_m_s)

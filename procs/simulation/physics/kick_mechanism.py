@@ -20,6 +20,8 @@ class KickerCommand(NamedTuple):
     kick_id: int
     speed_m_s: float
     dribble: bool
+    elevation_rad: float = 0.0
+    """0: along the ground; otherwise a lob whose speed over the ground is `speed_m_s`."""
 
 
 class Push(NamedTuple):
@@ -28,6 +30,8 @@ class Push(NamedTuple):
     change_m_s: pymunk.Vec2d
     """Of the ball's velocity, world frame."""
     kicked: bool
+    lift_m_s: float = 0.0
+    """Vertical speed that a lob gives to the ball."""
 
 
 class Kicker:
@@ -62,15 +66,21 @@ class Kicker:
                 self.kick_id = command.kick_id
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + _RELEASE_US
-                push = self._fire(command.speed_m_s)
+                push = self._fire(command.speed_m_s, command.elevation_rad)
         if self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
             push = Push(self.mouth.pull(duration_s), kicked=False)
         return push
 
-    def _fire(self, speed_m_s: float) -> Push | None:
+    def charge(self, now_us: int) -> float:
+        """Returns how much of the energy of a kick is there, 0..1."""
+        missing_s = (self._charged_from_us - now_us) / 1e6
+        return min(1.0, max(0.0, 1.0 - missing_s / self._settings.recharge_s))
+
+    def _fire(self, speed_m_s: float, elevation_rad: float) -> Push | None:
         speed_error, direction_error = self._rng.standard_normal(2).tolist()
         if not self.mouth.holds_ball:
             return None
-        speed_m_s = min(speed_m_s, self._settings.limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
+        limit_m_s = self._settings.limit_m_s * math.cos(elevation_rad)
+        speed_m_s = min(speed_m_s, limit_m_s) * (1 + self._noise.kick_speed_sd * speed_error)
         error_rad = math.radians(self._noise.kick_direction_sd_deg) * direction_error
-        return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True)
+        return Push(self.mouth.kick(speed_m_s, error_rad), kicked=True, lift_m_s=speed_m_s * math.tan(elevation_rad))

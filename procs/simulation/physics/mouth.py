@@ -14,17 +14,19 @@ _GAP_M = 0.002  # kept between mouth and handled ball, so that handling does not
 class Mouth:
     """The front of one robot, as far as it concerns the ball."""
 
-    def __init__(self, robot: Robot, ball: Ball, handling: HandlingSettings) -> None:
+    def __init__(self, robot: Robot, ball: Ball, handling: HandlingSettings, strength: float = 1.0) -> None:
+        """`strength` multiplies the acceleration that the handling can bring about."""
         self._robot = robot
         self._ball = ball
         self._handling = handling
+        self._pull_m_s2 = handling.pull_m_s2 * strength
         self._far_m = robot.radius_m + ball.radius_m + handling.reach_m
 
     @property
     def holds_ball(self) -> bool:
         """True if the light barrier sees the ball in the mouth."""
         away = self._ball.body.position - self._robot.body.position
-        if away.dot(away) > self._far_m**2:
+        if self._ball.z_m > self._handling.highest_m or away.dot(away) > self._far_m**2:
             return False
         x_m, y_m = self._ball_at()
         gap_m = x_m - self._robot.mouth_x_m - self._ball.radius_m
@@ -41,7 +43,7 @@ class Mouth:
         approach = pymunk.Vec2d(wanted_x_m - x_m, -y_m) / handling.centring_s
         mouth_velocity = robot.velocity_at_local_point((x_m, y_m))
         change = mouth_velocity + approach.rotated(robot.angle) - self._ball.body.velocity
-        limit_m_s = handling.pull_m_s2 * duration_s
+        limit_m_s = self._pull_m_s2 * duration_s
         return self._recoil(change if change.length <= limit_m_s else change.scale_to_length(limit_m_s))
 
     def kick(self, speed_m_s: float, direction_error_rad: float) -> pymunk.Vec2d:

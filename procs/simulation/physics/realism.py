@@ -1,36 +1,47 @@
-"""How far the simulated hardware is from ideal: named presets from none to harsh."""
+"""How far the simulated bodies are from ideal: named presets from none to harsh.
 
-from typing import Literal
+`realistic` has the values that teams report, `friendly` about a third of them, `harsh` twice as much, like the realism
+files of ER-Force's simulator. Values without a source are estimates.
+"""
 
-from pydantic import BaseModel, ConfigDict
+from typing import Annotated
 
-Realism = Literal["none", "friendly", "realistic", "harsh"]
+from pydantic import AfterValidator, BaseModel, ConfigDict
+
+from procs.model.realism import Realism
 
 
 class Noise(BaseModel):
-    """Errors and delays of actuators and sensors; `_sd` is a standard deviation."""
+    """Errors and delays of actuators and sensors; `_sd` is a standard deviation. 0: ideal."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
     drive_delay_s: float = 0.0
-    """From the arrival of a wheel command until the motors follow it."""
+    """From the arrival of a wheel command until the motors follow it. CAMBADA: 140 ms, Tribots: 200 ms for the loop."""
     kick_delay_s: float = 0.0
-    """From the arrival of a kicker command until the kicker follows it."""
+    """From the arrival of a kicker command until the kicker follows it. NuBot: 100 ms with a relay."""
     kick_direction_sd_deg: float = 0.0
+    """Error of a kick's direction. CAMBADA accepts 1 degree."""
     kick_speed_sd: float = 0.0
     """Relative error of a kick's speed."""
     friction_spread: float = 0.0
-    """The ball's sliding and rolling deceleration are scaled by a factor between one minus and one plus this."""
+    """The ball's sliding and rolling deceleration are scaled by a factor between one minus and one plus this; 30 %
+    cover the published values."""
+    handling_loss: float = 0.0
+    """Share of the ball handling's force that is missing; the handling loses a ball that asks for more."""
     wheel_scale_sd: float = 0.0
-    """Relative error of each wheel's encoder, constant in a match."""
-    wheel_speed_sd: float = 0.0
-    """Relative error of each wheel's measured speed, new in each tick."""
-    compass_sd_rad: float = 0.0
-    """Error of the compass, new in each tick."""
+    """Relative error of each wheel's encoder, constant in a match. Twente: a constant factor for each axis."""
+    wheel_noise_sqrt_s: float = 0.0
+    """Relative error of the way that a wheel measures in one second, with steady speed. Tick by tick it is larger by
+    the square root of the ticks in a second."""
+    compass_noise_sqrt_s: float = 0.0
+    """Error in rad of the compass averaged over one second."""
     compass_drift_sd_rad: float = 0.0
     """Drift of the compass after one minute; it grows with the square root of time."""
-    gyro_sd_rad_s: float = 0.0
-    """Error of the measured yaw rate, new in each tick."""
+    gyro_noise_sqrt_s: float = 0.0
+    """Error in rad of the heading that the gyro measures in one second."""
+    gyro_bias_sd_rad_s: float = 0.0
+    """Constant error of the yaw rate; 0.1 degrees a second are usual for cheap gyros."""
 
 
 PRESETS: dict[Realism, Noise] = {
@@ -41,11 +52,13 @@ PRESETS: dict[Realism, Noise] = {
         kick_direction_sd_deg=0.5,
         kick_speed_sd=0.01,
         friction_spread=0.1,
+        handling_loss=0.2,
         wheel_scale_sd=0.01,
-        wheel_speed_sd=0.02,
-        compass_sd_rad=0.01,
+        wheel_noise_sqrt_s=0.0045,
+        compass_noise_sqrt_s=0.0022,
         compass_drift_sd_rad=0.01,
-        gyro_sd_rad_s=0.01,
+        gyro_noise_sqrt_s=0.0022,
+        gyro_bias_sd_rad_s=0.0005,
     ),
     "realistic": Noise(
         drive_delay_s=0.06,
@@ -53,11 +66,13 @@ PRESETS: dict[Realism, Noise] = {
         kick_direction_sd_deg=1.0,
         kick_speed_sd=0.03,
         friction_spread=0.3,
+        handling_loss=0.4,
         wheel_scale_sd=0.03,
-        wheel_speed_sd=0.05,
-        compass_sd_rad=0.03,
+        wheel_noise_sqrt_s=0.0112,
+        compass_noise_sqrt_s=0.0067,
         compass_drift_sd_rad=0.03,
-        gyro_sd_rad_s=0.02,
+        gyro_noise_sqrt_s=0.0045,
+        gyro_bias_sd_rad_s=0.0017,
     ),
     "harsh": Noise(
         drive_delay_s=0.1,
@@ -65,10 +80,27 @@ PRESETS: dict[Realism, Noise] = {
         kick_direction_sd_deg=2.0,
         kick_speed_sd=0.06,
         friction_spread=0.5,
+        handling_loss=0.6,
         wheel_scale_sd=0.06,
-        wheel_speed_sd=0.1,
-        compass_sd_rad=0.06,
+        wheel_noise_sqrt_s=0.0224,
+        compass_noise_sqrt_s=0.0134,
         compass_drift_sd_rad=0.06,
-        gyro_sd_rad_s=0.04,
+        gyro_noise_sqrt_s=0.009,
+        gyro_bias_sd_rad_s=0.0035,
     ),
 }
+
+
+def _known(changes: dict[str, float]) -> dict[str, float]:
+    for name in sorted(set(changes) - set(Noise.model_fields)):
+        raise ValueError(f"no error '{name}'; there are {', '.join(Noise.model_fields)}")
+    return changes
+
+
+Changes = Annotated[dict[str, float], AfterValidator(_known)]
+"""Errors by name that differ from those of a preset."""
+
+
+def noise_of(realism: Realism, changes: dict[str, float]) -> Noise:
+    """Returns the errors of a preset with changes."""
+    return PRESETS[realism].model_copy(update=changes)

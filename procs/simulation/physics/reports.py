@@ -1,30 +1,45 @@
 """Fills the messages of the simulator."""
 
 import math
+from collections.abc import Mapping
 
-from lcmtypes.soccer import game_state_t, match_event_t, true_robot_t
-from procs.model.robot import CYAN, MAGENTA, team_of
+from lcmtypes.soccer import field_t, game_state_t, match_event_t, true_robot_t
+from procs.model.field import Field
+from procs.model.robot import CYAN, MAGENTA, Player
 from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.robot_body import Robot
 
 _TEAMS = {CYAN: game_state_t.TEAM_CYAN, MAGENTA: game_state_t.TEAM_MAGENTA}
 
 
-def event_message(event: Event) -> match_event_t:
+def event_message(event: Event, players: Mapping[str, Player]) -> match_event_t:
     """Returns an event for the referee; the team of a goal is the one that attacks that goal."""
+    player = players.get(event.robot)
     message = match_event_t()
     message.kind = int(event.kind)
     scorer = CYAN if event.x_m > 0 else MAGENTA
-    message.team = _TEAMS.get(scorer if event.kind is Kind.GOAL else team_of(event.robot), game_state_t.TEAM_NONE)
+    message.team = _TEAMS.get(
+        scorer if event.kind is Kind.GOAL else player.team if player else "", game_state_t.TEAM_NONE
+    )
     message.robot, message.other = event.robot, event.other
     message.x_m, message.y_m, message.speed_m_s = event.x_m, event.y_m, event.speed_m_s
     return message
 
 
-def robot_message(robot: Robot) -> true_robot_t:
+def field_message(field: Field) -> field_t:
+    """Returns the measures of the field."""
+    message = field_t()
+    for name, value in field.model_dump().items():
+        setattr(message, name, value)
+    return message
+
+
+def robot_message(robot: Robot, player: Player | None) -> true_robot_t:
     """Returns a robot's true pose (heading within -pi..pi) and velocity in the world frame."""
     message = true_robot_t()
     message.name = robot.name
+    if player:
+        message.team, message.number = player.team, player.number
     message.x_m, message.y_m = robot.body.position
     message.heading_rad = math.remainder(robot.body.angle, 2 * math.pi)
     message.vx_m_s, message.vy_m_s = robot.body.velocity

@@ -5,9 +5,9 @@ import math
 import pymunk
 
 from procs.model.kinematics import Velocity
+from procs.model.robot import RobotModel
 from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
 from procs.simulation.physics.drive import Drive
-from procs.simulation.physics.settings import RobotSettings
 
 _HULL_CORNERS = 16
 _MOUTH_LIP_M = 0.005
@@ -17,12 +17,12 @@ _BOUNCE_MOUTH, _BOUNCE_HULL, _BOUNCE_ROBOT = 0.2, 0.5, 0.3
 class Robot:
     """One robot; positions in the world frame."""
 
-    def __init__(self, space: pymunk.Space, name: str, robot: RobotSettings, drive: Drive) -> None:
+    def __init__(self, space: pymunk.Space, name: str, robot: RobotModel, drive: Drive) -> None:
         self.name = name
         self.radius_m = robot.radius_m
         self.drive = drive
         half_rad = math.radians(robot.mouth_half_angle_deg)
-        self.mouth_x_m = robot.radius_m * math.cos(half_rad)
+        self.mouth_x_m = robot.mouth_m
         """From the robot's middle to the plane of the mouth."""
         self.body = pymunk.Body(robot.mass_kg, robot.mass_kg * robot.radius_m**2 / 2)
         half_mouth_m = robot.radius_m * math.sin(half_rad)

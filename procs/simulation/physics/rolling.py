@@ -6,7 +6,7 @@ every push, bounce or kick starts a new sliding phase by itself.
 
 import math
 
-from procs.simulation.physics.settings import BallSettings
+from procs.model.ball import BallModel
 
 STANDSTILL_M_S = 0.01
 
@@ -14,7 +14,7 @@ STANDSTILL_M_S = 0.01
 class RollingFriction:
     """Keeps the ball's spin as the velocity (m/s, world frame) at which it would roll without sliding."""
 
-    def __init__(self, ball: BallSettings, scale: float = 1.0) -> None:
+    def __init__(self, ball: BallModel, scale: float = 1.0) -> None:
         """`scale` multiplies both decelerations of `ball`."""
         self._sliding_m_s2 = ball.sliding_m_s2 * scale
         self._rolling_m_s2 = ball.rolling_m_s2 * scale

@@ -1,11 +1,14 @@
-"""Readings of a robot's wheel encoders and compass, with their errors."""
+"""Readings of a robot's wheel encoders, compass, gyro and accelerometer, with their errors."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from procs.model.kinematics import Wheels
 from procs.simulation.physics.realism import Noise
+
+_LEAST_S = 1e-3  # a shorter time between readings gives no more noise
 
 
 class Encoders:
@@ -16,23 +19,46 @@ class Encoders:
         self._rng = rng
         self._scales = (1.0 + noise.wheel_scale_sd * rng.standard_normal(3)).tolist()
 
-    def read(self, wheels_m_s: Wheels) -> list[float]:
-        """Returns the rim speeds as measured."""
-        noise = (self._noise.wheel_speed_sd * self._rng.standard_normal(3)).tolist()
+    def read(self, wheels_m_s: Wheels, passed_s: float) -> list[float]:
+        """Returns the rim speeds as measured, `passed_s` after the last reading."""
+        deviation = self._noise.wheel_noise_sqrt_s / math.sqrt(max(passed_s, _LEAST_S))
+        noise = (deviation * self._rng.standard_normal(3)).tolist()
         return [speed * (scale + error) for speed, scale, error in zip(wheels_m_s, self._scales, noise, strict=True)]
 
 
+class Inertial(NamedTuple):
+    """What an inertial measurement unit reads."""
+
+    heading_rad: float
+    """-pi..pi, by the compass."""
+    yaw_rate_rad_s: float
+    ax_m_s2: float
+    """Mean acceleration since the last reading, robot frame."""
+    ay_m_s2: float
+
+
 class Imu:
-    """Compass and gyro: white noise, and a compass whose zero wanders."""
+    """Compass, gyro and accelerometer: white noise, a compass whose zero wanders, and a gyro with a constant error."""
 
     def __init__(self, noise: Noise, rng: np.random.Generator) -> None:
         self._noise = noise
         self._rng = rng
         self._drift_rad = 0.0
+        self._bias_rad_s = noise.gyro_bias_sd_rad_s * float(rng.standard_normal())
+        self._before_m_s: tuple[float, float] | None = None
 
-    def read(self, heading_rad: float, yaw_rate_rad_s: float, passed_s: float) -> tuple[float, float]:
-        """Returns heading (-pi..pi) and yaw rate as measured, `passed_s` after the last reading."""
+    def read(
+        self, heading_rad: float, yaw_rate_rad_s: float, velocity_m_s: tuple[float, float], passed_s: float
+    ) -> Inertial:
+        """Returns the readings `passed_s` after the last ones; the velocity is of the world frame."""
         drift, compass, gyro = self._rng.standard_normal(3).tolist()
         self._drift_rad += self._noise.compass_drift_sd_rad * math.sqrt(passed_s / 60.0) * drift
-        measured_rad = heading_rad + self._drift_rad + self._noise.compass_sd_rad * compass
-        return math.remainder(measured_rad, 2 * math.pi), yaw_rate_rad_s + self._noise.gyro_sd_rad_s * gyro
+        root = math.sqrt(max(passed_s, _LEAST_S))
+        measured_rad = heading_rad + self._drift_rad + self._noise.compass_noise_sqrt_s / root * compass
+        rate_rad_s = yaw_rate_rad_s + self._bias_rad_s + self._noise.gyro_noise_sqrt_s / root * gyro
+        before, self._before_m_s = self._before_m_s or velocity_m_s, velocity_m_s
+        ax, ay = ((now - then) / max(passed_s, _LEAST_S) for now, then in zip(velocity_m_s, before, strict=True))
+        cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
+        return Inertial(
+            math.remainder(measured_rad, 2 * math.pi), rate_rad_s, cosine * ax + sine * ay, cosine * ay - sine * ax
+        )

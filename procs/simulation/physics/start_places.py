@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from procs.model.field import Field, Point
-from procs.model.robot import number_of, side_of, team_of
+from procs.model.robot import Player, side_of
 
 
 class Pose(NamedTuple):
@@ -20,11 +20,14 @@ _PLACES = {1: (0.95, 0.0), 2: (0.3, 0.0), 3: (0.45, -0.4), 4: (0.45, 0.4), 5: (0
 """By number: distance from the halfway line and offset to the left, as shares of half the length and half the width."""
 
 
-def starting_pose(robot: str, field: Field) -> Pose:
-    """Returns a place in the own half, facing the other goal: number 1 in the goal, high numbers at the touch line."""
-    number = number_of(robot)
+def starting_pose(player: Player | None, field: Field) -> Pose:
+    """Returns a place in the own half, facing the other goal: number 1 in the goal, high numbers at the touch line.
+
+    A robot that is not a player stands at cyan's touch line.
+    """
+    number = player.number if player else 0
     depth, offset = _PLACES.get(number, (0.9 - 0.1 * (number % 9), -0.85))
-    side = side_of(team_of(robot))
+    side = side_of(player.team if player else "")
     heading_rad = math.pi if side > 0 else 0.0
     return Pose(side * depth * field.half_length_m, -side * offset * field.half_width_m, heading_rad)
 

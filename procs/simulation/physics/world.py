@@ -6,10 +6,13 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import pymunk
 
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Field, Point
+from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
 from procs.simulation.physics.ball_body import Ball
 from procs.simulation.physics.contacts import Contacts
+from procs.simulation.physics.crossbar import Crossbar
 from procs.simulation.physics.drive import Drive
 from procs.simulation.physics.events import Event, Kind, LineJudge
 from procs.simulation.physics.kick_mechanism import Kicker, Push
@@ -30,29 +33,36 @@ class World:
         robots: Sequence[str],
         rng: np.random.Generator,
         field: Field | None = None,
+        robot: RobotModel = ROBOT,
+        ball: BallModel = BALL,
         physics: PhysicsSettings | None = None,
         noise: Noise | None = None,
         starts: Mapping[str, Pose] | None = None,
+        players: Mapping[str, Player] = PLAYERS,
     ) -> None:
-        """`robots` are names like `cyan1`; those without a start in `starts` begin at default places."""
+        """`robots` are namespaces; those without a start in `starts` begin at the places of their `players`."""
         self.time_us = 0
         self.last_touch = ""
         """Robot that touched the ball last since it was placed."""
         self._field = field or Field()
+        self._robot = robot
         self._physics = physics or PhysicsSettings()
         noise = noise or Noise()
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
         build_arena(self._space, self._field)
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
-        self.ball = Ball(self._space, self._physics.ball, friction_scale)
+        self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
+        self._bar = Crossbar(self._field, self.ball)
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
+        self._starts: dict[str, Pose] = {}
         for name in sorted(robots):
-            drive = Drive(self._physics.robot, noise.drive_delay_s)
-            robot = self.robots[name] = Robot(self._space, name, self._physics.robot, drive)
-            robot.put(*((starts or {}).get(name) or starting_pose(name, self._field)))
-            mouth = Mouth(robot, self.ball, self._physics.handling)
+            drive = Drive(robot, self._physics.drive, noise.drive_delay_s)
+            body = self.robots[name] = Robot(self._space, name, robot, drive)
+            self._starts[name] = (starts or {}).get(name) or starting_pose(players.get(name), self._field)
+            body.put(*self._starts[name])
+            mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
@@ -62,17 +72,28 @@ class World:
         """True if the ball is on the field, lines included."""
         return self._judge.ball_in_field
 
+    def return_to_starts(self) -> None:
+        """Sets all robots down at the places where they began."""
+        for name, pose in self._starts.items():
+            self.robots[name].put(*pose)
+
     def place_ball(self, x_m: float, y_m: float) -> None:
         """Puts the ball down at rest: inside the border, beside a robot that stands in the way."""
         x_limit_m = self._field.half_length_m + self._field.border_m - self.ball.radius_m
         y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
         x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
         middles = [Point(*robot.body.position) for robot in self.robots.values()]
-        clearance_m = self._physics.robot.radius_m + self.ball.radius_m + _FREE_M
+        clearance_m = self._robot.radius_m + self.ball.radius_m + _FREE_M
         place = free_place(Point(x_m, y_m), middles, clearance_m)
         self.ball.put(*place)
         self.last_touch = ""
         self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
+
+    def throw_ball(self, height_m: float, velocity_m_s: tuple[float, float, float]) -> None:
+        """Lifts the ball to a height and gives it a velocity, world frame."""
+        self.ball.z_m = max(0.0, height_m)
+        self.ball.body.velocity = velocity_m_s[:2]
+        self.ball.vz_m_s = velocity_m_s[2]
 
     def advance(self, duration_us: int) -> list[Event]:
         """Moves the world on; returns the events, sorted by kind and robot."""
@@ -96,14 +117,17 @@ class World:
         # All pushes act on the ball as it was before the step, so that the order of two rivals does not matter.
         for push in pushes.values():
             self.ball.body.velocity += push.change_m_s
+            self.ball.vz_m_s += push.lift_m_s
         events = [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
         self.ball.rub(duration_s)
         self._space.step(duration_s)
+        self.ball.fall(duration_s)
+        self._bar.stop()
         touching = self._contacts.take_touches() | pushes.keys()
         if touching:
             self.last_touch = min(touching, key=self._distance_to_ball)
             touched |= {robot: self._ball_event(Kind.TOUCH, robot) for robot in touching}
-        call = self._judge.judge(*self.ball.body.position)
+        call = self._judge.judge(*self.ball.body.position, self.ball.z_m)
         if call is not None:
             events.append(self._ball_event(call, self.last_touch))
         return events

@@ -18,12 +18,28 @@ class SensorNoise:
         self._lighter = drawn.clip(0, 255).astype(np.uint8)
         self._darker = (-drawn).clip(0, 255).astype(np.uint8)
         self._noisy = levels > 0
+        self._size_px = size_px
+        self.spoil_lens(0.0, 0.0)
         self._brightness = brightness
         self._flicker = flicker
+
+    def spoil_lens(self, blur_px: float, vignette: float) -> None:
+        """Sets the blur, and the part of the brightness that is missing at the picture's edge."""
+        self._blur_px = blur_px
+        self._shade: Picture | None = None
+        if vignette:
+            from_centre = np.linspace(-1.0, 1.0, self._size_px)
+            square = np.minimum(from_centre[:, None] ** 2 + from_centre**2, 1.0)
+            shade = np.round(255 * (1.0 - vignette * square)).astype(np.uint8)
+            self._shade = np.repeat(shade[..., None], 3, axis=2)
 
     def apply(self, frame: Picture, rng: np.random.Generator) -> Picture:
         """Returns the picture with noise; draws equally many random numbers for every frame."""
         top, left = rng.integers(_SPARE_PX, size=2)
+        if self._blur_px:
+            frame = np.asarray(cv2.GaussianBlur(frame, (0, 0), self._blur_px), np.uint8)
+        if self._shade is not None:
+            frame = np.asarray(cv2.multiply(frame, self._shade, scale=1 / 255), np.uint8)
         gain = self._brightness * (1.0 + self._flicker * rng.standard_normal())
         if gain != 1.0:
             levels = np.round(np.arange(256) * max(gain, 0.0)).clip(0, 255).astype(np.uint8)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from procs.model.algebra import Floats
+from procs.model.ball import BALL
+from procs.model.robot import ROBOT
 
 _MARKER_M = (0.34, 0.50)  # lower and upper edge of the team marker
 _CORNERS_RAD = np.linspace(0.0, 2 * math.pi, 20, endpoint=False)
@@ -16,9 +18,9 @@ _FRONT_RAD = np.linspace(-1.1, 1.1, 8)  # the part of a round body that can be s
 class Bodies:
     """Sizes of robots and ball, metres."""
 
-    robot_radius_m: float = 0.25
-    robot_height_m: float = 0.6
-    ball_radius_m: float = 0.11
+    robot_radius_m: float = ROBOT.radius_m
+    robot_height_m: float = ROBOT.height_m
+    ball_radius_m: float = BALL.radius_m
 
 
 def pillars(at_m: Floats, radius_m: float, height_m: float) -> Floats:

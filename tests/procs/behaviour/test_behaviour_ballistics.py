@@ -6,14 +6,14 @@ import pytest
 
 from procs.behaviour import ballistics
 from procs.behaviour.view import Ball
+from procs.model.ball import BallModel
 from procs.model.field import Point
 from procs.simulation.physics.rolling import RollingFriction
-from procs.simulation.physics.settings import BallSettings
 
 
 @pytest.mark.parametrize("distance_m", [3.0, 6.0, 9.0])
 def test_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
-    friction, way_m, step_s = RollingFriction(BallSettings()), 0.0, 0.001
+    friction, way_m, step_s = RollingFriction(BallModel()), 0.0, 0.001
     speed_m_s = ballistics.kick_speed_m_s(distance_m, 2.0)
     while way_m < distance_m:
         speed_m_s, _ = friction.advance(speed_m_s, 0.0, step_s)
@@ -22,7 +22,7 @@ def test_kicked_ball_arrives_with_the_wanted_speed(distance_m: float) -> None:
 
 
 def test_rolling_ball_is_predicted() -> None:
-    friction, x_m, speed_m_s = RollingFriction(BallSettings()), 0.0, 2.0
+    friction, x_m, speed_m_s = RollingFriction(BallModel()), 0.0, 2.0
     friction.roll(2.0, 0.0)
     for _ in range(2000):
         speed_m_s, _ = friction.advance(speed_m_s, 0.0, 0.001)

@@ -9,7 +9,7 @@ import pytest
 from procs.model.kinematics import Velocity, wheels_of
 from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.kick_mechanism import KickerCommand
-from procs.simulation.physics.realism import Noise
+from procs.simulation.physics.realism import PRESETS, Noise
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
@@ -302,3 +302,46 @@ def test_touch_is_reported_where_it_happened() -> None:
     assert touch.kind is Kind.TOUCH
     assert touch.x_m == pytest.approx(IN_MOUTH_M, abs=0.1)
     assert world.ball.body.position.x > IN_MOUTH_M + 0.4
+
+
+def test_lob_flies_over_robots_and_comes_down() -> None:
+    world = ball_in_mouth()
+    world.kickers["cyan1"].command(KickerCommand(1, 5.0, dribble=False, elevation_rad=math.radians(50)), 0)
+    run(world, 1)
+    assert world.ball.vz_m_s == pytest.approx(5.0 * math.tan(math.radians(50)) - 9.81 * 0.05, abs=0.3)
+    heights = []
+    while world.ball.flies and world.ball.body.position.x < 9.0:
+        run(world, 1)
+        heights.append(world.ball.z_m)
+    apex_m = (5.0 * math.tan(math.radians(50))) ** 2 / (2 * 9.81)
+    assert max(heights) == pytest.approx(apex_m, abs=0.1)
+    assert world.ball.body.velocity.x == pytest.approx(5.0, abs=0.01)  # no friction in the air
+
+
+def test_ball_passes_over_a_robot_only_above_it() -> None:
+    for height_m, touched in ((0.9, False), (0.3, True)):
+        world = world_with(cyan2=Pose(1.0, 0.0, math.pi))
+        world.ball.put(0.0, 0.0)
+        world.throw_ball(height_m, (6.0, 0.0, 0.6))
+        events = run(world, 4)
+        assert (Kind.TOUCH in [event.kind for event in events]) is touched
+
+
+@pytest.mark.parametrize(
+    ("height_m", "kind", "comes_back"),
+    [(0.3, Kind.GOAL, False), (0.95, None, True), (1.4, Kind.OUT_END, False)],
+)
+def test_crossbar_separates_goals_from_balls_over_it(height_m: float, kind: Kind | None, comes_back: bool) -> None:
+    world = world_with("cyan1", cyan1=Pose(-5.0, 0.0, 0.0))
+    world.ball.put(10.5, 0.0)
+    world.throw_ball(height_m, (6.0, 0.0, 0.5))
+    events = [event.kind for event in run(world, 4)]
+    assert events == ([] if kind is None else [kind])
+    assert (world.ball.body.velocity.x < -1.0) is comes_back
+
+
+def test_handling_loses_the_ball_in_a_fast_turn_only() -> None:
+    for omega_rad_s, kept in ((2.5, True), (6.0, False)):
+        world = ball_in_mouth(PRESETS["realistic"].model_copy(update={"drive_delay_s": 0.0}))
+        dribble(world, Velocity(0.0, 0.0, omega_rad_s))
+        assert world.kickers["cyan1"].mouth.holds_ball is kept

@@ -1,5 +1,6 @@
 """The radio: receivers, delay, loss, and equal results with equal seeds."""
 
+import itertools
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ TEAM = ("cyan1", "cyan2", "cyan3", "cyan4", "cyan5")
 
 
 def radio(seed: int = 1, **settings: float) -> Bench:
-    links: dict[str, Any] = {"loss": 0.0, "delay_s": 0.0, "delay_jitter_s": 0.0, **settings}
+    links: dict[str, Any] = {"loss": 0.0, "delay_s": 0.0, "delay_jitter_s": 0.0, "realism": "none", **settings}
     return Bench(Radio, "team_cyan/radio", seed, namespaces=TEAM, **links)
 
 
@@ -116,3 +117,28 @@ def test_one_changed_setting_keeps_the_other_random_draws() -> None:
         return [m.header.tick for sent in bench.port("inboxes", "cyan2").sent for m in sent.messages]
 
     assert lost(0.0) == lost(0.2)
+
+
+def test_interrupted_links_lose_messages_in_a_row() -> None:
+    bench = radio(outages_1_min=6.0, outage_s=1.0)
+    for _ in range(1200):
+        say(bench, "cyan1")
+        bench.iterate()
+    heard = {message.header.tick for sent in bench.port("inboxes", "cyan2").sent for message in sent.messages}
+    lost = sorted(set(range(1, 1201)) - heard)
+    runs = sum(later - earlier > 1 for earlier, later in itertools.pairwise(lost)) + 1
+    assert 0.03 < len(lost) / 1200 < 0.2
+    assert len(lost) / runs > 8
+
+
+def test_narrow_channel_loses_what_is_beyond_it() -> None:
+    bench = radio(bandwidth_bit_s=40_000.0)
+    size_bits = 8 * len(team_message_t().encode())
+    for _ in range(200):
+        for robot in TEAM:
+            say(bench, robot)
+        bench.iterate()
+    sent = {m.header.tick for each in bench.port("inboxes", "cyan1").sent for m in each.messages}
+    heard = sum(len(each.messages) for robot in TEAM for each in bench.port("inboxes", robot).sent) / 4
+    assert heard * size_bits == pytest.approx(40_000 * (10 + 0.2), rel=0.1)
+    assert sent

@@ -5,10 +5,10 @@ from itertools import pairwise
 
 import pytest
 
+from procs.model.ball import BallModel
 from procs.simulation.physics.rolling import RollingFriction
-from procs.simulation.physics.settings import BallSettings
 
-BALL = BallSettings()
+BALL = BallModel()
 
 
 def run(friction: RollingFriction, vx_m_s: float, vy_m_s: float, step_s: float = 0.005) -> list[tuple[float, float]]:

@@ -1,12 +1,13 @@
 """Names, formation and free positions, delays and sensors."""
 
 import math
+from typing import Literal
 
 import numpy as np
 import pytest
 
 from procs.model.field import Field, Point
-from procs.model.robot import number_of, side_of, team_of
+from procs.model.robot import PLAYERS, Player, number_of, side_of, team_of
 from procs.simulation.physics.delay import DelayLine
 from procs.simulation.physics.realism import PRESETS, Noise
 from procs.simulation.physics.sensors import Encoders, Imu
@@ -22,8 +23,8 @@ def test_names_give_team_number_and_side() -> None:
 
 
 @pytest.mark.parametrize("team", ["cyan", "magenta"])
-def test_robots_start_apart_in_their_half_outside_the_circle(team: str) -> None:
-    poses = [starting_pose(f"{team}{number}", FIELD) for number in range(1, 10)]
+def test_robots_start_apart_in_their_half_outside_the_circle(team: Literal["cyan", "magenta"]) -> None:
+    poses = [starting_pose(Player(team=team, number=number), FIELD) for number in range(1, 10)]
     side = side_of(team)
     assert all(side * pose.x_m > 0.6 and FIELD.in_field(pose.x_m, pose.y_m) for pose in poses)
     assert all(math.hypot(pose.x_m, pose.y_m) > 2.3 for pose in poses)
@@ -33,7 +34,7 @@ def test_robots_start_apart_in_their_half_outside_the_circle(team: str) -> None:
 
 
 def test_number_one_keeps_the_goal() -> None:
-    pose = starting_pose("magenta1", FIELD)
+    pose = starting_pose(PLAYERS["magenta1"], FIELD)
     assert FIELD.in_goal_area(pose.x_m, pose.y_m, 1.0)
 
 
@@ -63,24 +64,41 @@ def test_delay_line_keeps_order_and_time() -> None:
 
 def test_ideal_sensors_report_the_truth() -> None:
     rng = np.random.default_rng(1)
-    assert Encoders(Noise(), rng).read((1.0, -2.0, 0.5)) == [1.0, -2.0, 0.5]
-    heading_rad, yaw_rate_rad_s = Imu(Noise(), rng).read(3.5, 0.7, 0.05)
+    assert Encoders(Noise(), rng).read((1.0, -2.0, 0.5), 0.05) == [1.0, -2.0, 0.5]
+    imu = Imu(Noise(), rng)
+    heading_rad, yaw_rate_rad_s, *_ = imu.read(3.5, 0.7, (1.0, 0.0), 0.05)
     assert heading_rad == pytest.approx(3.5 - 2 * math.pi)
     assert yaw_rate_rad_s == 0.7
+    *_, ax_m_s2, ay_m_s2 = imu.read(math.pi / 2, 0.7, (1.0, 0.2), 0.05)
+    assert (ax_m_s2, ay_m_s2) == pytest.approx((4.0, 0.0))
+
+
+def test_sensor_noise_is_the_same_in_a_second_at_any_rate() -> None:
+    """A second of readings tells as much at 20 Hz as at 500 Hz."""
+    ways = {}
+    for rate_hz in (20, 500):
+        encoders = Encoders(Noise(wheel_noise_sqrt_s=0.01), np.random.default_rng(1))
+        imu = Imu(Noise(gyro_noise_sqrt_s=0.01), np.random.default_rng(2))
+        readings = np.array([encoders.read((1.0, 1.0, 1.0), 1 / rate_hz) for _ in range(100 * rate_hz)])
+        rates = np.array([imu.read(0.0, 0.0, (0.0, 0.0), 1 / rate_hz)[1] for _ in range(100 * rate_hz)])
+        seconds = readings.mean(axis=1).reshape(100, rate_hz).mean(axis=1)
+        ways[rate_hz] = seconds.std() * math.sqrt(3), rates.reshape(100, rate_hz).mean(axis=1).std()
+    assert ways[20] == pytest.approx((0.01, 0.01), rel=0.25)
+    assert ways[500] == pytest.approx((0.01, 0.01), rel=0.25)
 
 
 def test_wheel_errors_are_a_constant_scale_and_some_noise() -> None:
     scales = []
     for seed in range(200):
         encoders = Encoders(PRESETS["realistic"], np.random.default_rng(seed))
-        readings = np.array([encoders.read((2.0, 2.0, 2.0)) for _ in range(100)])
+        readings = np.array([encoders.read((2.0, 2.0, 2.0), 0.05) for _ in range(100)])
         assert 0.08 < readings.std(axis=0).mean() < 0.12
         scales.append(readings.mean() / 2.0)
     assert np.std(scales) == pytest.approx(0.03 / math.sqrt(3), rel=0.15)
 
 
 def test_wheels_at_rest_are_measured_at_rest() -> None:
-    assert Encoders(PRESETS["harsh"], np.random.default_rng(1)).read((0.0, 0.0, 0.0)) == [0.0, 0.0, 0.0]
+    assert Encoders(PRESETS["harsh"], np.random.default_rng(1)).read((0.0, 0.0, 0.0), 0.05) == [0.0, 0.0, 0.0]
 
 
 def test_compass_drifts_like_a_random_walk() -> None:
@@ -88,7 +106,7 @@ def test_compass_drifts_like_a_random_walk() -> None:
     for seed in range(100):
         imu = Imu(Noise(compass_drift_sd_rad=0.05), np.random.default_rng(seed))
         for _ in range(60):
-            heading_rad, _ = imu.read(0.0, 0.0, 1.0)
+            heading_rad, *_ = imu.read(0.0, 0.0, (0.0, 0.0), 1.0)
         drifts.append(heading_rad)
     assert np.std(drifts) == pytest.approx(0.05, rel=0.2)
 

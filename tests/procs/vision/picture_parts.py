@@ -58,7 +58,7 @@ def frame_of(run: MemorySystem) -> Any:
 
 def simulated(count: int) -> tuple[list[Picture], MemorySystem]:
     """Returns frames of the first ticks, and the system that has seen them."""
-    run, pictures = system(), []
+    run, pictures = system(latency_s=0.0), []
     for _ in range(count):
         run.tick()
         pictures.append(frame_of(run).copy())

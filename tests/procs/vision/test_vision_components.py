@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[3]
 
 
 def test_from_truth_to_percepts() -> None:
-    run = system(shake_px=0.0)
+    run = system(shake_px=0.0, latency_s=0.0)
     for tick in range(1, 6):
         run.tick()
         ball, lines = run.newest("cyan1/ball_percept"), run.newest("cyan1/line_points")
@@ -105,16 +105,16 @@ def test_grey_frame_is_refused_with_its_shape() -> None:
 
 
 def test_percepts_state_the_exposure() -> None:
-    run = system()
+    run = system(latency_s=0.035)
     run.tick(3)
-    exposed_us = run.newest("cyan1/image").header.time_us
+    exposed_us = run.newest("cyan1/image").header.time_us - 35_000
     assert exposed_us > 0
     for channel in ("ball_percept", "line_points", "obstacle_percepts"):
         assert run.newest(f"cyan1/{channel}").capture_us == exposed_us
 
 
 def test_camera_without_its_robot_warns_once_and_continues() -> None:
-    bench = Bench(Camera, name="cyan4/camera")
+    bench = Bench(Camera, name="cyan4/camera", latency_s=0.0)
     truth = ground_truth_t()
     truth.robots = [robot("cyan1", 0.0, 0.0, 0.0)]
     for _ in range(3):
@@ -130,7 +130,7 @@ def test_camera_without_its_robot_warns_once_and_continues() -> None:
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -1e300, 1e4])
 def test_impossible_truth_is_not_drawn(value: float) -> None:
-    bench = Bench(Camera, name="cyan1/camera")
+    bench = Bench(Camera, name="cyan1/camera", latency_s=0.0)
     truth = ground_truth_t()
     truth.robots = [robot("cyan1", 0.0, 0.0, 0.0), robot("cyan2", value, 0.0, 0.0)]
     truth.ball_x_m = value

@@ -1,0 +1,64 @@
+"""The true world a short time ago, for sensors with a latency."""
+
+import math
+from collections import deque
+
+from lcmtypes.soccer import ground_truth_t, true_robot_t
+
+_KEPT = 64  # messages
+_JUMP_M_S = 20.0  # what moves faster was placed, and is at either place, not between them
+
+
+class Past:
+    """The last messages of the simulator; between two of them robots and ball move straight."""
+
+    def __init__(self) -> None:
+        self._kept: deque[ground_truth_t] = deque(maxlen=_KEPT)
+
+    def add(self, truth: ground_truth_t) -> None:
+        """Takes the newest message."""
+        self._kept.append(truth)
+
+    def at(self, time_us: int) -> ground_truth_t:
+        """Returns the world at a time: the oldest known one for times before.
+
+        Raises:
+            IndexError: nothing is known yet.
+        """
+        later = self._kept[-1]
+        for earlier in reversed(self._kept):
+            if earlier.header.time_us <= time_us:
+                return _between(earlier, later, time_us)
+            later = earlier
+        return later
+
+
+def _between(earlier: ground_truth_t, later: ground_truth_t, time_us: int) -> ground_truth_t:
+    span_us = later.header.time_us - earlier.header.time_us
+    if span_us <= 0 or time_us == earlier.header.time_us:
+        return earlier
+    share, span_s = (time_us - earlier.header.time_us) / span_us, span_us / 1e6
+    made = ground_truth_t()
+    made.header = earlier.header
+    way_m = math.dist((earlier.ball_x_m, earlier.ball_y_m), (later.ball_x_m, later.ball_y_m))
+    jumped = not way_m <= _JUMP_M_S * span_s
+    for name in ("ball_x_m", "ball_y_m", "ball_z_m", "ball_vx_m_s", "ball_vy_m_s", "ball_vz_m_s"):
+        then, now = getattr(earlier, name), getattr(later, name)
+        setattr(made, name, now if jumped else then + share * (now - then))
+    known = {robot.name: robot for robot in earlier.robots}
+    made.robots = [_robot(known.get(robot.name, robot), robot, share, span_s) for robot in later.robots]
+    return made
+
+
+def _robot(earlier: true_robot_t, later: true_robot_t, share: float, span_s: float) -> true_robot_t:
+    way_m = math.dist((earlier.x_m, earlier.y_m), (later.x_m, later.y_m))
+    turn_rad = later.heading_rad - earlier.heading_rad
+    if not (way_m <= _JUMP_M_S * span_s and math.isfinite(turn_rad)):
+        return later
+    made = true_robot_t()
+    made.name, made.team, made.number = later.name, later.team, later.number
+    for name in ("x_m", "y_m", "vx_m_s", "vy_m_s", "omega_rad_s"):
+        then, now = getattr(earlier, name), getattr(later, name)
+        setattr(made, name, then + share * (now - then))
+    made.heading_rad = math.remainder(earlier.heading_rad + share * math.remainder(turn_rad, math.tau), math.tau)
+    return made

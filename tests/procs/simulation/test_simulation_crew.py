@@ -1,0 +1,87 @@
+"""Commands to the simulator: robots and ball are put down, the world stands still and begins anew."""
+
+import math
+
+import pytest
+
+from fwk.testing import Bench
+from lcmtypes.core import answer_t
+from lcmtypes.robot import wheel_command_t
+from procs.simulation.simulator import Simulator
+
+ROBOTS = ("cyan1", "magenta1")
+
+
+def bench() -> Bench:
+    return Bench(Simulator, name="world/simulator", namespaces=ROBOTS, realism="none")
+
+
+def test_robot_is_set_down_elsewhere() -> None:
+    world = bench()
+    world.port("place_robot").put(robot="magenta1", x_m=1.0, y_m=-2.0, heading_rad=0.5)
+    world.iterate()
+    robot = world.port("ground_truth").sent[-1].robots[1]
+    assert (robot.x_m, robot.y_m, robot.heading_rad) == pytest.approx((1.0, -2.0, 0.5))
+    assert world.port("place_robot").sent[-1].answer.state == answer_t.DONE
+
+
+def test_ball_is_thrown() -> None:
+    world = bench()
+    world.port("place_ball").put(x_m=2.0, z_m=0.5, vx_m_s=3.0, vz_m_s=2.0)
+    world.iterate()
+    truth = world.port("ground_truth").sent[-1]
+    assert truth.ball_x_m == pytest.approx(2.15)
+    assert truth.ball_z_m == pytest.approx(0.5 + 0.1 - 9.81 * 0.05**2 / 2, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    ("port", "values", "reason"),
+    [
+        ("place_robot", {"robot": "cyan7"}, "no robot 'cyan7'; there are: cyan1, magenta1"),
+        ("place_robot", {"robot": "cyan1", "x_m": 13.0}, "(13, 0) is outside the walls; x is at most 12 m, y 8 m"),
+        ("place_robot", {"robot": "cyan1", "heading_rad": math.nan}, "heading_rad is nan; it should be a number"),
+        ("place_ball", {"y_m": math.inf}, "(0, inf) is outside the walls; x is at most 12 m, y 8 m"),
+        ("place_ball", {"vx_m_s": 99.0}, "vx_m_s is 99.0; it should be at most 15"),
+    ],
+)
+def test_impossible_place_is_refused(port: str, values: dict[str, object], reason: str) -> None:
+    world = bench()
+    world.port(port).put(**values)
+    world.iterate()
+    answer = world.port(port).sent[-1].answer
+    assert (answer.state, answer.reason) == (answer_t.REJECTED, reason)
+
+
+def test_frozen_world_stands_still_and_continues() -> None:
+    world = bench()
+    world.port("place_ball").put(vx_m_s=2.0)
+    world.iterate()
+    world.port("freeze").put(frozen=True)
+    places = []
+    for _ in range(5):
+        command = wheel_command_t()
+        command.header.time_us, command.wheel_m_s = world.time_us, [1.0, 1.0, 1.0]
+        world.port("wheel_command", "cyan1").put(command)
+        world.iterate()
+        places.append(world.port("ground_truth").sent[-1].ball_x_m)
+        assert not any(world.port("wheel_state", "cyan1").sent[-1].measured_m_s)
+    assert len(set(places)) == 1
+    world.port("freeze").put(frozen=False)
+    world.iterate()
+    assert world.port("ground_truth").sent[-1].ball_x_m == pytest.approx(places[-1] + 0.09, abs=0.02)
+
+
+def test_reset_takes_robots_and_ball_back() -> None:
+    world = bench()
+    world.iterate()
+    before = world.port("ground_truth").sent[-1].robots[0].x_m
+    world.port("place_robot").put(robot="cyan1", x_m=3.0)
+    world.port("place_ball").put(x_m=4.0)
+    world.iterate()
+    world.port("reset").put(keep_ball=True)
+    world.iterate()
+    truth = world.port("ground_truth").sent[-1]
+    assert (truth.robots[0].x_m, truth.ball_x_m) == pytest.approx((before, 4.0))
+    world.port("reset").put()
+    world.iterate()
+    assert world.port("ground_truth").sent[-1].ball_x_m == 0.0
