@@ -28,12 +28,13 @@ from fwk.model.tick_events import (
     events_message,
 )
 from lcmtypes import core, core_v1
-from lcmtypes.core import protocol_t, settings_change_t, tick_record_t
+from lcmtypes.core import frame_t, protocol_t, settings_change_t, tick_record_t
 
 PLAN = "fwk/plan"
 """Channel of the plan."""
 BROKEN = (ValueError, struct.error, LookupError, TypeError, AttributeError, RecursionError)
 """Exceptions of reading data that are damaged."""
+_FRAME_WITHOUT_CAPTURE = fingerprint(core_v1.frame_t)
 _EVENTS_OF_A_HOST: dict[int, type[HostLost | HostLate | HostStopped]] = {
     core_v1.tick_event_t.LOST: HostLost,
     core_v1.tick_event_t.LATE: HostLate,
@@ -57,6 +58,20 @@ def read_plan(data: bytes) -> tuple[Plan, int]:
             "so a newer one wrote the recording"
         )
     return plan_from(json.loads(message.json)), message.version
+
+
+def message_of_today(data: bytes) -> bytes:
+    """Returns a message of a component as it is written today: announcements of frames had no capture time once.
+
+    Raises:
+        ValueError, struct.error, UnicodeDecodeError: the bytes are damaged.
+    """
+    if data[:8] != _FRAME_WITHOUT_CAPTURE:
+        return data
+    old, made = core_v1.frame_t.decode(data), frame_t()
+    for name in core_v1.frame_t.__slots__:
+        setattr(made, name, getattr(old, name))
+    return bytes(made.encode())
 
 
 def record_type(version: int) -> type[Any]:

@@ -30,7 +30,7 @@ from fwk.model.tick_events import (
     events_of,
 )
 from fwk.recording.pictures import FRAME, RecordedPicture, picture_of
-from fwk.recording.versions import BROKEN, PLAN, read_plan, read_record, record_type
+from fwk.recording.versions import BROKEN, PLAN, message_of_today, read_plan, read_record, record_type
 from lcmtypes.core import settings_change_t, tick_record_t
 
 RECORD = "fwk/record"
@@ -82,6 +82,7 @@ class Recording:
         for number, event in enumerate(self._reader):
             if event.number != number:
                 raise RecordingError(self._gap(event.number - number, tick))
+            event = self._of_today(event)
             if event.data[:8] != types.get(event.channel, event.data[:8]):
                 raise RecordingError(self._other_type(event, types[event.channel]))
             if event.channel == RECORD:
@@ -98,6 +99,13 @@ class Recording:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
                 elif event.channel in types:  # skipped, it would count as lost and never be compared
                     raise RecordingError(f"{self.path}: damaged: {event.channel} has a message without a whole header")
+
+    def _of_today(self, event: Event) -> Event:
+        try:
+            data = message_of_today(event.data)
+        except BROKEN as error:
+            raise RecordingError(f"{self.path}: damaged: {event.channel} has a frame that cannot be read") from error
+        return event if data is event.data else event._replace(data=data)
 
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes

@@ -1,6 +1,7 @@
 """Settings of the section `shared`: stated once, they reach every component that has a setting of the name."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -15,6 +16,7 @@ components:
   it/wheels: {use: plan_parts:Wheels}
   other/wheels: {use: plan_parts:Wheels, config: {gain: 0.75}}
   it/pilot: {use: plan_parts:Pilot}
+  other/pilot: {use: plan_parts:Pilot}
 """
 
 
@@ -35,8 +37,9 @@ def test_settings_of_a_component_win_over_shared_ones(load: Load) -> None:
     assert component(load(DRIVING), "other/wheels").config["gain"] == 0.75
 
 
-def test_shared_settings_of_a_later_file_win(load: Load) -> None:
-    plan = load("include: low.yaml\nshared: {gain: 1.0}", low=DRIVING)
+def test_shared_settings_of_a_later_file_win(load: Load, folder: Path) -> None:
+    (folder / "low.yaml").write_text(DRIVING)
+    plan = load("include: low.yaml\nshared: {gain: 1.0}")
     assert component(plan, "it/wheels").config["gain"] == 1.0
     assert component(plan, "other/wheels").config["gain"] == 1.0
     assert component(plan, "it/wheels").config["limits"]["speed_m_s"] == 1.5
