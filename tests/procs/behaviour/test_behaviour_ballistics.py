@@ -6,8 +6,9 @@ import pytest
 
 from procs.behaviour import ballistics
 from procs.behaviour.view import Ball
-from procs.model.ball import BallModel
+from procs.model.ball import BALL, BallModel
 from procs.model.field import Point
+from procs.model.robot import ROBOT
 from procs.simulation.physics.rolling import RollingFriction
 
 
@@ -40,14 +41,14 @@ def test_distances_and_times_agree() -> None:
 def test_interception_of_a_resting_ball_is_at_the_ball() -> None:
     meeting = ballistics.meet(Ball(known=True, place=Point(3.0, 4.0)), Point(0.0, 0.0))
     assert meeting.place == (3.0, 4.0)
-    assert meeting.time_s == pytest.approx(ballistics.reach_s(5.0 - 0.33))
+    assert meeting.time_s == pytest.approx(ballistics.reach_s(5.0 - ROBOT.held_ball_m(BALL)))
 
 
 def test_interception_of_a_passing_ball_is_ahead_of_it() -> None:
     ball = Ball(known=True, place=Point(-4.0, 1.0), velocity_m_s=Point(2.5, 0.0))
     meeting = ballistics.meet(ball, Point(0.0, 0.0))
     assert -1.0 < meeting.place.x_m < 0.5
-    assert ballistics.reach_s(math.dist(meeting.place, (0.0, 0.0)) - 0.33) <= meeting.time_s
+    assert ballistics.reach_s(math.dist(meeting.place, (0.0, 0.0)) - ROBOT.held_ball_m(BALL)) <= meeting.time_s
 
 
 def test_ball_that_outruns_the_robot_is_met_at_the_end() -> None:
