@@ -1,6 +1,6 @@
 """Receives the LCM messages that arrive at one socket."""
 
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Iterator
 
 from fwk.bus.network import DatagramSocket
 from fwk.bus.sockets import LOOPBACK, told
@@ -28,7 +28,7 @@ class Receiver:
         self.socket = socket
         self._senders = senders
         self._owner = owner
-        self._topic = topic
+        self.topic = topic
         self._complain = complain
         self._assembler = wire.Assembler()
 
@@ -54,6 +54,14 @@ class Receiver:
             if message is not None:
                 return (*message, port)
 
+    def messages(self, *channels: bytes) -> Iterator[tuple[bytes, bytes]]:
+        """Yields what waits as (channel, data), and refuses messages of other channels than these."""
+        while message := self.receive():
+            if message[0] in channels:
+                yield message[0], message[1]
+            else:
+                self.refuse(f"message of channel {message[0].decode(errors='replace')!r} here")
+
     def refuse(self, reason: str) -> None:
         """Counts and names a message that cannot be used."""
-        self._complain(self._topic, f"{reason}; refused")
+        self._complain(self.topic, f"{reason}; refused")

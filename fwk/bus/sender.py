@@ -64,7 +64,7 @@ class Sender:
         try:
             for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
                 self.socket.sendto(datagram, address)
-        except OSError:  # readers fetch the whole message, as in `_put`
+        except (OSError, OverflowError):  # readers fetch the whole message, as in `_put`; or the port does not exist
             self.refused += 1
 
     def _put(self, datagram: bytes, address: Address) -> None:

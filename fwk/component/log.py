@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-from fwk.clock import Clock, sleep_s, wall_us
+from fwk.clock import US_PER_S, Clock, sleep_s, wall_us
 from fwk.component.rate_limit import RateLimit
 from lcmtypes.core import log_t
 
@@ -17,11 +17,18 @@ LEVEL_NAMES = {number: name for name, number in LEVELS.items()}
 Text = str | Callable[[], str]
 """Text to log, or a function that makes it if the level is on: `log.debug(lambda: f"{len(found)} points")`."""
 
+TIME_MAX_US = 250_000_000_000 * US_PER_S
+"""Latest wall time of a log line, in the last year that calendars can express."""
 _BEGIN, _END = 12_000, 4_000  # characters kept of a text that is too long for one datagram (64 kB in UTF-8)
 _BREATH_S = 0.001
 _LIBRARIES = [sysconfig.get_path(name) + "/" for name in ("stdlib", "purelib", "platlib")]
 _NOT_OWN = ("<", str(Path(__file__).parent.parent) + "/", *_LIBRARIES)
 """Path prefixes of code that belongs to no component: generated code, the framework, libraries."""
+
+
+def is_plausible(line: log_t) -> bool:
+    """Returns whether a line from elsewhere has a level that exists, and times that can be shown."""
+    return line.level in LEVEL_NAMES and 0 <= line.wall_us < TIME_MAX_US and abs(line.time_us) < TIME_MAX_US
 
 
 def own_frame(error: BaseException) -> traceback.FrameSummary | None:

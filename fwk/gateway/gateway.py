@@ -1,7 +1,8 @@
 """Follows the main loop by its tick records, collects each tick's messages and hands them on in one fixed order."""
 
 import struct
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 from fwk.bus import sync
@@ -11,14 +12,14 @@ from fwk.bus.network import Network, Steps
 from fwk.bus.receiver import Receiver
 from fwk.bus.sender import Sender
 from fwk.clock import Clock
-from fwk.component.log import Logger
+from fwk.component.log import Logger, is_plausible
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.gateway.connections import Outsiders, Sink, SupervisorConnection
 from fwk.gateway.fetch_server import FetchServer
 from fwk.gateway.ingress import Ingress
 from fwk.gateway.pacing import PacedPublisher
 from fwk.host.inputs import Inputs
-from fwk.lcm import envelope
+from fwk.lcm import envelope, messages
 from fwk.lcm.messages import Header, MessageError
 from fwk.model.channel_table import ChannelTable, Fact, facts_in
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
@@ -34,6 +35,7 @@ from lcmtypes.core import (
     log_t,
     protocol_t,
     recorded_t,
+    status_t,
     taken_t,
     tick_record_t,
 )
@@ -90,8 +92,8 @@ class Gateway:
         self._handlers: dict[int, Callable[[], object]] = {
             self._own.fileno(): self._hear_hosts,
             control.fileno(): self._hear_supervisor,
-            self._lines.fileno(): self._receive_lines,
-            self._status.fileno(): self._receive_status,
+            self._lines.fileno(): partial(self._pass_on, self._lines, log_t),
+            self._status.fileno(): partial(self._pass_on, self._status, status_t),
         }
         if public:
             self._handlers[public.fileno()] = self._hear_outside
@@ -164,8 +166,8 @@ class Gateway:
 
     def _finish(self) -> Steps[None]:
         """Writes what is left and closes everything."""
-        self._receive_lines()
-        self._receive_status()
+        self._pass_on(self._lines, log_t)
+        self._pass_on(self._status, status_t)
         for sink in self.sinks:
             sink.close()
         while self.publisher.waiting:
@@ -176,7 +178,7 @@ class Gateway:
             receiver.socket.close()
 
     def _receive_records(self) -> Steps[None]:
-        for channel, data in self._messages(self._records, sync.RECORD, sync.ANNOUNCE):
+        for channel, data in self._records.messages(sync.RECORD, sync.ANNOUNCE):
             try:
                 if channel == sync.ANNOUNCE:
                     self._hear_announcement(sync.decode_announcement(data))
@@ -307,13 +309,16 @@ class Gateway:
             fetch.run, fetch.first_tick, fetch.last_tick = self._run, self._next, min(self._waiting) - 1
             self._sender.send(sync.FETCH_RECORDS, fetch.encode(), self._ports.supervisor)
 
-    def _receive_lines(self) -> None:
-        for _, data in self._messages(self._lines, b"fwk/log"):
-            self._emit("fwk/log", data)
-
-    def _receive_status(self) -> None:
-        for _, data in self._messages(self._status, b"fwk/status"):
-            self._emit("fwk/status", data)
+    def _pass_on(self, receiver: Receiver, kind: type) -> None:
+        for channel, data in receiver.messages(receiver.topic.encode()):
+            try:
+                message = messages.decode(kind, data, receiver.topic)  # the sinks rely on that
+                if kind is log_t and not is_plausible(message):
+                    raise MessageError("log line of an impossible time or level")
+            except MessageError as error:
+                receiver.refuse(str(error))
+            else:
+                self._emit(channel.decode(), data)
 
     def _log_line(self, line: log_t) -> None:
         self._emit("fwk/log", line.encode())
@@ -350,7 +355,7 @@ class Gateway:
 
     def _hear_hosts(self) -> None:
         """Answers what hosts send to the gateway alone."""
-        for channel, data in self._messages(self._own, b"fwk/gone", sync.LEAVING, b"fwk/fetch"):
+        for channel, data in self._own.messages(b"fwk/gone", sync.LEAVING, b"fwk/fetch"):
             try:
                 if channel == sync.LEAVING:
                     self._release(sync.decode_leaving(data))
@@ -378,15 +383,6 @@ class Gateway:
             channel = self._inputs.buffer(gone.channel).plan.name
             numbers = f"{gone.first_sequence} to {gone.last_sequence}"
             self.log.error(f"{channel}: {lost} messages of {numbers} are lost and not in the recording")
-
-    @staticmethod
-    def _messages(receiver: Receiver, *channels: bytes) -> Iterator[tuple[bytes, bytes]]:
-        """Returns what waits at a receiver, and refuses messages of other channels than these."""
-        while message := receiver.receive():
-            if message[0] in channels:
-                yield message[0], message[1]
-            else:
-                receiver.refuse(f"message of channel {message[0].decode(errors='replace')!r} here")
 
 
 def _drop(_: bytes) -> None:

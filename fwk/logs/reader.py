@@ -8,13 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from fwk.clock import US_PER_S
-from fwk.component.log import LEVELS
+from fwk.component.log import LEVELS, TIME_MAX_US
 from fwk.logs.rotating import read_rotating
 from fwk.model.selection import matches
 from lcmtypes.core import log_t
-
-_WALL_US_MAX = 250_000_000_000 * US_PER_S  # the last year that calendars can express
 
 
 @dataclass(frozen=True)
@@ -71,8 +68,8 @@ def _is_line(line: Any) -> bool:
         isinstance(line, dict)
         and all(isinstance(line.get(name), str) for name in ("level", "component", "file", "text"))
         and all(type(line.get(name)) is int for name in ("tick", "time_us", "wall_us", "line"))
-        and 0 <= line["wall_us"] < _WALL_US_MAX
-        and abs(line["time_us"]) < _WALL_US_MAX
+        and 0 <= line["wall_us"] < TIME_MAX_US
+        and abs(line["time_us"]) < TIME_MAX_US
     )
 
 

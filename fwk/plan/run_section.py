@@ -65,13 +65,15 @@ def _types() -> list[str]:
 
 
 def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str:
-    """Returns the URL of the public bus, with a receive buffer that is large enough for bursts.
+    """Returns the URL of the public bus, with a receive buffer that is large enough for bursts; empty: no public bus.
 
     Where no file sets the URL, its port moves with the bus port, so that two runs do not hear each other.
     """
     moved = 0 if bus_port is None else bus_port - Plan.bus_port
     port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # wraps around
     url: str = last(files, "public_url", Plan.public_url.replace(f":{_PUBLIC_PORT}", f":{port}"))
+    if not url:
+        return ""
     if not url.startswith(_URL):
         text = f"'{url}' is not a public bus; lcm-spy and Java read only {_URL}ADDRESS:PORT, such as {Plan.public_url}"
         problems.add(_place(files, "public_url"), "", text)

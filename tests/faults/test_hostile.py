@@ -14,8 +14,10 @@ from fwk.lcm import wire
 from fwk.model.ports import Ports
 from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
-from tests.harness.runs import PortBlock, pause
+from tests.harness.logs import difference
+from tests.harness.runs import PortBlock, pause, write_files
 
 pytestmark = pytest.mark.system
 
@@ -126,3 +128,25 @@ def test_garbled_echoes_and_garbage_requests_change_nothing(
     assert "cannot answer" not in run.text
     assert "ended:" not in run.text
     assert disturbers[0].sent > AT_ONCE  # type: ignore[union-attr]
+
+
+HOSTILE = """
+name: hostile
+public_url: ""
+components:
+  c/counter: { use: "counting:Counter" }
+  c/follower: { use: "small:Follower", channels: { imu: c/imu } }
+  x/hostile: { use: "hostile:Hostile" }
+"""
+
+
+def test_broken_messages_from_a_component_harm_no_other(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, {**sources("counting.py", "small.py", "helper.py", "hostile.py"), "it.yaml": HOSTILE})
+    used = Ports(ports.bus, 3, 2)
+    sending = ("--set", f"x/hostile.base={used.base}", "--set", f"x/hostile.end={used.end}")
+    for log, options in (("quiet.lcm", ()), ("loud.lcm", sending)):
+        run = launch("it.yaml", "--ticks", "100", "--speed", "max", "--record", log, *options)
+        assert run.wait() == 0, run.text
+        assert "Traceback" not in run.text
+    assert "refused" in run.text
+    assert difference(tmp_path / "quiet.lcm", tmp_path / "loud.lcm") == ""
