@@ -39,6 +39,18 @@ REGRESSIONS: dict[str, Scenario] = {
         weather=Weather(delay=0.1754, delay_us=24_142),
         actions=(Action("steer", 15, 818, "drift6/drifter", word="stop"),),
     ),
+    # In lockstep a process that took more than 20 s to become ready was killed, at the start as after a restart.
+    "slow start in lockstep": Scenario(
+        seed=5,
+        ticks=8,
+        parts=(
+            Part("b0/player", "Player", ("think",), {"crash_tick": 4, "crash_in": "loop"}),
+            Part("c1/director", "Director", ("think",), {"eager": 0.8}),
+            Part("c2/opener", "Opener", ("think",), {"eager": 0.8}),
+        ),
+        stages=("think",),
+        weather=Weather(slow_start_us=90_000_000),
+    ),
     # A host that was asked to stop before it was ready had taken no part, but what it wrote in `finalize` counted and
     # no replay could write it again.
     "host stops before it is ready": Scenario(
