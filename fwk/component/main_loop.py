@@ -1,6 +1,6 @@
 """The main-loop aspect: a component determines the schedule of the following ticks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 STEPS_MAX = 1000
 """Longest schedule of a tick, in steps."""
@@ -51,62 +51,3 @@ class MainLoop:
         """Returns the iteration's request: a schedule; empty to give the main loop back; None for no request."""
         request, self._request = self._request, None
         return request
-
-
-class Holding:
-    """Decides which component holds the main loop, and with which schedule; requests are decided at boundaries.
-
-    `stages` are the stages of each component that may request the main loop; a continuous component has none.
-    """
-
-    def __init__(self, stages: Mapping[str, Sequence[str]]) -> None:
-        self.holder = ""
-        self.order: tuple[str, ...] = ()
-        """Schedule of the holder; empty: the plan's schedule."""
-        self.refused: list[str] = []
-        """Messages about requests that were refused at the last boundary."""
-        self._stages = stages
-        self._requests: list[tuple[tuple[int, int, str], tuple[str, ...]]] = []
-        self._left = False
-
-    def ask(self, tick: int, step: int, name: str, order: Sequence[str]) -> None:
-        """Adds a component's request, made at a step of a tick; an empty order gives the main loop back."""
-        self._requests.append(((tick, step, name), tuple(order)))
-
-    def left(self, names: Sequence[str]) -> None:
-        """Gives back what components held whose process ended, and drops their requests."""
-        self._left = self._left or self.holder in names
-        self._requests = [request for request in self._requests if request[0][2] not in names]
-
-    def decide(self) -> bool:
-        """Decides the requests of a boundary in their order; returns whether holder or schedule changed."""
-        before = (self.holder, self.order)
-        self.refused = []
-        if self._left:
-            self.holder, self.order, self._left = "", (), False
-        for (_, _, name), order in sorted(self._requests):
-            self._grant(name, order)
-        self._requests = []
-        return (self.holder, self.order) != before
-
-    @property
-    def asked(self) -> bool:
-        """Whether there is something to decide."""
-        return self._left or bool(self._requests)
-
-    def _grant(self, name: str, order: tuple[str, ...]) -> None:
-        if not order:
-            if self.holder == name:
-                self.holder, self.order = "", ()
-        elif self.holder and self.holder != name:
-            self.refused.append(
-                f"{name} wants the main loop, but {self.holder} has it; refused until that gives it back"
-            )
-        elif self._stages[name] and not set(order) & set(self._stages[name]):
-            own = ", ".join(self._stages[name])
-            self.refused.append(
-                f"{name} wants the main loop for {', '.join(order)}; refused: without a stage of its own ({own}) "
-                "it could never give it back"
-            )
-        else:
-            self.holder, self.order = name, order

@@ -11,9 +11,8 @@ from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.processes.hosts import Hosts
 from fwk.supervisor.retransmission_timeout import RetransmissionTimeout
-from fwk.supervisor.schedule import Turn
 from fwk.supervisor.tick_log import TickLog
-from fwk.supervisor.tick_sender import Tick, TickSender
+from fwk.supervisor.tick_sender import Tick, TickSender, Turn
 from fwk.supervisor.wait_report import WaitReport
 
 NEVER_US = 1 << 62

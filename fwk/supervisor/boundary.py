@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from fwk.bus.network import Steps
 from fwk.control.settings import NewSettings
 from fwk.engine.boundary import AFTER_ALL_STEPS, TOOLS, BoundaryRequest, BoundaryRequests
+from fwk.engine.schedule import Schedule
 from fwk.model import tick_events
 from fwk.model.tick_events import HostStarted, HostStopped, MainLoopGiven
 from fwk.supervisor.barrier import LOOK_US, Barrier
@@ -17,7 +18,6 @@ from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.lifecycle import Lifecycle
 from fwk.supervisor.plugin_requests import PluginRequests
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.schedule import Schedule
 from fwk.supervisor.tick_log import TickLog
 
 
@@ -128,8 +128,23 @@ class Boundary:
         self._core.log.info(f"{name}: {', '.join(f'{key} = {value}' for key, value in new.said.items())} ({origin})")
 
     def _decide_main_loop(self) -> None:
-        if self._schedule.decide(self._core.clock.tick + 1):
-            self._tick_log.event(MainLoopGiven(self._schedule.holder))
+        schedule, log, tick, before = (
+            self._schedule,
+            self._core.log,
+            self._core.clock.tick + 1,
+            self._schedule.holder_name,
+        )
+        changed = schedule.decide()
+        for text in schedule.refused:
+            log.warning(text)
+        if changed:
+            self._tick_log.event(MainLoopGiven(schedule.holder))
+        if changed and schedule.holder_name:
+            log.warning(
+                f"{schedule.holder_name} has the main loop from tick {tick} on: {', '.join(schedule.stage_names)}"
+            )
+        elif changed:
+            log.warning(f"{before} has given the main loop back; tick {tick} runs the usual stages")
 
     def _until_left(self) -> Steps[None]:
         """Waits until hosts that stop have finalized, and until those that restart have ended."""
@@ -179,5 +194,5 @@ class Boundary:
         """Drops the requests and grants of a host that takes no part any more."""
         names = [self._core.plan.components[index].name for index in self._core.components_of(host)]
         self.requests.drop(names, ("main_loop", "channels"))
-        self._schedule.left(host)
+        self._schedule.left(self._core.components_of(host))
         self._channels.left(host)

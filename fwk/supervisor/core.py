@@ -44,3 +44,7 @@ class Core:
     def components_of(self, host: HostProcess) -> tuple[int, ...]:
         """Returns the indices of a host's components."""
         return self.plan.hosts[host.index].components
+
+    def stages_of(self, host: HostProcess) -> set[int]:
+        """Returns the stages of a host's components."""
+        return {stage for index in self.components_of(host) for stage in self.plan.components[index].stages}

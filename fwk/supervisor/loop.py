@@ -1,15 +1,17 @@
 """The main loop: runs ticks, one stage after the other."""
 
+from collections.abc import Sequence
+
 from fwk.bus.network import Steps
+from fwk.engine.schedule import Schedule
 from fwk.supervisor.barrier import Barrier
 from fwk.supervisor.boundary import Boundary
 from fwk.supervisor.continuous import ContinuousHosts
 from fwk.supervisor.core import Core
 from fwk.supervisor.dones import Dones
 from fwk.supervisor.loop_times import LoopTimes
-from fwk.supervisor.schedule import Schedule
 from fwk.supervisor.tick_log import TickLog, void_messages
-from fwk.supervisor.tick_sender import Tick
+from fwk.supervisor.tick_sender import Tick, Turn
 
 PAUSED_US = 100_000
 """Interval of boundaries while the run is paused."""
@@ -41,6 +43,10 @@ class MainLoop:
         self._core = core
         self._continuous = continuous
         self._dones = dones
+        stages = range(len(core.plan.stages))
+        self._hosts = [[host for host in core.hosts if stage in core.stages_of(host)] for stage in stages]
+        self._steps: Sequence[tuple[int, int]] = []
+        self._turns: list[Turn] = []
 
     @property
     def tick(self) -> int:
@@ -70,7 +76,7 @@ class MainLoop:
         if paused or self._core.interrupted():
             return
         tick = self._begin()
-        for turn in self.schedule.turns:
+        for turn in self._scheduled():
             if not self._core.interrupted():
                 yield from self.barrier.run(tick, turn)
         self._end(tick)
@@ -100,10 +106,17 @@ class MainLoop:
         self._continuous.tell(tick)
         return tick
 
+    def _scheduled(self) -> list[Turn]:
+        """Returns the turns of the running tick."""
+        if self._steps is not self.schedule.steps:
+            self._steps = self.schedule.steps
+            self._turns = [Turn(step, stage, self._hosts[stage]) for step, stage in self._steps]
+        return self._turns
+
     def _end(self, tick: Tick) -> None:
         """Ends a tick: its record goes to the gateway."""
         core = self._core
         desired_us = core.plan.loop_time_us or core.clock.loop_time_us
         self.times.tick_ended(tick.number, core.now_us(), desired_us)
-        since = self.barrier.ledger_step - 4 * len(self.schedule.turns)
+        since = self.barrier.ledger_step - 4 * len(self._turns)
         self.tick_log.publish(tick.number, tick.time_us, void_messages(core.ledger, since))

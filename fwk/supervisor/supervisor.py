@@ -14,6 +14,7 @@ from fwk.clock import US_PER_S
 from fwk.component.images import Ring
 from fwk.component.log import Logger
 from fwk.engine.boundary import BoundaryRequests
+from fwk.engine.schedule import Schedule
 from fwk.engine.visibility import Visibility
 from fwk.host.debugger import DebugRequest
 from fwk.model.plan import Plan
@@ -37,7 +38,6 @@ from fwk.supervisor.processes.attach import Attach
 from fwk.supervisor.processes.hosts import Hosts, StartFailedError
 from fwk.supervisor.processes.starter import ProcessStarter
 from fwk.supervisor.run_clock import RunClock
-from fwk.supervisor.schedule import Schedule
 from fwk.supervisor.sync_receiver import SyncReceiver
 from fwk.supervisor.tick_log import TickLog
 from fwk.supervisor.wait_report import WaitReport
@@ -122,7 +122,7 @@ class Supervisor:
         self._report = WaitReport(core.now_us, hosts.component_at_work, self.log)
         barrier = barrier_of(core, hosts, tick_log, times, self._report)
         continuous = ContinuousHosts(core, tick_log)
-        requests, schedule, lifecycle = BoundaryRequests(), Schedule(core), Lifecycle(plan, table)
+        requests, schedule, lifecycle = BoundaryRequests(), Schedule(plan), Lifecycle(plan, table)
         dones = Dones(core, barrier, continuous, requests, tick_log, times, complaints)
         boundary = Boundary(core, hosts, schedule, channels, changes, requests, lifecycle, barrier, tick_log)
         self.loop = MainLoop(core, boundary, schedule, barrier, continuous, dones, tick_log, times)

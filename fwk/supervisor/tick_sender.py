@@ -6,7 +6,6 @@ from typing import NamedTuple
 from fwk.bus import sync
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess
-from fwk.supervisor.schedule import Turn
 from fwk.supervisor.tick_log import put_changes, void_messages
 from lcmtypes.core import protocol_t, tick_t
 
@@ -19,6 +18,15 @@ class Tick(NamedTuple):
     """Logical time."""
     main_loop: int
     """Component that has the main loop."""
+
+
+class Turn(NamedTuple):
+    """One run of a stage in a tick."""
+
+    step: int
+    """Position in the schedule; the index of the stage if no component has the main loop."""
+    stage: int
+    hosts: list[HostProcess]
 
 
 class TickSender:

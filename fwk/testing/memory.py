@@ -8,19 +8,19 @@ from fwk.clock import US_PER_S
 from fwk.component.component import DEFAULT_STAGES, Component
 from fwk.component.declaration import declaration
 from fwk.component.images import Ring
-from fwk.component.main_loop import Holding
 from fwk.engine.assignment import Assignment, Start
 from fwk.engine.channel_grants import ChannelGrants
 from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
 from fwk.engine.runner import Runner
+from fwk.engine.schedule import Schedule
 from fwk.engine.visibility import Visibility
 from fwk.gateway.ingress import WRITER
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import change_message
 from fwk.model.names import LINES
-from fwk.model.plan import NOBODY, ComponentPlan
+from fwk.model.plan import ComponentPlan
 from fwk.model.requests import channel_request_of
 from fwk.model.sections import LogPlan
 from fwk.testing.plans import plan_of
@@ -76,7 +76,7 @@ class MemorySystem:
         self._readers = {channel.index: set(channel.readers) for channel in plan.channels}
         self._newest: dict[int, bytes] = {}
         self._ledger = Visibility(plan)
-        self._holding = Holding({each.name: [stages[stage] for stage in each.stages] for each in plan.components})
+        self._schedule = Schedule(plan)
         self._openings = ChannelGrants(plan)
         self._changes = 0
         self._next_us = -1  # logical time of the next tick, as the time source set it last
@@ -117,18 +117,17 @@ class MemorySystem:
                     self.come_in(LINES, line)
             self.ticks += 1
             self.now_us = self._next_us if self._next_us >= 0 else self.now_us + self._plan.period_us
-            self._holding.decide()
+            self._schedule.decide()
             if self._openings.asked:
                 self._decide()
             self._ledger.begin()
             late = [self._iterate_on(component) for component in self._due()]
-            for step, stage in enumerate(self._holding.order or self._plan.stages):
+            for step, stage in self._schedule.steps:
                 self._ledger.begin()
-                number = self._plan.stages.index(stage)
                 ran = [
-                    self._iterate(component, step, number)
+                    self._iterate(component, step, stage)
                     for component in self._plan.components
-                    if number in component.stages
+                    if stage in component.stages
                 ]
                 for written in ran:
                     self._publish(written)
@@ -159,26 +158,20 @@ class MemorySystem:
 
     def _iterate(self, component: ComponentPlan, step: int, stage: int) -> Written:
         host = self._hosts[component.index]
-        tick = host.compose(self.ticks, step, self.now_us, self._holder)
+        tick = host.compose(self.ticks, step, self.now_us, self._schedule.holder)
         return self._taken(component, *self._call(lambda: host.tick(tick, stage)))
 
     def _iterate_on(self, component: ComponentPlan) -> Written:
         host = self._hosts[component.index]
-        host.tell(host.compose(self.ticks, 0, self.now_us, self._holder))
+        host.tell(host.compose(self.ticks, 0, self.now_us, self._schedule.holder))
         return self._taken(component, *self._call(host.iterate))
-
-    @property
-    def _holder(self) -> int:
-        names = [component.name for component in self._plan.components]
-        return names.index(self._holding.holder) if self._holding.holder else NOBODY
 
     def _taken(self, component: ComponentPlan, written: Written, done: done_t) -> Written:
         """Takes a done: the time of the next tick, and the requests of the component."""
         if component.index in self._time_source:
             self._next_us = done.next_time_us
         for request in done.main_loop:
-            stages = [self._plan.stages[stage] for stage in request.schedule]
-            self._holding.ask(done.tick, place_of(done), component.name, stages)
+            self._schedule.ask(done.tick, place_of(done), request)
         if done.channels:
             asked = [channel_request_of(request) for request in done.channels]
             self._openings.ask(done.tick, place_of(done), component.name, asked)

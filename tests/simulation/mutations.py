@@ -7,10 +7,10 @@ from typing import Any
 from unittest.mock import patch
 
 from fwk.component import services
-from fwk.component.main_loop import Holding
 from fwk.engine.boundary import BoundaryRequest, BoundaryRequests
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
+from fwk.engine.schedule import Schedule
 from fwk.engine.visibility import Visibility
 from fwk.host.host import Host
 from fwk.host.inputs import Inputs
@@ -115,8 +115,8 @@ def _as_they_arrive(_right: Any) -> Any:
 
 
 def _first_come(right: Any) -> Any:
-    def ask(self: Holding, _tick: int, _step: int, name: str, order: Sequence[str]) -> None:
-        right(self, 0, len(self._requests), name, order)
+    def ask(self: Schedule, _tick: int, _step: int, request: Any) -> None:
+        right(self, 0, len(self._requests), request)
 
     return ask
 
@@ -189,7 +189,7 @@ MUTATIONS = (
         BoundaryRequests,
         "take",
         _as_they_arrive,
-        Mutation("", "", Holding, "ask", _first_come),
+        Mutation("", "", Schedule, "ask", _first_come),
     ),
     Mutation("fetch unanswered", "a writer does not answer a fetch", Outputs, "answer", _nothing),
     Mutation(

@@ -169,7 +169,8 @@ class Control:
             "repeated": self._loop.barrier.repeated,
             "late": self._loop.barrier.late,
             "waits_for": self._loop.waits_for,
-            **self._loop.schedule.view,
+            "main_loop": self._loop.schedule.holder_name,
+            "order": self._loop.schedule.stage_names,
         }
 
     def _components(self, names: list[str]) -> list[dict[str, Any]]:

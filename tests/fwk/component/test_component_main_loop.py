@@ -1,13 +1,10 @@
-"""Holders of the main loop, and what components see of it, without processes."""
+"""What components see of the main loop, without processes."""
 
 import pytest
 
 from fwk import Clock, Component, MainLoop, Reads, Writes, channel
-from fwk.component.main_loop import Holding
 from fwk.testing.memory import MemorySystem
 from lcmtypes.robot import imu_t
-
-STAGES = {"r/a": ["think"], "r/b": ["think", "act"]}
 
 
 @pytest.mark.parametrize(
@@ -23,61 +20,6 @@ def test_an_impossible_order_is_refused_at_once(order: list[str], error: str) ->
     with pytest.raises(ValueError, match=error):
         main_loop.take_over(order)
     assert main_loop._take() is None
-
-
-def test_the_first_gets_it_and_the_second_learns_the_holder() -> None:
-    holding = Holding(STAGES)
-    holding.ask(3, 5, "r/b", ["act", "act"])
-    holding.ask(3, 5, "r/a", ["think"])
-    assert holding.decide()
-    assert (holding.holder, holding.order) == ("r/a", ("think",))
-    assert holding.refused == ["r/b wants the main loop, but r/a has it; refused until that gives it back"]
-
-
-def test_the_earlier_step_wins_in_any_order_of_answers() -> None:
-    holding = Holding(STAGES)
-    holding.ask(3, 5, "r/a", ["think"])
-    holding.ask(3, 1, "r/b", ["act"])
-    holding.decide()
-    assert holding.holder == "r/b"
-
-
-def test_main_loop_holder_changes_order_and_hands_over() -> None:
-    holding = Holding(STAGES)
-    holding.ask(1, 5, "r/a", ["think"])
-    holding.decide()
-    holding.ask(2, 0, "r/a", ["think", "act"])
-    assert holding.decide()
-    assert list(holding.order) == ["think", "act"]
-    holding.ask(3, 0, "r/b", [])  # b does not hold it
-    assert not holding.decide()
-    holding.ask(4, 0, "r/a", [])
-    holding.ask(4, 1, "r/b", ["act"])
-    assert holding.decide()
-    assert (holding.holder, list(holding.order), holding.refused) == ("r/b", ["act"], [])
-
-
-def test_an_order_without_the_holders_stage_is_refused() -> None:
-    holding = Holding(STAGES)
-    holding.ask(1, 5, "r/a", ["act"])
-    assert not holding.decide()
-    assert holding.refused == [
-        "r/a wants the main loop for act; refused: without a stage of its own (think) it could never give it back"
-    ]
-
-
-def test_the_end_of_the_holders_process_gives_it_back() -> None:
-    holding = Holding(STAGES)
-    holding.ask(1, 5, "r/a", ["think"])
-    holding.decide()
-    holding.ask(2, 0, "r/a", ["think", "think"])
-    holding.left(["r/a"])
-    holding.ask(2, 0, "r/b", ["act"])
-    assert holding.asked
-    holding.decide()
-    assert (holding.holder, holding.asked) == ("r/b", False)
-    holding.left(["r/a"])
-    assert not holding.decide()
 
 
 def test_an_order_of_unknown_or_no_stages_is_a_mistake() -> None:
