@@ -16,7 +16,7 @@ from procs.model.geometry import wrap_rad
 from procs.referee.ends import team_number
 
 _EXPIRES_S = 1.0
-"""A command that the skiller has not begun by then is not begun."""
+"""Logical time within which the skiller has to begin a command."""
 
 
 class AgentConfig(Config):
@@ -33,7 +33,7 @@ class AgentConfig(Config):
 
 
 class Agent(Component):
-    """Thinks in the attack frame, speaks in the world frame."""
+    """Decides in the attack frame, sends commands in the world frame."""
 
     stage = "think"
 
@@ -95,5 +95,5 @@ class Agent(Component):
             return True
         if abs(wrap_rad(heading_rad - command.heading_rad)) > self.config.new_heading_rad:
             return True
-        # The skill has ended and is wanted again; a lasting one that is done goes on.
+        # The skill has ended and is wanted again; a lasting skill that is done continues.
         return self._call.finished and not (self._call.done and SKILLS[skill].lasting)

@@ -18,8 +18,8 @@ _TARGETS = 13
 LANE_RAD = 0.12
 """Room beside a pass's way that is enough."""
 _PASS_M_S = 4.0
-_LEAD_S = 0.5  # a mate is taken to drive on for so long
-_GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free way in rad
+_LEAD_S = 0.5  # a mate is assumed to drive on for this time
+_GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free path in rad
 _TURN_1_RAD = 0.1  # and a radian of turning costs this
 
 
@@ -28,7 +28,7 @@ class Aim(NamedTuple):
 
     place: Point
     free_rad: float
-    """Smallest angle between the ball's way and what is in the way, post or robot; negative: blocked."""
+    """Smallest angle between the ball's path and an obstacle, post or robot; negative: blocked."""
 
 
 def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:

@@ -1,4 +1,4 @@
-"""A simple opponent, which stays as it is: the nearest robot chases the ball and shoots; no roles, no passes."""
+"""A simple opponent, which is never improved: the nearest robot chases the ball and shoots; no roles, no passes."""
 
 import math
 

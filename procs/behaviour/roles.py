@@ -20,7 +20,7 @@ ABSENT = "absent"
 _HAS_BALL_M = 0.45
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
-_STAY_M = 1.0  # a robot keeps its place in the formation unless changing saves so much way
+_STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
 
 
 class Job(NamedTuple):

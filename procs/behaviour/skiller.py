@@ -23,9 +23,10 @@ class SkillerConfig(Config):
 
 
 class Skiller(Component):
-    """Carries out the newest command; thinks in the attack frame, speaks in the world frame.
+    """Carries out the newest command; thinks in the attack frame, writes in the world frame.
 
-    A command is done when its skill has reached its end, and fails when the skill fails or a newer command replaces it.
+    A command is done when its skill has reached its end, and fails when the skill fails or a newer command replaces
+    it.
     """
 
     stage = "skill"

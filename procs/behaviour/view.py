@@ -1,7 +1,7 @@
 """A robot's view of the match in the attack frame: the world turned so that the own team always attacks +x.
 
-For cyan this is the world frame; for magenta it is turned by half a turn. Everything that thinks about the game uses
-it, so that both teams run the same code and play alike.
+For cyan this is the world frame; for magenta it is turned by half a turn. All decisions about the game use it, so
+both teams run the same code and play alike.
 """
 
 import math

@@ -10,8 +10,8 @@ from procs.model.kinematics import STANDSTILL, Velocity, velocity_of, wheels_of
 from procs.model.robot import ROBOT, RobotModel
 from procs.model.units import US_PER_S
 
-_PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, not even when they are pushed
-_LONGEST_GAP_S = 0.5  # a measurement after a longer silence says nothing about the time before
+_PLAUSIBLE = 2.0  # wheels cannot turn faster than their limit times this, even when they are pushed
+_LONGEST_GAP_S = 0.5  # a measurement after a longer silence does not cover the time before
 
 
 class BaseConfig(Config):

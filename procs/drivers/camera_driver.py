@@ -1,4 +1,4 @@
-"""Driver of a real camera, or of pictures that were taken before: gives the frames out as the simulated camera does."""
+"""Driver of a real camera, or of recorded pictures: publishes the frames as the simulated camera does."""
 
 from pathlib import Path
 from typing import Literal
@@ -19,22 +19,23 @@ class CameraDriverConfig(Config):
     """Settings of the camera's driver."""
 
     source: str | int = "/dev/video0"
-    """Where pictures come from: a device (`/dev/video0`, or its number), an address (`rtsp://...`, `http://...`), a
-    video file, or a folder of pictures, taken in the order of their names."""
+    """Device (`/dev/video0`, or its number), address (`rtsp://...`, `http://...`), video file, or folder of pictures,
+    which are taken in the order of their names.
+    """
     width_px: int = Setting(default=0, ge=0, le=10_000)
-    """Frames are made that wide, and a device is asked for it; 0, with height_px: as they come."""
+    """Width of the frames, also requested from a device; 0, with height_px: unchanged."""
     height_px: int = Setting(default=0, ge=0, le=10_000)
     """See width_px."""
     grey: bool = False
     """Frames of one channel (gray8) instead of three (bgr8)."""
     rate_hz: float = Setting(default=0.0, ge=0.0, le=1000.0)
-    """Pictures a second that a device is asked for; 0: its own rate."""
+    """Pictures a second requested from a device; 0: its own rate."""
     at_end: Literal["stop", "loop", "fail"] = "stop"
     """After the last picture of a file or folder: no more frames, from the beginning again, or the component fails."""
     retry_s: PositiveFloat = 0.5
     """A lost device or stream is opened again after this time, which doubles with each failure."""
     longest_retry_s: PositiveFloat = 10.0
-    """But at least that often."""
+    """Longest such time."""
 
 
 class CameraDriver(Component):
@@ -55,10 +56,10 @@ class CameraDriver(Component):
     def unrepeatable(cls, config: CameraDriverConfig) -> str:
         source = str(config.source)
         if "://" in source:
-            return f"'{source}' is a stream, what it sent cannot be had again"
+            return f"'{source}' is a stream, whose pictures cannot be repeated"
         if _is_device(source):
-            return f"'{source}' is a device, what it saw cannot be had again"
-        return "" if Path(source).exists() else f"'{source}' is not there any more"
+            return f"'{source}' is a device, whose pictures cannot be repeated"
+        return "" if Path(source).exists() else f"'{source}' does not exist any more"
 
     def init(self) -> None:
         """Opens the source.
@@ -83,7 +84,7 @@ class CameraDriver(Component):
         try:
             self._open()
         except SourceError as error:
-            self.log.error(f"{error}; no frames until other settings come")
+            self.log.error(f"{error}; no frames until the settings change")
 
     def finalize(self) -> None:
         if self._live:

@@ -1,4 +1,4 @@
-"""Pictures as they come, from a device of this machine or a stream of the network, in a thread of their own."""
+"""Pictures as they arrive, from a device of this machine or a network stream, in a separate thread."""
 
 import os
 import stat
@@ -30,7 +30,7 @@ class Wanted:
 
 @dataclass(frozen=True)
 class Backoff:
-    """How long to wait until a lost source is opened again: first, doubling with each failure, at most."""
+    """Waits before a lost source is opened again: the first one, which doubles with each failure, and the longest."""
 
     first_s: float = 0.5
     longest_s: float = 10.0
@@ -45,7 +45,7 @@ def open_stream(url: str) -> cv2.VideoCapture:
     limits = [cv2.CAP_PROP_OPEN_TIMEOUT_MSEC, OPEN_TIMEOUT_MS, cv2.CAP_PROP_READ_TIMEOUT_MSEC, READ_TIMEOUT_MS]
     capture = cv2.VideoCapture(url, cv2.CAP_FFMPEG, limits)
     if not capture.isOpened():
-        raise SourceError(f"'{url}': no pictures come from there; does the camera run, and is the address right?")
+        raise SourceError(f"'{url}': no pictures arrive from it; is the camera running, and is the address right?")
     return capture
 
 
@@ -58,7 +58,7 @@ def open_device(path: Path, wanted: Wanted) -> cv2.VideoCapture:
     check_device(path)
     capture = cv2.VideoCapture(str(path), cv2.CAP_V4L2)
     if not capture.isOpened():
-        raise SourceError(f"'{path}': it gives no pictures; does another program use it, or is it no camera?")
+        raise SourceError(f"'{path}': it gives no pictures; does another program use it, or is it not a camera?")
     capture.set(cv2.CAP_PROP_BUFFERSIZE, 1)
     for what, value in (
         (cv2.CAP_PROP_FRAME_WIDTH, wanted.width_px),
@@ -82,16 +82,16 @@ def check_device(path: Path) -> None:
         there = ", ".join(str(each) for each in sorted(DEVICES.glob("video*"))) or "none"
         raise SourceError(f"'{path}': {error.strerror}; video devices of this machine: {there}") from error
     if not stat.S_ISCHR(kind):
-        raise SourceError(f"'{path}': no device")
+        raise SourceError(f"'{path}': no such device")
     if not os.access(path, os.R_OK | os.W_OK):
-        raise SourceError(f"'{path}': you may not use it; most systems want you in the group 'video'")
+        raise SourceError(f"'{path}': permission denied; on most systems users have to be in the group 'video'")
 
 
 class Live:
-    """The newest picture of a source that is read all the time, and opened again whenever it is lost.
+    """The newest picture of a source that is read all the time, and reopened whenever it is lost.
 
     Raises:
-        SourceError: it cannot be opened to begin with.
+        SourceError: it cannot be opened at the start.
     """
 
     def __init__(self, source: Callable[[], cv2.VideoCapture], backoff: Backoff) -> None:
@@ -132,7 +132,7 @@ class Live:
                     self._newest = np.asarray(pixels, np.uint8)
             else:
                 capture.release()
-                self._tell("lost: it gives no more pictures; it is opened again until it is back")
+                self._tell("lost: it gives no more pictures; reopening it until it is back")
                 capture = self._open_again()
 
     def _open_again(self) -> cv2.VideoCapture | None:

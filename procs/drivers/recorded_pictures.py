@@ -17,7 +17,7 @@ class SourceError(Exception):
 
 
 class Recorded(Protocol):
-    """Pictures that are the same whenever they are asked for."""
+    """Pictures that are the same at each access."""
 
     def picture(self, number: int) -> Picture | None:
         """Returns picture `number`, from 0; None after the last.
@@ -28,7 +28,7 @@ class Recorded(Protocol):
 
     @property
     def count(self) -> int:
-        """How many there are; 0: not known before the last was seen, or no end."""
+        """Number of pictures; 0: not known before the last was read, or endless."""
 
     def close(self) -> None:
         """Releases the source."""
@@ -52,7 +52,7 @@ class Folder:
             return None
         pixels = cv2.imread(str(self._files[number]), cv2.IMREAD_COLOR)
         if pixels is None:
-            raise SourceError(f"'{self._files[number]}': no picture that can be read; is it damaged?")
+            raise SourceError(f"'{self._files[number]}': not a readable picture; is it damaged?")
         return np.asarray(pixels, np.uint8)
 
     @property
@@ -105,7 +105,7 @@ class Video:
         # One thread: several robots share few cores.
         capture = cv2.VideoCapture(str(self._path), cv2.CAP_FFMPEG, [cv2.CAP_PROP_N_THREADS, 1])
         if not capture.isOpened() or not capture.get(cv2.CAP_PROP_FRAME_WIDTH):
-            raise SourceError(f"'{self._path}': no video that can be read; is it whole, and of a known kind?")
+            raise SourceError(f"'{self._path}': not a readable video; is it whole, and of a known format?")
         return capture
 
 

@@ -1,4 +1,4 @@
-"""How the robots play: collisions, distances at restarts, passes, goals."""
+"""Quality of the robots' play: collisions, distances at restarts, passes, goals."""
 
 import itertools
 

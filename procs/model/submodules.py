@@ -1,4 +1,4 @@
-"""Imports single modules of large libraries, without all that the libraries import themselves."""
+"""Imports single modules of large libraries, without everything that the libraries import themselves."""
 
 import sys
 from collections.abc import Iterator

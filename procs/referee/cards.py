@@ -26,7 +26,7 @@ class Cards:
 
     @property
     def sent_off(self) -> frozenset[str]:
-        """Robots that have to leave the field, or to stay away from it."""
+        """Robots that have to leave the field, or stay away from it."""
         return frozenset(self._out_s)
 
     def pass_time(self, duration_s: float) -> None:

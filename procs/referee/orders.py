@@ -1,4 +1,4 @@
-"""Commands by hand: the referee's decisions, made by a person or by a RefBox. Their names are those of the RefBox."""
+"""Manual commands: the referee's decisions, made by a person or by a RefBox, with the names of the RefBox."""
 
 from collections.abc import Callable
 

@@ -27,7 +27,7 @@ class RefereeConfig(Config, Rules):
 
 
 class Referee(Component):
-    """Decides from the reports of the linesmen and the true positions of the robots; obeys commands by hand.
+    """Decides from the reports of the linesmen and the true positions of the robots; obeys manual commands.
 
     `fwk call world/referee_command name=freekick team=cyan`
     """
@@ -90,7 +90,7 @@ class Referee(Component):
             command.done()
 
     def _record(self, call: Call) -> None:
-        """Adds a decision to the history and tells people about it."""
+        """Adds a decision to the history and logs it."""
         whistle, event = self._whistle, game_event_t()
         event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s

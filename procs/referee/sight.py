@@ -1,4 +1,4 @@
-"""What the referee and the assistants see in a tick."""
+"""Observations of the referee and the assistants in a tick."""
 
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType

@@ -29,9 +29,9 @@ class RadioConfig(Config):
 
 
 class Radio(Component):
-    """Stands for the air between the robots of a team. The launch file gives the channels: `cyan*/team_message`.
+    """Replaces the radio between the robots of a team. The launch file gives the channels: `cyan*/team_message`.
 
-    An inbox is written only in ticks in which something arrives. No robot gets its own messages.
+    An inbox is written only in ticks in which messages arrive. No robot gets its own messages.
     """
 
     stage = "post_loop"
@@ -43,7 +43,7 @@ class Radio(Component):
     rng: np.random.Generator
 
     def init(self) -> None:
-        """Tunes in."""
+        """Creates the links."""
         self._links: RadioLinks[team_message_t] = RadioLinks(list(self.inboxes), self.rng)
 
     def loop(self) -> None:

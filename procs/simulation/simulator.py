@@ -61,7 +61,7 @@ class SimulatorConfig(Config):
 
 
 class Simulator(Component):
-    """Owns the true world and the system's time. Its robots are the namespaces with a wheel command."""
+    """Simulates the true world and determines the system's time. Its robots are the namespaces with a wheel command."""
 
     stage = "pre_loop"
 
@@ -88,7 +88,7 @@ class Simulator(Component):
         """Sets the world up.
 
         Raises:
-            ValueError: `starts` names a robot that is not there.
+            ValueError: `starts` names a robot that does not exist.
         """
         config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)

@@ -62,7 +62,7 @@ def headline(newest: Newest) -> str:
 
 
 def drawing(newest: Newest, columns: int, rows: int) -> list[list[tuple[str, str]]]:
-    """Returns the field with robots and ball for the display; nothing before the simulator has told where they are."""
+    """Returns the field with robots and ball for the display; nothing before the first message of the simulator."""
     truth = newest(TRUTH)
     measures = newest(MEASURES)
     return field_drawing(truth, columns, rows, field_of(measures) if measures else None) if truth else []

@@ -15,8 +15,8 @@ from procs.vision.scan import Scan
 from procs.vision.uncertainty import ground_covariance
 
 _BODY_SAMPLES = 4  # so many black samples in a row are a body
-_COVERED = 0.75  # of all rays black from their beginning: not robots all around, but a covered camera
-_FEET_SAMPLES = 3  # carpet must be seen so close before it, or the near edge is hidden by something
+_COVERED = 0.75  # share of rays that are black from their beginning: a covered camera, not robots all around
+_FEET_SAMPLES = 3  # carpet must be visible this close before it, otherwise the near edge is hidden
 
 
 @dataclass(frozen=True)

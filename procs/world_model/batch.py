@@ -11,7 +11,7 @@ from procs.model.frames import Floats
 
 
 class Innovation(NamedTuple):
-    """What n sightings tell about n predictions, before they are used."""
+    """Differences of n sightings and n predictions, before they are used."""
 
     gains: Floats
     """(n, 4, 2): covariance of state and sighting."""

@@ -16,27 +16,27 @@ from tools.bench.registry import PEERS, Peer
 from tools.bench.scenarios import SIZES
 
 _PAGE = REPOSITORY / "docs" / "numbers.md"
-_REAL_TIME_S = 2.0  # less gives too few periods for a 99th percentile
+_REAL_TIME_S = 2.0  # fewer give too few periods for a 99th percentile
 _JSON = REPOSITORY / "build" / "bench" / "numbers.json"
 
 
 def main(
-    peers: Annotated[str, typer.Option(help="Names, comma between; empty: all")] = "",
+    peers: Annotated[str, typer.Option(help="Names, separated by commas; empty: all")] = "",
     sizes: Annotated[str, typer.Option(help="Numbers of components")] = ",".join(map(str, SIZES)),
     varied: Annotated[str, typer.Option(help="Sizes of the runs with ten reads, 64 KiB, loss; empty: none")] = "20,80",
     own: Annotated[bool, typer.Option("--own/--no-own", help="Real time, start, memory, restart of fwk too")] = True,
-    rounds: Annotated[int, typer.Option(min=1, help="How often each arrangement is measured")] = 3,
-    seconds: Annotated[float, typer.Option(help="Longest time that ticks of one run are measured")] = 2.0,
+    rounds: Annotated[int, typer.Option(min=1, help="Number of measurements of each arrangement")] = 3,
+    seconds: Annotated[float, typer.Option(help="Longest measurement of one run")] = 2.0,
     soak: Annotated[float, typer.Option(help="Seconds of one long run at 100 Hz; 0: none")] = 600.0,
     quick: Annotated[bool, typer.Option("--quick", help="Two rounds, 5 and 20 components, half a second")] = False,
-    json_file: Annotated[Path, typer.Option("--json", help="Where every run goes")] = _JSON,
+    json_file: Annotated[Path, typer.Option("--json", help="File for all runs")] = _JSON,
     page: Annotated[Path, typer.Option(help="Page whose tables are replaced")] = _PAGE,
     no_page: Annotated[bool, typer.Option("--no-page", help="Print the tables, change no page")] = False,
     render: Annotated[bool, typer.Option("--render", help="Measure nothing: tables of the JSON file")] = False,
 ) -> None:
     """Measures a full tick of fwk and of its peers, in rotation, and writes docs/numbers.md.
 
-    Ctrl-C ends the measuring; what was measured until then is written.
+    Ctrl-C ends the measurement; the results so far are written.
     """
     if quick:
         sizes, varied, rounds, seconds, soak = "5,20", "20", 2, 0.5, 0.0
@@ -83,7 +83,7 @@ def _numbers(words: str) -> tuple[int, ...]:
     try:
         return tuple(int(word) for word in words.split(",") if word)
     except ValueError as error:
-        raise typer.BadParameter(f"'{words}': numbers with commas between, for example 5,20,40") from error
+        raise typer.BadParameter(f"'{words}': numbers separated by commas, for example 5,20,40") from error
 
 
 def _figure(run: Run) -> str:

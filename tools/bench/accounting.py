@@ -1,4 +1,4 @@
-"""What a tree of processes used, read from /proc: CPU time, context switches, memory, datagrams."""
+"""Resources used by a tree of processes, read from /proc: CPU time, context switches, memory, datagrams."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ _PROC = Path("/proc")
 
 @dataclass(frozen=True)
 class Usage:
-    """Counters of a moment; the difference of two says what happened in between."""
+    """Counters of a moment; the difference of two counts the events in between."""
 
     cpu_us: float = 0.0
     switches: int = 0
@@ -25,13 +25,13 @@ class Usage:
 
 
 def descendants(pid: int) -> list[int]:
-    """Process ids of all children of `pid`, their children and so on, without `pid`."""
+    """Returns the process ids of all descendants of `pid`."""
     children: dict[int, list[int]] = {}
     for folder in _PROC.iterdir():
         if folder.name.isdigit():
             try:
                 parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
-            except OSError:  # it ended meanwhile
+            except OSError:  # it has ended
                 continue
             children.setdefault(parent, []).append(int(folder.name))
     found, waiting = [], [pid]
@@ -43,7 +43,7 @@ def descendants(pid: int) -> list[int]:
 
 
 def usage(pids: list[int]) -> Usage:
-    """CPU time and context switches of all threads of processes so far; datagrams of this network namespace."""
+    """Returns CPU time and context switches of all threads of processes so far; datagrams of this network namespace."""
     cpu_ns = switches = 0
     for pid in pids:
         for task in (_PROC / str(pid) / "task").glob("*"):
@@ -52,14 +52,14 @@ def usage(pids: list[int]) -> Usage:
                 for line in (task / "status").read_text().splitlines():
                     if "ctxt_switches" in line:
                         switches += int(line.split()[1])
-            except OSError:  # a thread that ended meanwhile
+            except OSError:  # a thread that has ended
                 continue
     udp = _udp_counters()
     return Usage(cpu_ns / 1000, switches, udp["InDatagrams"], udp["RcvbufErrors"])
 
 
 def pss_mb(pids: list[int]) -> float:
-    """Memory of processes in MB, pages that they share counted once."""
+    """Returns the memory of processes in MB, shared pages counted once."""
     total_kb = 0
     for pid in pids:
         try:
@@ -71,7 +71,7 @@ def pss_mb(pids: list[int]) -> float:
 
 
 def threads(pids: list[int]) -> int:
-    """Number of threads of processes."""
+    """Returns the number of threads of processes."""
     return sum(len(list((_PROC / str(pid) / "task").glob("*"))) for pid in pids)
 
 

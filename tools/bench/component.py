@@ -14,9 +14,9 @@ _PR_SET_PDEATHSIG = 1
 
 
 def main() -> None:
-    """Runs until the supervisor says stop; then leaves a file that says how many inputs were stale."""
+    """Runs until the supervisor ends it; then writes the number of stale inputs to a file."""
     peer, shape, index = sys.argv[1], Shape.read(sys.argv[2]), int(sys.argv[3])
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # nobody is left behind when the run is killed
+    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)  # no process is left behind when the run is killed
     side = load(peer).component(shape, index)
     iterations, stale = run(side, shape, index)
     Path(shape.folder, f"component{index}.json").write_text(json.dumps({"iterations": iterations, "stale": stale}))
@@ -24,9 +24,9 @@ def main() -> None:
 
 
 def run(side: ComponentSide, shape: Shape, index: int) -> tuple[int, int]:
-    """The loop; returns iterations and how many inputs were not the newest that the stages before had written.
+    """Runs the loop; returns iterations and the number of inputs older than the newest of the earlier stages.
 
-    A tick that is repeated is answered again and not run again.
+    A repeated tick is answered again and not run again.
     """
     padding = bytes(shape.padding_bytes)
     sources = shape.sources(index)

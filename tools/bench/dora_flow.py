@@ -9,7 +9,7 @@ from tools.bench.shape import Shape
 
 
 def commands(shape_file: str) -> list[list[str]]:
-    """One command: dora's own process is the daemon and starts the nodes."""
+    """Returns one command: dora's own process is the daemon and starts the nodes."""
     shape = Shape.read(shape_file)
     path = Path(shape.folder, "dataflow.yml")
     path.write_text(json.dumps(dataflow(shape, shape_file)))  # JSON is YAML
@@ -17,7 +17,7 @@ def commands(shape_file: str) -> list[list[str]]:
 
 
 def dataflow(shape: Shape, shape_file: str) -> dict[str, Any]:
-    """The dataflow as dora's descriptor wants it."""
+    """Returns the dataflow as dora's descriptor."""
     nodes: list[dict[str, Any]] = [
         {
             "id": "supervisor",

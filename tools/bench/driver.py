@@ -1,7 +1,7 @@
-"""One run of one arrangement in a network namespace of its own: python -m tools.bench.driver JSON; prints a result.
+"""One run of one arrangement in a separate network namespace: python -m tools.bench.driver JSON; prints a result.
 
-It starts the peer's processes, lets the supervisor warm up, and then sleeps while the ticks run. What it reads from
-/proc before and after is the whole tree below it: supervisor, components and any daemon, not itself.
+It starts the peer's processes, lets the supervisor warm up, and then sleeps while the ticks run. Its readings of
+/proc before and after cover the whole tree below it: supervisor, components and any daemon, not itself.
 """
 
 import json
@@ -30,12 +30,12 @@ _LOOK_S = 0.2
 Started = list[subprocess.Popen[bytes]]
 
 
-class RunFailed(Exception):  # noqa: N818 - it says what happened
-    """The run gave no figures; says why."""
+class RunFailed(Exception):  # noqa: N818 - an outcome of a run
+    """The run gave no figures; the text gives the reason."""
 
 
 def main() -> None:
-    """Runs what the JSON argument says: peer, shape, loss, ticks, seconds, whether in a namespace."""
+    """Performs the run that the JSON argument describes: peer, shape, loss, ticks, seconds, namespace or not."""
     job = json.loads(sys.argv[1])
     try:
         if job["isolated"]:
@@ -111,7 +111,7 @@ def _processes(peer: Peer, path: str, folder: str) -> Iterator[Started]:
 
 
 def _end(started: Started) -> None:
-    """Gives components time to end by themselves, then ends daemons and whoever is left."""
+    """Gives components time to end by themselves, then ends daemons and all other processes."""
     deadline_us = now_us() + int(_END_S * 1e6)
     while any(process.poll() is None for process in started) and now_us() < deadline_us:
         sleep_s(0.02)
@@ -123,7 +123,7 @@ def _end(started: Started) -> None:
 
 
 def _connect(listener: socket.socket, started: Started) -> TextIO:
-    """Waits for the supervisor; not for one that has ended already."""
+    """Waits for the supervisor, unless it has already ended."""
     listener.settimeout(_LOOK_S)
     end_us = now_us() + int(_FIRST_TICK_S * 1e6)
     while now_us() < end_us:
@@ -146,13 +146,13 @@ def _read(lines: TextIO) -> dict[str, Any]:
 
 
 def _complaints(folder: str) -> str:
-    """The last line that any process wrote."""
+    """Returns the last line that any process wrote."""
     lines = Path(folder, "output").read_text(errors="replace").strip().splitlines()
-    return lines[-1] if lines else "no process said anything"
+    return lines[-1] if lines else "no process wrote anything"
 
 
 def _stale(shape: Shape) -> int | None:
-    """Inputs that were not the newest, of all components; None if not every component said."""
+    """Returns the number of stale inputs of all components; None if a component did not report."""
     files = list(Path(shape.folder).glob("component*.json"))
     if len(files) < shape.components:
         return None

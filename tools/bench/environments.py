@@ -1,4 +1,4 @@
-"""Where each peer's libraries live and which Python runs it; every peer has an environment of its own."""
+"""Locations of the peers' libraries and interpreters; every peer has an environment of its own."""
 
 import os
 import subprocess
@@ -27,12 +27,12 @@ class Environment:
 
     @property
     def folder(self) -> Path:
-        """Where it is installed."""
+        """Folder of the installation."""
         return PEERS / self.name
 
     @property
     def python(self) -> str:
-        """The interpreter's path."""
+        """Path of the interpreter."""
         if self.pip:
             return str(self.folder / "bin" / "python")
         return sys.executable  # one build of Python for all: Debian's own runs the same code a third faster
@@ -51,9 +51,9 @@ class Environment:
         return made
 
     def missing(self) -> str:
-        """Why the environment cannot be used; empty if it can."""
+        """Returns why the environment cannot be used; empty if it can."""
         if not Path(self.python).exists():
-            return "not installed; say: make bench-peers"
+            return "not installed; type: make bench-peers"
         if not self.imports:
             return ""
         command = [self.python, "-c", f"import {', '.join(self.imports)}"]
@@ -63,7 +63,7 @@ class Environment:
         if result.returncode == 0:
             return ""
         lines = result.stderr.strip().splitlines() or ["cannot be imported"]
-        return f"{lines[-1]}; say: make bench-peers"
+        return f"{lines[-1]}; type: make bench-peers"
 
 
 CORE = Environment("core", imports=("lcm",))

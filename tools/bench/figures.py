@@ -1,4 +1,4 @@
-"""From single runs to what is quoted: medians over rounds, their spread, and ratios within a round."""
+"""From single runs to published figures: medians over rounds, their spread, and ratios within a round."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ class Spread:
 
     @classmethod
     def of(cls, values: Sequence[float]) -> "Spread":
-        """Median, smallest and largest of `values`.
+        """Returns median, smallest and largest of `values`.
 
         Raises:
             ValueError: there are none.
@@ -28,7 +28,7 @@ class Spread:
 
 
 def percentile(values: Sequence[float], share: float) -> float:
-    """The smallest value that at least a share of all (0 to 1) does not exceed; nearest rank.
+    """Returns the smallest value that at least a share of all (0 to 1) does not exceed; nearest rank.
 
     Raises:
         ValueError: there are no values, or the share is outside 0 to 1.
@@ -41,7 +41,7 @@ def percentile(values: Sequence[float], share: float) -> float:
 
 @dataclass(frozen=True)
 class Run:
-    """One run in one round: figures, or the error that kept it from giving any."""
+    """One run in one round: figures, or the error that prevented them."""
 
     round: int
     peer: str
@@ -50,12 +50,12 @@ class Run:
 
     @property
     def error(self) -> str:
-        """Why there are no figures; empty if there are."""
+        """Reason for missing figures; empty if there are some."""
         return str(self.result.get("error", ""))
 
 
 class Runs:
-    """All runs of a benchmark, asked by peer and scenario."""
+    """All runs of a benchmark, by peer and scenario."""
 
     def __init__(self, runs: Sequence[Run]) -> None:
         self._runs: dict[tuple[str, str], list[Run]] = {}
@@ -63,20 +63,20 @@ class Runs:
             self._runs.setdefault((run.peer, run.scenario), []).append(run)
 
     def of(self, peer: str, scenario: str) -> list[Run]:
-        """Runs that gave figures."""
+        """Returns the runs that gave figures."""
         return [run for run in self._runs.get((peer, scenario), []) if not run.error]
 
     def errors(self, peer: str, scenario: str) -> list[str]:
-        """What went wrong, once each."""
+        """Returns the errors, once each."""
         return list(dict.fromkeys(run.error for run in self._runs.get((peer, scenario), []) if run.error))
 
     def spread(self, peer: str, scenario: str, figure: Callable[[dict[str, Any]], float | None]) -> Spread | None:
-        """A figure over the rounds; None if no round has it."""
+        """Returns a figure over the rounds; None if no round has it."""
         values = [value for run in self.of(peer, scenario) if (value := figure(run.result)) is not None]
         return Spread.of(values) if values else None
 
     def ratio(self, peer: str, other: str, scenario: str, other_scenario: str = "") -> Spread | None:
-        """Median tick time of `peer` through that of `other`, each pair from the same round; None without a pair.
+        """Returns the ratio of the median tick times of `peer` and `other`, within each round; None without a pair.
 
         `other_scenario` compares with another arrangement than `scenario`.
         """
@@ -86,20 +86,20 @@ class Runs:
 
 
 def tick_us(result: dict[str, Any]) -> float:
-    """Median wall time of a tick of one run in µs."""
+    """Returns the median wall time of a tick of one run in µs."""
     return float(median(result["tick_us"]))
 
 
 def tick_mean_us(result: dict[str, Any]) -> float:
-    """Mean wall time of a tick of one run in µs; where losses are waited for, the median would hide them."""
+    """Returns the mean wall time of a tick of one run in µs; under losses the median would hide the waits."""
     return float(sum(result["tick_us"]) / len(result["tick_us"]))
 
 
 def error_us(result: dict[str, Any], share: float) -> float:
-    """A percentile (0 to 1) of how far periods were from what was asked for, of one run in µs."""
+    """Returns a percentile (0 to 1) of the deviation of periods from the desired one, of one run in µs."""
     return percentile(result["error_us"], share)
 
 
 def tick_p99_us(result: dict[str, Any]) -> float:
-    """99th percentile of the tick's wall time of one run in µs."""
+    """Returns the 99th percentile of the tick's wall time of one run in µs."""
     return percentile(result["tick_us"], 0.99)

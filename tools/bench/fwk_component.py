@@ -12,14 +12,14 @@ from tools.bench.timing import now_us
 
 
 class RelayConfig(Config):
-    """Which component of which shape."""
+    """Component and shape."""
 
     index: int
     shape_file: str
 
 
 class Relay(Component):
-    """What `tools.bench.component` does, without the ports; the launch file gives it its stage."""
+    """Does the work of `tools.bench.component` without the ports; the launch file gives it its stage."""
 
     stage = "s0"
     config: RelayConfig
@@ -76,7 +76,7 @@ class Relay10(Relay4):
 
 
 class Probe(Relay1):
-    """A relay that also notes when each of its iterations began."""
+    """A relay that also notes the beginning of each of its iterations."""
 
     def init(self) -> None:
         super().init()

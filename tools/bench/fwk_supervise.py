@@ -1,7 +1,7 @@
 """fwk's supervisor with a stop-watch: python -m tools.bench.fwk_supervise SHAPE_FILE [recorded] [grouped].
 
-It is `fwk.launcher.run.run` but for two things: the driver says how many ticks to run and gets each one's time, and
-without `recorded` there is no gateway, so that its cost can be told.
+It equals `fwk.launcher.run.run` with two differences: the driver determines the number of ticks and gets the time of
+each, and without `recorded` there is no gateway, so that its cost can be measured.
 """
 
 import json
@@ -31,10 +31,10 @@ _NEVER = 1 << 62
 
 
 class MeasuredSupervisor(Supervisor):
-    """Runs ticks when the driver says so."""
+    """Runs ticks on the driver's request."""
 
     def measure(self, control: socket.socket) -> Steps[None]:
-        """Starts everything, warms up, answers the driver until it says stop.
+        """Starts everything, warms up, answers the driver until the end of the run.
 
         Raises:
             StartFailedError: components were not ready.

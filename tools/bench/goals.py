@@ -1,4 +1,4 @@
-"""The goals that the benchmark can judge, each with the figure that decides."""
+"""The goals that the benchmark can judge, each with its deciding figure."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ _FIRST_TICK_S = 3.0
 _PSS_MB = 1200.0
 _JITTER_US = 1000.0
 _SOAK_S = 600.0
-_SOAK_PERIODS = 0.99 * 100 * _SOAK_S  # some of the beginning are not counted
+_SOAK_PERIODS = 0.99 * 100 * _SOAK_S  # ticks at the beginning that are not counted
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class Verdict:
 
     @property
     def word(self) -> str:
-        """For tables."""
+        """Returns the verdict as a word for tables."""
         return {True: "met", False: "missed", None: "not measured"}[self.met]
 
 
 def judge(runs: Runs, peers: Sequence[Peer], sizes: Sequence[int]) -> list[Verdict]:
-    """Judges everything that these runs can tell."""
+    """Judges all goals that these runs cover."""
     return [
         _at_most(
             f"full contract at most {_CONTRACT_LIMIT} x bare LCM at every N", _CONTRACT_LIMIT, _contract(runs, sizes)
@@ -73,7 +73,7 @@ def _at_most(goal: str, limit: float, ratios: dict[str, Spread | None]) -> Verdi
 
 
 def _ahead(runs: Runs, peers: Sequence[Peer], sizes: Sequence[int]) -> Verdict:
-    """A peer counts wherever both were measured; the bare ones are what fwk is made of, not its rivals."""
+    """Judges the lead over each peer measured on both sides; bare transports are parts of fwk, not rivals."""
     goal = "ahead of every peer that moves the same typed data"
     behind, closest = [], []
     for peer in peers:
@@ -91,7 +91,7 @@ def _ahead(runs: Runs, peers: Sequence[Peer], sizes: Sequence[int]) -> Verdict:
 
 
 def _flat(runs: Runs, sizes: Sequence[int]) -> Verdict:
-    """Wall time through the number of components, the largest N beside N=20, each round for itself."""
+    """Judges wall time per component: the largest N against N=20, within each round."""
     goal = "cost per component flat from N=20 to N=160 within 30 %"
     if 20 not in sizes or 160 not in sizes:
         return Verdict(goal, None, "")
@@ -123,7 +123,7 @@ def _jitter(runs: Runs) -> Verdict:
 
 
 def _missed(runs: Runs) -> Verdict:
-    """Judged by the longest run alone: what is rare does not show in a short one."""
+    """Judges the longest run alone: rare events do not show in a short one."""
     goal = f"100 Hz with 20 components: no tick missed in {_SOAK_S / 60:g} minutes"
     ran = runs.of(OWN, SOAK)
     if not ran:
@@ -134,7 +134,7 @@ def _missed(runs: Runs) -> Verdict:
 
 
 def _loss(runs: Runs, size: int) -> Spread | None:
-    """Mean tick with loss through mean tick without, from the medians of the rounds' means."""
+    """Returns the ratio of mean ticks with and without loss, from the medians of the rounds' means."""
     with_loss = runs.spread(OWN, f"N={size}, loss 1 %", tick_mean_us)
     without = runs.spread(OWN, f"N={size}", tick_mean_us)
     if with_loss is None or without is None:

@@ -1,4 +1,4 @@
-"""Installs the peers, each into an environment of its own below build/bench-peers: python -m tools.bench.install."""
+"""Installs the peers, each into a separate environment below build/bench-peers: python -m tools.bench.install."""
 
 import subprocess
 import sys
@@ -11,7 +11,7 @@ from tools.bench.environments import ALL, ROS, Environment
 
 
 def main() -> int:
-    """Installs every environment (or those named on the command line); names each that failed and goes on."""
+    """Installs every environment (or those named on the command line); names each that failed and continues."""
     wanted = sys.argv[1:] or [environment.name for environment in ALL]
     failed = 0
     for environment in ALL:
@@ -38,7 +38,7 @@ def _install(environment: Environment) -> None:
 
 
 def _unpack(environment: Environment) -> None:
-    """Downloads the packages and all that they need and the system lacks, and unpacks them without installing."""
+    """Downloads the packages with those dependencies that the system lacks, and unpacks them without installing."""
     listed = _run(["apt-get", "install", "--simulate", "--no-install-recommends", *environment.debian])
     names = [line.split()[1] for line in listed.splitlines() if line.startswith("Inst ")]
     names += [name for name in environment.debian if name not in names]

@@ -1,4 +1,4 @@
-"""What the benchmark ran on, for those who compare."""
+"""Description of the machine that ran the benchmark."""
 
 import os
 import platform
@@ -9,7 +9,7 @@ import psutil
 
 
 def describe() -> dict[str, str]:
-    """Processor, cores, memory, system, versions and the load before the benchmark began."""
+    """Returns processor, cores, memory, system, versions and the load before the benchmark."""
     cpu = next(
         (line.split(":", 1)[1].strip() for line in _lines("/proc/cpuinfo") if line.startswith("model name")),
         platform.processor(),

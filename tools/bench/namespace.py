@@ -1,24 +1,24 @@
-"""A network of its own for each run, so that runs do not disturb each other; with packet loss if asked for."""
+"""A separate network for each run, so that runs do not disturb each other; with packet loss on request."""
 
 import shutil
 import subprocess
 
-# A process namespace too: when the driver ends, the kernel ends all that it started, daemons and their children.
+# A process namespace too: when the driver ends, the kernel ends all descendants, including daemons.
 _UNSHARE = ("unshare", "--net", "--pid", "--fork", "--kill-child", "--mount-proc")
 _SET_UP = (
     "ip link set lo up",
     "ip link set lo multicast on",
     "ip route add 224.0.0.0/4 dev lo",
-    "mount -t tmpfs bench /dev/shm",  # what killed processes leave behind goes with the namespace
+    "mount -t tmpfs bench /dev/shm",  # leftovers of killed processes go with the namespace
 )
 
 
-class NoNamespace(Exception):  # noqa: N818 - it says what is
-    """This machine does not let us make network namespaces; says why."""
+class NoNamespace(Exception):  # noqa: N818 - a property of the machine
+    """This machine does not permit network namespaces; the text gives the reason."""
 
 
 def command() -> list[str]:
-    """The words to put before a command that shall run in a new network namespace.
+    """Returns the words before a command that runs it in a new network namespace.
 
     Raises:
         NoNamespace: neither as this user nor in a user namespace.
@@ -33,7 +33,7 @@ def command() -> list[str]:
 
 
 def set_up(loss: float) -> None:
-    """Inside the new namespace: loopback with multicast, an empty /dev/shm, and a share `loss` of all IP packets lost.
+    """Sets up the new namespace: loopback with multicast, an empty /dev/shm, and loss of a share of all IP packets.
 
     Raises:
         NoNamespace: ip or iptables is missing or refuses.

@@ -1,4 +1,4 @@
-"""Arrangements that only fwk has: how evenly it ticks in real time, how it starts, what it holds, how it restarts."""
+"""Arrangements of fwk alone: regularity in real time, start, memory, restart."""
 
 from dataclasses import asdict, dataclass
 from typing import Any, Literal
@@ -11,7 +11,7 @@ class OwnScenario:
     name: str
     kind: Literal["jitter", "soak", "start"]
     components: int = 0
-    """Jitter, soak: how many components tick."""
+    """Jitter, soak: number of components."""
     stages: int = 5
     period_s: float = 0.0
     busy: bool = False
@@ -20,7 +20,7 @@ class OwnScenario:
     """Start: the launch file."""
 
     def job(self, seconds: float) -> dict[str, Any]:
-        """What the driver of such runs is told."""
+        """Returns the description for the driver of such runs."""
         return {**asdict(self), "seconds": seconds}
 
 
@@ -35,7 +35,7 @@ JITTER = (
     OwnScenario("1 kHz, N=2, busy cores", "jitter", components=2, stages=1, period_s=0.001, busy=True),
 )
 LONG = (OwnScenario(SOAK, "soak", components=20, period_s=0.01),)
-"""Measured once, and much longer than the others: what happens rarely."""
+"""Measured once, and much longer than the others, for rare events."""
 START = (
     OwnScenario(SOCCER, "start", file="soccer.yaml"),
     OwnScenario("soccer-1v1.yaml", "start", file="soccer-1v1.yaml"),

@@ -1,4 +1,4 @@
-"""One run of fwk as people start it, watched from outside: python -m tools.bench.own_driver JSON; prints a result."""
+"""One run of fwk as users start it, watched from outside: python -m tools.bench.own_driver JSON; prints a result."""
 
 import json
 import os
@@ -29,11 +29,11 @@ _PORTS = Ports(_BUS_PORT, 0, 0)
 _PATIENCE_S = 60.0
 _LOOK_S = 0.2
 _WARM_PERIODS = 20
-_SETTLED_TICK = 20  # every component has run, so that its memory is its own
+_SETTLED_TICK = 20  # every component has run, so that its memory is complete
 
 
 def main() -> None:
-    """Runs what the JSON argument says: an `OwnScenario`, seconds, whether in a namespace."""
+    """Performs the run that the JSON argument describes: an `OwnScenario`, seconds, namespace or not."""
     job = json.loads(sys.argv[1])
     try:
         if job["isolated"]:
@@ -47,9 +47,9 @@ def main() -> None:
 
 
 def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
-    """In real time, how far each period of a component is from what was asked for: absolute errors in µs.
+    """Measures in real time the deviation of each period of a component from the desired one: absolute errors in µs.
 
-    Besides, how many ticks were missed: periods that lasted two or more, and iterations that came too late.
+    It also counts missed ticks: periods that lasted two or more, and late iterations.
 
     Raises:
         RunFailed: the run broke.
@@ -74,12 +74,12 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
         raise RunFailed("too few ticks")
     late = re.search(r"\blate (\d+)", Path(folder, "output").read_text(errors="replace"))
     if not late:
-        raise RunFailed(f"no word of late iterations; {_last_words(folder)}")
+        raise RunFailed(f"no count of late iterations; {_last_words(folder)}")
     return {"error_us": errors_us, "missed": sum(error >= period_us for error in errors_us) + int(late[1])}
 
 
 def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
-    """From the command to the first tick; memory of all processes; from killing a component to its next start.
+    """Measures the time from command to first tick, the memory of all processes, and the restart of a component.
 
     Raises:
         RunFailed: no first tick, or the killed component did not come back.
@@ -114,10 +114,10 @@ def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
 
 
 def _message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str) -> bytes:
-    """The next message on a socket of the run.
+    """Returns the next message on a socket of the run.
 
     Raises:
-        RunFailed: the run ended instead, or nothing came for long.
+        RunFailed: the run ended instead, or no message came for long.
     """
     source.settimeout(_LOOK_S)
     end_us = now_us() + int(_PATIENCE_S * 1e6)
@@ -138,7 +138,7 @@ def _has_started(record: tick_record_t, host: int) -> bool:
 
 @contextmanager
 def _launched(folder: str, file: str, *words: str) -> Iterator["subprocess.Popen[bytes]"]:
-    """`fwk-launch`, with its run directory in `folder`; killed if it still runs at the end."""
+    """Runs `fwk-launch` with its run directory in `folder`; kills it if it still runs at the end."""
     command = [CORE.python, "-m", "fwk.cli.launch", file, "--plain", "--bus-port", str(_BUS_PORT), *words]
     variables = {**CORE.process_variables(), "HOME": folder}
     with open(f"{folder}/output", "wb") as output:
@@ -154,7 +154,7 @@ def _launched(folder: str, file: str, *words: str) -> Iterator["subprocess.Popen
 
 @contextmanager
 def _busy(cores: int) -> Iterator[None]:
-    """Keeps cores busy with processes that do nothing but compute."""
+    """Keeps cores busy with processes that only compute."""
     burners = [subprocess.Popen([CORE.python, "-c", "while True: pass"]) for _ in range(cores)]
     try:
         sleep_s(0.1 if burners else 0.0)
@@ -167,7 +167,7 @@ def _busy(cores: int) -> Iterator[None]:
 
 def _last_words(folder: str) -> str:
     lines = Path(folder, "output").read_text(errors="replace").strip().splitlines()
-    return " / ".join(lines[-4:]) or "it said nothing"
+    return " / ".join(lines[-4:]) or "it wrote nothing"
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Everything one benchmark asked for and got, kept as JSON so that tables can be made again."""
+"""Parameters and results of one benchmark, kept as JSON so that tables can be made again."""
 
 import json
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ class Record:
     about: dict[str, str]
     """Command and machine."""
     missing: dict[str, str]
-    """Peers that were left out, and why."""
+    """Peers that were left out, with the reason."""
     peer_names: Sequence[str]
     sizes: Sequence[int]
     varied: Sequence[int]
@@ -49,6 +49,6 @@ class Record:
 
     @classmethod
     def read(cls, path: Path) -> "Record":
-        """Reads back what `save` wrote."""
+        """Reads a file of `save`."""
         data = json.loads(path.read_text())
         return cls(**{**data, "runs": [Run(**run) for run in data["runs"]]})

@@ -1,4 +1,4 @@
-"""The peers: what each is called, where it runs, how its messages are encoded, and which processes it needs."""
+"""The peers: names, environments, codecs, and the processes of each."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,37 +16,37 @@ LCM_GEN = "lcm-gen, Python"
 
 @dataclass(frozen=True)
 class Peer:
-    """One way to do the work of `Shape`."""
+    """An implementation of the work of `Shape`."""
 
     name: str
     title: str
     environment: Environment
     codec: str
     udp: bool = False
-    """Whether it moves everything by UDP, so that datagrams for nothing and packet loss mean something."""
+    """Whether it moves all data by UDP, so that wasted datagrams and packet loss are meaningful."""
     bare: bool = False
-    """Whether it offers no more than the transport: what fwk is built on, not a rival."""
+    """Whether it is only a transport: a part of fwk, not a rival."""
     start: Commands | None = None
-    """Command lines, where they are not one Python process for the supervisor and each component."""
+    """Command lines, unless they are one Python process for the supervisor and each component."""
 
     program: Path | None = None
-    """A compiled program that it needs."""
+    """Compiled program that it needs."""
 
     def commands(self, shape_file: str) -> list[list[str]]:
-        """The command lines to start."""
+        """Returns the command lines to start."""
         if self.start:
             return self.start(shape_file)
         return python_commands(self.environment.python, self.name, shape_file)
 
     def missing(self) -> str:
-        """Why it cannot be measured here; empty if it can."""
+        """Returns why it cannot be measured here; empty if it can."""
         if self.program and not self.program.exists():
-            return f"{self.program.name} not built; say: make bench-peers"
+            return f"{self.program.name} not built; type: make bench-peers"
         return self.environment.missing()
 
 
 def python_commands(python: str, module: str, shape_file: str) -> list[list[str]]:
-    """One process for each component and one for the supervisor."""
+    """Returns one process for each component and one for the supervisor."""
     components = Shape.read(shape_file).components
     made = [[python, "-m", "tools.bench.component", module, shape_file, str(index)] for index in range(components)]
     return [*made, [python, "-m", "tools.bench.supervise", module, shape_file]]
@@ -56,17 +56,17 @@ _ROS_MASTER = [ROS.python, str(ROS.folder / "usr/bin/rosmaster"), "--core", "-p"
 
 
 def rospy_commands(shape_file: str) -> list[list[str]]:
-    """The master, then the nodes; they wait for it by themselves."""
+    """Returns the master, then the nodes, which wait for it by themselves."""
     return [_ROS_MASTER, *python_commands(ROS.python, "rospy", shape_file)]
 
 
 def roscpp_commands(shape_file: str) -> list[list[str]]:
-    """The master, then the nodes; they wait for it by themselves."""
+    """Returns the master, then the nodes, which wait for it by themselves."""
     return [_ROS_MASTER, *ros_build.commands(shape_file)]
 
 
 def fwk_commands(*wishes: str) -> Commands:
-    """The supervisor alone: it forks whatever it needs."""
+    """Returns the supervisor alone, which forks all other processes."""
     return lambda shape_file: [[CORE.python, "-m", "tools.bench.fwk_supervise", shape_file, *wishes]]
 
 

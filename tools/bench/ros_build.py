@@ -13,7 +13,7 @@ _LIBRARIES = ("roscpp", "roscpp_serialization", "rosconsole", "rostime", "xmlrpc
 
 
 def build() -> None:
-    """Makes `PROGRAM`.
+    """Builds `PROGRAM`.
 
     Raises:
         CalledProcessError: the generator or the compiler refused; its output is in `stderr`.
@@ -33,7 +33,7 @@ def build() -> None:
 
 
 def commands(shape_file: str) -> list[list[str]]:
-    """The nodes; the master comes before them."""
+    """Returns the nodes; the master comes before them."""
     shape = Shape.read(shape_file)
     words = [shape.components, shape.stages, shape.reads, shape.padding_bytes, LAST_WARM_UP_TICK, shape.folder]
     arguments = [str(word) for word in words]

@@ -1,4 +1,4 @@
-"""Runs everything in rotation, each peer once a round in every arrangement, so that a slow hour hits all alike."""
+"""Runs all peers in rotation, once a round in every arrangement, so that a slow hour affects all alike."""
 
 import json
 import subprocess
@@ -19,7 +19,7 @@ _PORTS_A_RUN = 700
 
 
 def isolation() -> list[str]:
-    """Words that put a run into a namespace; none where the machine does not allow it: then each run has own ports."""
+    """Returns words that run a command in a namespace; none where that is not permitted: then ports differ."""
     try:
         return namespace.command()
     except namespace.NoNamespace:
@@ -55,7 +55,7 @@ def rotate(
 def rotate_own(
     scenarios: Sequence[OwnScenario], rounds: int, seconds: float, report: Callable[[Run], None]
 ) -> list[Run]:
-    """Measures what only fwk has, every arrangement once a round."""
+    """Measures the arrangements of fwk alone, each once a round."""
     runs = []
     words = isolation()
     for number in range(rounds):
@@ -100,6 +100,6 @@ def _result(command: list[str], seconds: float) -> dict[str, object]:
     except subprocess.TimeoutExpired:
         return {"error": f"nothing within {_RUN_S + seconds:.0f} s"}
     if done.returncode or not done.stdout.strip():
-        return {"error": (done.stderr.strip().splitlines() or ["the driver said nothing"])[-1]}
+        return {"error": (done.stderr.strip().splitlines() or ["the driver wrote nothing"])[-1]}
     result: dict[str, object] = json.loads(done.stdout.splitlines()[-1])
     return result

@@ -1,4 +1,4 @@
-"""What a component writes in the benchmark: a header, four doubles, sixteen covariances, and padding."""
+"""The message of a component in the benchmark: a header, four doubles, sixteen covariances, and padding."""
 
 import math
 from collections.abc import Sequence
@@ -6,7 +6,7 @@ from typing import Any, Protocol
 
 
 class Sample(Protocol):
-    """What lcm-gen's class `sample_t` and the classes of peers with an own codec have in common."""
+    """Common fields of lcm-gen's class `sample_t` and the classes of peers with their own codec."""
 
     header: Any
     x_m: float
@@ -19,12 +19,12 @@ class Sample(Protocol):
 
 
 def fill(made: Sample, component: int, tick: int, stage: int, read: Sequence[Sample | None], padding: bytes) -> None:
-    """Makes what a component writes: numbers that depend on everything it read."""
+    """Fills a component's message with numbers that depend on all its inputs."""
     made.header.tick = made.header.sequence = tick
     made.header.time_us = tick * 10_000
     made.header.stage = stage
     made.header.writer = f"bench/c{component}"
-    # the remainder, since the sums would grow for ever round the ring of readers
+    # the remainder, because the sums would grow for ever in the cycle of readers
     made.x_m = math.fmod(math.fsum(sample.x_m for sample in read if sample) + 1.0, 100.0)
     made.y_m = math.fmod(math.fsum(sample.y_m for sample in read if sample) - 1.0, 100.0)
     made.heading_rad = component * 0.01

@@ -1,4 +1,4 @@
-"""The arrangements that are measured: sizes, number of reads, message sizes, packet loss."""
+"""The measured arrangements: sizes, number of reads, message sizes, packet loss."""
 
 from dataclasses import dataclass
 
@@ -21,22 +21,22 @@ class Scenario:
 
     @property
     def is_plain(self) -> bool:
-        """Whether it differs from the others in nothing but the number of components."""
+        """Whether it differs from the others only in the number of components."""
         return self.loss == 0 and self.shape.reads == 1 and self.shape.padding_bytes == 0
 
     @property
     def ticks(self) -> int:
-        """Ticks that are measured; fewer when there are many components, to keep runs short."""
+        """Number of measured ticks; fewer for many components, to keep runs short."""
         return min(_TICKS_MAX, max(50, _TICKS_TIMES_COMPONENTS // self.shape.components))
 
 
 def growth(sizes: tuple[int, ...] = SIZES) -> list[Scenario]:
-    """The same work with more and more components."""
+    """Returns the same work with more and more components."""
     return [Scenario(f"N={size}", Shape(size)) for size in sizes]
 
 
 def variations(sizes: tuple[int, ...] = (20, 80)) -> list[Scenario]:
-    """Other than the plain case: ten reads a component, large messages, packet loss."""
+    """Returns other arrangements than the plain one: ten reads a component, large messages, packet loss."""
     made = []
     for size in sizes:
         made += [

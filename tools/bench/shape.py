@@ -1,20 +1,20 @@
-"""What one arrangement is: how many components in how many stages, who reads whom, how large the messages are."""
+"""One arrangement: number of components and stages, readers of each component, size of messages."""
 
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 LAST_WARM_UP_TICK = 1_000_000
-"""Number of the last tick that does not count; processes tell by the number whether a tick is measured."""
+"""Number of the last tick that does not count, by which processes know whether a tick is measured."""
 
 
 @dataclass(frozen=True)
 class Shape:
     """The data flow that every peer carries out in the same way.
 
-    Component i runs in stage i mod `stages`, reads the newest messages of the `reads` components before it (round the
-    ring) and writes one message. So most read what the stage before wrote in the same tick, and those of the first
-    stage what the last stage wrote in the tick before.
+    Component i runs in stage i mod `stages`, reads the newest messages of the `reads` components before it (in a
+    cycle) and writes one message. So most components read messages of the stage before in the same tick, and those of
+    the first stage read messages of the last stage of the tick before.
     """
 
     components: int
@@ -23,7 +23,7 @@ class Shape:
     padding_bytes: int = 0
     base_port: int = 17000
     folder: str = ""
-    """Where processes of the run leave files for one another."""
+    """Folder in which processes of the run leave files for each other."""
 
     @property
     def name(self) -> str:

@@ -1,4 +1,4 @@
-"""What a peer has to offer: one side for the supervisor, one for each component."""
+"""Interface of a peer: one side for the supervisor, one for each component."""
 
 from collections.abc import Sequence
 from importlib import import_module
@@ -12,29 +12,29 @@ STOP = -1
 
 
 class SupervisorSide(Protocol):
-    """Broadcasts stages and hears who is done."""
+    """Broadcasts stages and takes answers."""
 
     def begin(self, stage: int, tick: int) -> None:
         """Tells all components of a stage to run their iteration of `tick`."""
 
     def done(self, timeout_s: float) -> tuple[int, int] | None:
-        """The next answer as (component, tick); None when none came in time."""
+        """Returns the next answer as (component, tick); None when none came in time."""
 
     def close(self) -> None:
-        """Lets go of sockets and nodes."""
+        """Releases sockets and nodes."""
 
 
 class ComponentSide(Protocol):
-    """One component's way to the others."""
+    """One component's connection to the others."""
 
     def tick(self) -> int:
         """Waits for the component's next tick; `STOP` ends it."""
 
     def new_sample(self) -> Sample:
-        """An empty message of the peer's codec."""
+        """Returns an empty message of the peer's codec."""
 
     def inputs(self) -> Sequence[Sample | None]:
-        """The newest message of each source, in the order of `Shape.sources`; None before the first."""
+        """Returns the newest message of each source, in the order of `Shape.sources`; None before the first."""
 
     def publish(self, sample: Any) -> None:
         """Sends the component's message to its readers."""
@@ -43,7 +43,7 @@ class ComponentSide(Protocol):
         """Tells the supervisor that the iteration is over."""
 
     def close(self) -> None:
-        """Lets go of sockets and nodes."""
+        """Releases sockets and nodes."""
 
 
 class PeerModule(Protocol):
@@ -54,5 +54,5 @@ class PeerModule(Protocol):
 
 
 def load(name: str) -> Any:
-    """The peer's module; it offers `PeerModule`."""
+    """Returns the peer's module, a `PeerModule`."""
     return import_module(f"tools.bench.peers.{name}")

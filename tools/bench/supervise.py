@@ -17,12 +17,12 @@ _REPEAT_MAX_S = 0.2
 _GIVE_UP_S = 80.0
 
 
-class NoAnswer(Exception):  # noqa: N818 - it says what happened
-    """Components did not answer a tick; names them."""
+class NoAnswer(Exception):  # noqa: N818 - an outcome of a tick
+    """Components did not answer a tick; the text names them."""
 
 
 def main() -> None:
-    """Warms up, then runs the ticks that the driver asks for, until it says stop."""
+    """Warms up, then runs the ticks that the driver requests, until the end of the run."""
     peer, shape = sys.argv[1], Shape.read(sys.argv[2])
     control = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     control.connect(str(Path(shape.folder, "control")))
@@ -59,7 +59,7 @@ def main() -> None:
 
 
 def measure(side: SupervisorSide, shape: Shape, tick: int, ticks: int, seconds: float) -> dict[str, Any]:
-    """Runs `ticks` ticks after `tick`, or as many as `seconds` allow: wall time of each in µs, and repeated stages."""
+    """Runs `ticks` ticks after `tick`, or as many as `seconds` allow; returns wall times in µs, and repeated stages."""
     tick_us = []
     repeated = 0
     end_us = now_us() + int(seconds * 1e6)
@@ -73,7 +73,7 @@ def measure(side: SupervisorSide, shape: Shape, tick: int, ticks: int, seconds: 
 
 
 def run_tick(side: SupervisorSide, shape: Shape, tick: int) -> int:
-    """One pass of all stages; returns how often a stage was repeated because an answer was missing.
+    """Runs one pass of all stages; returns how often a stage was repeated because an answer was missing.
 
     Raises:
         NoAnswer: components stayed silent.

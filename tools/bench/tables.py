@@ -9,13 +9,13 @@ from tools.bench.registry import Peer
 from tools.bench.scenarios import Scenario
 
 REFERENCE = "lcm"
-"""The peer that ratios are taken to."""
+"""Reference peer of all ratios."""
 
 Row = Sequence[str]
 
 
 def markdown(header: Row, rows: Sequence[Row]) -> str:
-    """A table, first column to the left, others to the right."""
+    """Returns a table, first column to the left, others to the right."""
     rule = ["---", *["---:"] * (len(header) - 1)]
     return "\n".join(
         "| " + " | ".join(cell.replace("|", "\\|") for cell in row) + " |" for row in [header, rule, *rows]
@@ -23,7 +23,7 @@ def markdown(header: Row, rows: Sequence[Row]) -> str:
 
 
 def milliseconds(spread: Spread | None) -> str:
-    """Median and, in brackets, smallest and largest of the rounds: `1.52 (1.48-1.71)`."""
+    """Returns the median and, in brackets, smallest and largest of the rounds: `1.52 (1.48-1.71)`."""
     if spread is None:
         return "-"
     return f"{_number(spread.middle / 1000)} ({_number(spread.low / 1000)}-{_number(spread.high / 1000)})"
@@ -34,9 +34,9 @@ def _number(value: float) -> str:
 
 
 def tick_table(runs: Runs, peers: Sequence[Peer], scenarios: Sequence[Scenario]) -> str:
-    """Wall time of a tick and its ratio to the reference, one row a peer, one column an arrangement.
+    """Returns wall times of a tick and ratios to the reference, one row a peer, one column an arrangement.
 
-    Under packet loss it is the mean that counts, because a median does not see what is rare.
+    Under packet loss it gives the mean, because a median hides rare events.
     """
     rows = [[peer.title, *(_tick_cell(runs, peer.name, scenario) for scenario in scenarios)] for peer in peers]
     return markdown(["tick, ms", *(scenario.name for scenario in scenarios)], rows)
@@ -51,7 +51,7 @@ def _tick_cell(runs: Runs, peer: str, scenario: Scenario) -> str:
 
 
 def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
-    """What a tick costs besides wall time, one row a peer, for one arrangement."""
+    """Returns the costs of a tick besides wall time, one row a peer, for one arrangement."""
 
     def middle(peer: str, key: str, form: str) -> str:
         spread = runs.spread(peer, scenario.name, lambda result: _value(result, key))
@@ -83,7 +83,7 @@ def cost_table(runs: Runs, peers: Sequence[Peer], scenario: Scenario) -> str:
         "p99, ms",
         "CPU a tick, ms",
         "switches a tick",
-        "datagrams for nothing a tick",
+        "wasted datagrams a tick",
         "stale inputs",
         "repeated stages",
         "threads",
@@ -100,13 +100,13 @@ def _value(result: dict[str, Any], key: str) -> float | None:
 
 
 def _cpu_us(result: dict[str, Any]) -> float | None:
-    """CPU time; not known when threads ended meanwhile, which took their counters along."""
+    """Returns CPU time; unknown if threads have ended, which took their counters along."""
     used_us = _value(result, "cpu_us")
     return None if used_us is None or used_us < 0 else used_us
 
 
 def jitter_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
-    """How far the period from iteration to iteration is from what was asked for."""
+    """Returns the deviation of the period between iterations from the desired one."""
     rows = []
     for scenario in scenarios:
         spreads = [
@@ -121,7 +121,7 @@ def jitter_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
 
 
 def start_table(runs: Runs, scenarios: Sequence[OwnScenario]) -> str:
-    """What it takes to start, to hold and to restart."""
+    """Returns the times of start and restart, and the memory."""
     rows = []
     for scenario in scenarios:
         row = [scenario.name]

@@ -4,7 +4,7 @@ import time
 
 
 def now_us() -> int:
-    """Wall time in µs that never goes back."""
+    """Returns wall time in µs that never goes back."""
     return time.monotonic_ns() // 1000
 
 

@@ -32,7 +32,7 @@ SUBJECTS = {
         ["Aspect", "Transforms", "Transform", "TransformTree", "TransformError", "transform_message"],
     ),
 }
-"""File name of a page to its title and its names; a name of the public API that stands here nowhere goes to `more`."""
+"""File name of a page to its title and its names; names of the public API on no page go to `more`."""
 
 
 def api_pages() -> dict[str, str]:
@@ -58,7 +58,7 @@ def _page(title: str, package: str, names: list[str]) -> str:
 
 
 def _body(package: str, name: str) -> str:
-    """A directive for mkdocstrings; for a name of another library a sentence."""
+    """Returns a directive for mkdocstrings; for a name of another library a sentence."""
     source = str(getattr(import_module(package), name).__module__).partition(".")[0]
     if source != "fwk":
         return f"`{name}` of the library `{source}`, exported here so that components import from `fwk` alone."

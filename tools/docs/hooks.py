@@ -1,4 +1,4 @@
-"""Hooks of mkdocs: add the generated pages, and point links at the pages that stand for files outside docs/."""
+"""Hooks of mkdocs: add the generated pages, and redirect links to the pages of files outside docs/."""
 
 import re
 from pathlib import Path

@@ -80,7 +80,7 @@ def read_structs(path: Path) -> list[Struct]:
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str, str]]:
-    """Line number, code and comment of each line."""
+    """Yields line number, code and comment of each line."""
     for number, line in enumerate(path.read_text().splitlines(), 1):
         code, _, comment = line.partition("//")
         yield number, code.strip(), comment.strip()

@@ -65,5 +65,5 @@ def _type(struct: Struct, member: Member, names: set[str]) -> str:
 
 
 def _text(comment: str) -> str:
-    """The comment with characters escaped that Markdown would read as markup."""
+    """Returns the comment with characters escaped that Markdown would read as markup."""
     return re.sub(r"([|*_<>\[\]])", r"\\\1", comment)

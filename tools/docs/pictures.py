@@ -53,7 +53,7 @@ def packets(log: Path, last_tick: int) -> Iterator[bytes]:
             if status.tick > last_tick:
                 return
             for host in status.hosts:
-                host.pid = 0  # of a process that has ended; its number may belong to another one now
+                host.pid = 0  # of an ended process, whose number may belong to another one now
             data = status.encode()
         yield event.channel.encode() + b"\0" + data
 

@@ -1,4 +1,4 @@
-"""Fouls, and what every rule gets to see."""
+"""Fouls, and the input of every rule."""
 
 from typing import NamedTuple
 

@@ -30,7 +30,7 @@ class Pose:
 
 @dataclass(frozen=True)
 class Scene:
-    """All that one picture depends on, world frame."""
+    """Everything that one picture depends on, world frame."""
 
     own: Pose
     others: Sequence[tuple[float, float, Bgr]]

@@ -1,11 +1,11 @@
-"""Sensor noise of a camera: every pixel a little wrong, and the brightness not quite steady."""
+"""Sensor noise of a camera: an error of every pixel, and a varying brightness."""
 
 import cv2
 import numpy as np
 
 from procs.vision.colours import Picture
 
-_SPARE_PX = 64  # the noise field is that much larger than a picture, and each frame takes another part of it
+_SPARE_PX = 64  # the noise field is larger than a picture by this, and each frame uses another part of it
 
 
 class SensorNoise:

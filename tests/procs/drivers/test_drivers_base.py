@@ -108,7 +108,7 @@ def test_impossible_wheel_speeds_are_refused_with_a_warning(speed_m_s: float) ->
     base.port("wheel_state").put(measured_m_s=[0.0, speed_m_s, 0.0])
     roll(base, Velocity(1.0, 0.0, 0.0), 1)
     assert base.port("odometry").sent[-1].x_m == pytest.approx(0.05)
-    assert base.logged[0].text == f"wheels say 0.0, {speed_m_s}, 0.0 m/s, which cannot be; ignored"
+    assert base.logged[0].text == f"wheel speeds 0.0, {speed_m_s}, 0.0 m/s are impossible; ignored"
 
 
 def test_after_a_long_silence_only_the_last_period_counts() -> None:

@@ -100,7 +100,7 @@ def test_new_source_during_a_run_begins_at_the_tick(film: Path, tmp_path: Path) 
     camera.component.config.source = str(tmp_path / "none")
     camera.component.config_changed()
     assert shades_of(camera, 2) == [None, None]
-    assert "no frames until other settings come" in camera.logged[-1].text
+    assert "no frames until the settings change" in camera.logged[-1].text
 
 
 @pytest.mark.parametrize(
@@ -109,10 +109,10 @@ def test_new_source_during_a_run_begins_at_the_tick(film: Path, tmp_path: Path) 
         ("/dev/video99", r"'/dev/video99': No such file or directory; video devices of this machine: .+"),
         ("99", r"'/dev/video99': No such file or directory"),
         ("/dev/nothing.mp4", r"'/dev/nothing.mp4': No such file or directory"),
-        ("/dev/null", r"'/dev/null': it gives no pictures; does another program use it, or is it no camera\?"),
-        ("http://127.0.0.1:9/x.mjpeg", r"no pictures come from there; does the camera run"),
+        ("/dev/null", r"'/dev/null': it gives no pictures; does another program use it, or is it not a camera\?"),
+        ("http://127.0.0.1:9/x.mjpeg", r"no pictures arrive from it; is the camera running"),
         ("{folder}", r"no pictures in this folder; they end in \.bmp, "),
-        ("{folder}/text.mp4", r"no video that can be read"),
+        ("{folder}/text.mp4", r"not a readable video"),
     ],
 )
 def test_source_that_cannot_be_opened_is_refused_with_a_reason(tmp_path: Path, source: str, error: str) -> None:
@@ -142,7 +142,7 @@ def test_damaged_picture_is_named(tmp_path: Path) -> None:
     (folder / "frame1.png").write_text("nothing")
     camera = bench(folder)
     camera.iterate()
-    with pytest.raises(SourceError, match=r"frame1\.png': no picture that can be read"):
+    with pytest.raises(SourceError, match=r"frame1\.png': not a readable picture"):
         camera.iterate()
 
 
@@ -178,7 +178,7 @@ def test_lost_stream_is_reported_reopened_and_continued(streams: Callable[..., S
     until(camera, lambda: len(logged) >= 2)
     before = len(frames)
     assert f"{stream.url} lost: it gives no more pictures" in logged[0].text
-    assert f"{stream.url} not back: '{stream.url}': no pictures come from there" in logged[1].text
+    assert f"{stream.url} not back: '{stream.url}': no pictures arrive from it" in logged[1].text
     streams(200, stream.port)
     until(camera, lambda: len(frames) >= before + 3)
     assert [line.text for line in logged[2:]] == [f"{stream.url} back"]  # reported once, not at each attempt
@@ -207,7 +207,7 @@ def test_detectors_see_the_same_in_saved_frames(tmp_path: Path) -> None:
         ("/dev/video0", "is a device"),
         (2, "is a device"),
         ("rtsp://10.0.0.7/", "is a stream"),
-        ("film-that-is-gone.mp4", "is not there any more"),
+        ("film-that-is-gone.mp4", "does not exist any more"),
         (__file__, ""),
     ],
 )

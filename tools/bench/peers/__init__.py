@@ -1,1 +1,1 @@
-"""One module a peer: `supervisor(shape)` and `component(shape, index)`, see `tools.bench.sides`."""
+"""One module for each peer: `supervisor(shape)` and `component(shape, index)`, see `tools.bench.sides`."""

@@ -52,7 +52,7 @@ class DoraSupervisor:
 
 
 class DoraComponent:
-    """Takes one event after the other: whatever data came before its tick is there."""
+    """Takes one event after the other: all data that came before its tick have arrived."""
 
     def __init__(self, shape: Shape, index: int) -> None:
         self._index = index
@@ -83,4 +83,4 @@ class DoraComponent:
         self._node.send_output("done", _NUMBERS.pack(self._index, tick))
 
     def close(self) -> None:
-        os._exit(0)  # the dataflow is a ring: no node would be told that its inputs have ended
+        os._exit(0)  # the dataflow is a cycle: no node would learn that its inputs have ended

@@ -1,4 +1,4 @@
-"""eCAL: publishers and subscribers over its shared memory; found by its own registration."""
+"""eCAL: publishers and subscribers over its shared memory, connected by its own registration."""
 
 import struct
 from typing import Any
@@ -30,7 +30,7 @@ def _subscriber(topic: str, handler: Any) -> Any:
 
 
 class EcalSupervisor:
-    """A topic a stage for ticks, one for dones."""
+    """A topic for the ticks of each stage, one for dones."""
 
     def __init__(self, shape: Shape) -> None:
         ecal.initialize("bench supervisor")
@@ -53,7 +53,7 @@ class EcalSupervisor:
 
 
 class EcalComponent:
-    """Callbacks come from threads of eCAL's."""
+    """Callbacks come from threads of eCAL."""
 
     def __init__(self, shape: Shape, index: int) -> None:
         ecal.initialize(f"bench c{index}")

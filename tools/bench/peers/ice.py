@@ -70,7 +70,7 @@ def _proxy(communicator: Any, shape: Shape, index: int) -> Any:
 
 
 class IceSupervisor:
-    """Fans out without waiting, then takes the answers as they come."""
+    """Calls all components without waiting, then takes the answers as they come."""
 
     def __init__(self, shape: Shape) -> None:
         self._communicator = _communicator()
@@ -150,5 +150,5 @@ class IceComponent:
         self._answer.set_result(tick)
 
     def close(self) -> None:
-        # destroying the communicator waits for connections of others that end at the same time
+        # destroying the communicator waits for connections of other processes that end at the same time
         os._exit(0)

@@ -1,4 +1,4 @@
-"""For peers that call back from threads of their own: ticks queued, of everything else the newest kept."""
+"""For peers with callbacks from their own threads: ticks are queued, of all other data the newest is kept."""
 
 from collections.abc import Sequence
 from queue import Empty, SimpleQueue
@@ -8,18 +8,18 @@ T = TypeVar("T")
 
 
 class Inbox(Generic[T]):
-    """What has arrived at a component; filled by callbacks, emptied by the component's loop."""
+    """Arrived messages of a component; filled by callbacks, emptied by the component's loop."""
 
     def __init__(self, sources: Sequence[int]) -> None:
         self._ticks: SimpleQueue[int] = SimpleQueue()
         self._newest: dict[int, T | None] = dict.fromkeys(sources)
 
     def put_tick(self, tick: int) -> None:
-        """A tick came."""
+        """Takes a tick."""
         self._ticks.put(tick)
 
     def put(self, source: int, message: T) -> None:
-        """A message of a source came."""
+        """Takes a message of a source."""
         self._newest[source] = message
 
     def tick(self) -> int:
@@ -27,7 +27,7 @@ class Inbox(Generic[T]):
         return self._ticks.get()
 
     def newest(self) -> list[T | None]:
-        """The newest message of each source."""
+        """Returns the newest message of each source."""
         return list(self._newest.values())
 
 
@@ -38,11 +38,11 @@ class Answers:
         self._answers: SimpleQueue[tuple[int, int]] = SimpleQueue()
 
     def put(self, component: int, tick: int) -> None:
-        """An answer came."""
+        """Takes an answer."""
         self._answers.put((component, tick))
 
     def take(self, timeout_s: float) -> tuple[int, int] | None:
-        """The next answer; None when none comes in time."""
+        """Returns the next answer; None if none comes in time."""
         try:
             return self._answers.get(timeout=timeout_s)
         except Empty:

@@ -16,7 +16,7 @@ UrlOf = Callable[[str], str]
 
 
 def url(scheme: str, port: int) -> str:
-    """A URL that stays on this machine, with a receive buffer that does not lose bursts."""
+    """Returns a URL that stays on this machine, with a receive buffer that does not lose bursts."""
     return f"{scheme}://239.255.76.67:{port}?ttl=0&recv_buf_size=4194304"
 
 
@@ -67,7 +67,7 @@ class LcmSupervisor:
 
 
 class LcmComponent:
-    """Takes what has arrived when its tick comes; nothing is waited for."""
+    """Takes the messages that have arrived when its tick comes, without waiting."""
 
     def __init__(self, shape: Shape, index: int, url_of: UrlOf) -> None:
         self._index = index

@@ -1,7 +1,7 @@
 """LCM's wire format on plain multicast sockets, a port a channel, data drained at the tick; no contract.
 
-It is how fwk's inner buses speak, without fwk. What liblcm's reader threads cost is the difference to the peer `lcm`,
-what the contract costs is the difference to fwk.
+fwk's inner buses work the same way. The difference to the peer `lcm` is the cost of liblcm's reader threads, the
+difference to fwk the cost of the contract.
 """
 
 import select
@@ -135,7 +135,7 @@ class WireComponent:
         return list(self._newest.values())
 
     def _message(self, number: int, datagram: bytes) -> bytes:
-        """The data that a datagram completes; empty if fragments are missing."""
+        """Returns the data that a datagram completes; empty if fragments are missing."""
         if datagram.startswith(b"LC02"):
             return _body(datagram)
         _, _, size, offset, part, _ = _LONG.unpack_from(datagram)

@@ -15,7 +15,7 @@ _MESSAGES = Path(__file__).parent / "ros"
 
 
 def _generated(name: str, *parts: str) -> Any:
-    """The class of a .msg file and of those it is made of, in the form of a bag's type definition."""
+    """Returns the class of a .msg file and its parts, in the form of a bag's type definition."""
     texts = [(_MESSAGES / f"{name}.msg").read_text()]
     texts += [f"{'=' * 80}\nMSG: bench/{part}\n{(_MESSAGES / f'{part}.msg').read_text()}" for part in parts]
     return genpy.dynamic.generate_dynamic(f"bench/{name}", "".join(texts))[f"bench/{name}"]
@@ -37,7 +37,7 @@ def component(shape: Shape, index: int) -> "RospyComponent":
 
 
 def _publisher(topic: str, kind: Any) -> Any:
-    """Sends in the caller's thread: ROS' faster way for small messages."""
+    """Sends in the caller's thread: ROS's faster way for small messages."""
     return rospy.Publisher(topic, kind, queue_size=None, tcp_nodelay=True)
 
 
@@ -68,7 +68,7 @@ class RospySupervisor:
 
 
 class RospyComponent:
-    """Callbacks come from a thread a connection."""
+    """Callbacks come from one thread for each connection."""
 
     def __init__(self, shape: Shape, index: int) -> None:
         rospy.init_node(f"c{index}", disable_signals=True, disable_rosout=True)

@@ -1,4 +1,4 @@
-"""Unix datagram sockets: the least that separate processes need; a message is sent once to each of its readers."""
+"""Unix datagram sockets: the minimum for separate processes; a message is sent once to each of its readers."""
 
 import select
 import socket

@@ -26,7 +26,7 @@ def _address(shape: Shape, name: str) -> str:
 
 
 class ZmqSupervisor:
-    """One PUB socket a stage, so that nobody hears other stages' ticks."""
+    """One PUB socket for each stage, so that no component receives ticks of other stages."""
 
     def __init__(self, shape: Shape) -> None:
         self._context = zmq.Context()
@@ -51,7 +51,7 @@ class ZmqSupervisor:
 
 
 class ZmqComponent:
-    """One SUB socket for ticks, one connected to all sources; of data the newest is kept."""
+    """One SUB socket for ticks, one connected to all sources; the newest data are kept."""
 
     def __init__(self, shape: Shape, index: int) -> None:
         self._index = index
