@@ -6,10 +6,9 @@ from functools import partial
 from typing import Any
 
 from fwk.bus import sync
-from fwk.bus.backoff import Backoff
-from fwk.bus.complaints import Complaints
 from fwk.bus.network import Network, Steps
-from fwk.bus.receiver import Receiver
+from fwk.bus.receiver import Complaints, Receiver
+from fwk.bus.retransmission import Backoff
 from fwk.bus.sender import Sender
 from fwk.clock import Clock
 from fwk.component.log import Logger, is_plausible

@@ -16,9 +16,8 @@ from fwk.engine.assignment import Assignment, Start
 from fwk.engine.failures import ComponentFailedError
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
-from fwk.host.memory import limit_memory
-from fwk.host.plain_logging import forward_logging
-from fwk.host.process import StopSignal, raise_file_limit
+from fwk.host.log_capture import forward_logging
+from fwk.host.process import StopSignal, limit_memory, raise_file_limit
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
 

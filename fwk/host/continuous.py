@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 
 from fwk.bus import sync
-from fwk.bus.backoff import Backoff
 from fwk.bus.network import Network, Steps
+from fwk.bus.retransmission import Backoff
 from fwk.clock import US_PER_S
 from fwk.engine.assignment import Assignment
 from fwk.engine.catch_up import CatchUp

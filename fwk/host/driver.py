@@ -9,8 +9,7 @@ from fwk.engine.runner import Runner
 from fwk.host.background_server import BackgroundServer
 from fwk.host.continuous import host_of
 from fwk.host.hooks import ProcessHooks
-from fwk.host.memory import lift_limit
-from fwk.host.process import StopSignal, give_memory_back
+from fwk.host.process import StopSignal, give_memory_back, lift_limit
 
 
 class HostDriver:

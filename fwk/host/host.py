@@ -4,9 +4,8 @@ import struct
 from collections.abc import Sequence
 
 from fwk.bus import sync
-from fwk.bus.complaints import Complaints
 from fwk.bus.network import Network, Steps
-from fwk.bus.receiver import Receiver
+from fwk.bus.receiver import Complaints, Receiver
 from fwk.bus.sender import Sender
 from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Container, Sequence
 
-from fwk.bus.backoff import Backoff
 from fwk.bus.channel_socket import ChannelSocket, Complain
 from fwk.bus.network import Network, Steps
+from fwk.bus.retransmission import Backoff
 from fwk.bus.sender import Sender
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.model.plan import NOBODY, ChannelPlan, Plan

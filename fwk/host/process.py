@@ -1,18 +1,26 @@
-"""Life of a forked process: it dies with its parent, stops on request, and reports a crash."""
+"""A forked process: its title and limits; it dies with its parent, stops on request, and reports a crash."""
 
 import contextlib
 import ctypes
 import faulthandler
 import os
+import re
 import resource
 import select
 import signal
 import sys
 from collections.abc import Callable
+from pathlib import Path
 
 _PR_SET_PDEATHSIG = 1
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 32 << 20
+_KIB = 1 << 10
+_MIB = 1 << 20
+_SHORT = 15
+"""Bytes that the kernel keeps of a process's short name, which `top` shows."""
+_KEEP_ENVIRONMENT = "SPT_NOENV"
+"""Setting of setproctitle that leaves alone the memory from which other processes read this one's environment."""
 
 ENDED_WELL = "exit code 0"
 
@@ -70,6 +78,32 @@ def keep_memory() -> None:
 def give_memory_back() -> None:
     """Returns freed memory to the system: `init` often frees more than iterations ever need."""
     ctypes.CDLL(None).malloc_trim(0)
+
+
+def name_process(plan: str, role: str) -> None:
+    """Names this process: `fwk: PLAN ROLE` in full, the end of the role in short."""
+    os.environ[_KEEP_ENVIRONMENT] = "1"
+    from setproctitle import setproctitle, setthreadtitle
+
+    setproctitle(f"fwk: {plan} {role}")
+    setthreadtitle(role.encode()[-_SHORT:].decode(errors="ignore"))
+    del os.environ[_KEEP_ENVIRONMENT]
+
+
+def limit_memory(mebibytes: float) -> None:
+    """Limits private memory to what the process has now plus `mebibytes`; more raises MemoryError.
+
+    Memory shared with the parent process counts as present; shared memory segments do not count.
+    """
+    status = Path("/proc/self/status").read_text()
+    found = re.search(r"^VmData:\s*(\d+) kB", status, re.M)
+    had = int(found[1]) * _KIB if found else 0
+    resource.setrlimit(resource.RLIMIT_DATA, (had + round(mebibytes * _MIB), resource.RLIM_INFINITY))
+
+
+def lift_limit() -> None:
+    """Removes the limit, because reporting a failure needs memory too."""
+    resource.setrlimit(resource.RLIMIT_DATA, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
 
 
 class StopSignal:

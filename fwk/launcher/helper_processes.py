@@ -9,8 +9,7 @@ from functools import partial
 from fwk.component.images import Ring
 from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
-from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, run_forked, wait_for_end
-from fwk.host.process_title import name_process
+from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, name_process, run_forked, wait_for_end
 from fwk.launcher.gateway_process import DELETED, run_gateway
 from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan

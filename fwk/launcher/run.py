@@ -9,8 +9,7 @@ from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
 from fwk.control.server import ControlNameError, Server
 from fwk.host.debugger import DebuggerMissingError, DebugRequest, check
-from fwk.host.process import raise_file_limit
-from fwk.host.process_title import name_process
+from fwk.host.process import name_process, raise_file_limit
 from fwk.host.profile import ProfileRequest, ProfilerMissingError, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.launcher.reservations import Reservations

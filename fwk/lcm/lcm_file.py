@@ -65,7 +65,6 @@ class LcmFile:
     path: Path
     text: str
     package: str
-    package_line: int
     structs: tuple[Struct, ...]
 
 
@@ -105,7 +104,7 @@ class _Parser:
         if self._next.text != "package":
             raise self._wrong(1, "no 'package NAME;' line; every .lcm file names its package")
         self._take()
-        package, line = self._word("the name of the package"), self._next.line
+        package = self._word("the name of the package")
         self._sign(";")
         structs = []
         while self._next.kind != "end":
@@ -114,7 +113,7 @@ class _Parser:
                     self._next.line, f"'{self._next.text}' is not expected here; a struct begins with 'struct NAME {{'"
                 )
             structs.append(self._struct(package))
-        return LcmFile(self.path, self.text, package, line, tuple(structs))
+        return LcmFile(self.path, self.text, package, tuple(structs))
 
     def _tokenize(self) -> None:
         line = 1

@@ -3,14 +3,13 @@
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
-from fwk.bus.backoff import Backoff
 from fwk.bus.network import Steps
+from fwk.bus.retransmission import Backoff, RetransmissionTimeout
 from fwk.model.tick_events import HostLate, StageBegun
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.processes.hosts import Hosts
-from fwk.supervisor.retransmission_timeout import RetransmissionTimeout
 from fwk.supervisor.tick_log import TickLog
 from fwk.supervisor.tick_sender import Tick, TickSender, Turn
 from fwk.supervisor.wait_report import WaitReport

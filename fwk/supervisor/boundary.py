@@ -15,8 +15,7 @@ from fwk.supervisor.channel_requests import ChannelRequests
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_events import HostLeaves, HostLost, HostReady
 from fwk.supervisor.host_process import HostProcess
-from fwk.supervisor.lifecycle import Lifecycle
-from fwk.supervisor.plugin_requests import PluginRequests
+from fwk.supervisor.lifecycle import Lifecycle, PluginRequests
 from fwk.supervisor.processes.hosts import Hosts
 from fwk.supervisor.tick_log import TickLog
 

@@ -2,7 +2,7 @@
 
 from collections import deque
 from collections.abc import Callable
-from typing import Any, Protocol, TypeVar
+from typing import Any, TypeVar
 
 from fwk.bus.network import Network, Steps
 from fwk.bus.waiting import Source
@@ -12,18 +12,6 @@ Handler = Callable[[], None]
 
 COARSE_US = 1_500
 """Margin before the end of a precise wait: the system counts longer waits in whole milliseconds."""
-
-
-class EventSource(Protocol):
-    """A source of events outside the run's buses: signals, the process starter, the control server."""
-
-    def fileno(self) -> int:
-        """Returns the descriptor that is readable when `handle` has something to do."""
-        ...
-
-    def handle(self) -> None:
-        """Handles what has arrived without waiting."""
-        ...
 
 
 class EventLoop:

@@ -1,14 +1,18 @@
 """Translates requests such as `restart cyan1/*` into desired states of host processes, or refuses them."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 from fwk.control.dependents import users_of, with_needs, with_users
 from fwk.control.requests import Action, RequestError
 from fwk.model.plan import NOBODY, Plan
+from fwk.model.requests import PLUGIN_ACTIONS
 from fwk.model.selection import matches, nearest
 from fwk.plan.files.source_files import Sources, mistakes
+from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess
+from fwk.supervisor.processes.hosts import Hosts
+from lcmtypes.core import plugin_request_t
 
 _STOPS = ("stop", "unload", "kill")
 _STARTS_AGAIN = ("start", "restart", "reload")
@@ -145,3 +149,26 @@ class Lifecycle:
                     f"the process '{entry.name}' holds {', '.join(others)} as well; {action} all of them, "
                     "or give each component its own process with --hosting process"
                 )
+
+
+class PluginRequests:
+    """Grants requests of the plugin-control aspect."""
+
+    def __init__(self, core: Core, hosts: Hosts, lifecycle: Lifecycle) -> None:
+        self._core = core
+        self._hosts = hosts
+        self._lifecycle = lifecycle
+
+    def decide(self, request: plugin_request_t) -> None:
+        """Sets the desired states that a component requests; a refused request is logged."""
+        sender = self._core.plan.components[request.component].name
+        action = cast(Action, PLUGIN_ACTIONS[request.action])
+        try:
+            hosts = self._lifecycle.hosts(action, request.names)
+        except RequestError as error:
+            self._core.log.warning(f"{sender} wants to {action} {', '.join(request.names)}; refused: {error}")
+            return
+        for host in hosts:
+            self._lifecycle.request(action, host, self._core.now_us())
+            self._hosts.request(host)
+        self._core.log.info(f"{sender} asked to {action} {', '.join(host.name for host in hosts)}")

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Protocol
 
-from fwk.bus.complaints import Complaints
 from fwk.bus.network import Network, Steps
+from fwk.bus.receiver import Complaints
 from fwk.bus.sender import Sender
 from fwk.clock import US_PER_S
 from fwk.component.images import Ring

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Callable, Iterable, Sequence
 
 from fwk.bus import sync
-from fwk.bus.backoff import Backoff
 from fwk.bus.network import Steps
 from fwk.bus.receiver import Receiver
+from fwk.bus.retransmission import Backoff
 from fwk.engine.visibility import Visibility
 from fwk.lcm.messages import MessageError
 from fwk.model.channel_table import change_message

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from fwk.engine.channel_grants import ChannelGrants
 from fwk.engine.runner import Runner
-from fwk.lcm import envelope, messages
+from fwk.lcm import messages
 from fwk.model.channel_table import ChannelTable, Fact
 from fwk.model.plan import Plan
 
@@ -43,13 +43,6 @@ class Opening:
                     sent, begins = self._sent[fact.opening.name], fact.opening.begins
                     alike = [place for place, data in enumerate(sent) if data.startswith(begins)]
                     yield runner.name, fact.opening.name, [len(sent), *alike][-1] if done == "opened" else -1
-
-    def of_their_types(self, runner: Runner, fresh: dict[str, list[bytes]]) -> dict[str, list[bytes]]:
-        """Drops messages of other types on a channel that was opened again with another type."""
-        for channel in fresh.keys() & self.types.keys():
-            begins = envelope.fingerprint(runner.readers[channel].message_type)
-            fresh[channel] = [data for data in fresh[channel] if data.startswith(begins)]
-        return fresh
 
     def _numbered(self, fact: Fact) -> Fact:
         if not fact.opening:

@@ -1,7 +1,6 @@
 """Forwards fetches for a host that has left the run to the gateway."""
 
-from fwk.bus.complaints import Complaints
-from fwk.bus.receiver import Receiver
+from fwk.bus.receiver import Complaints, Receiver
 from fwk.bus.sender import Sender
 from fwk.supervisor.core import Core
 

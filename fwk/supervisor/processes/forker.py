@@ -18,12 +18,9 @@ from fwk.host.crash_marker import CrashMarker
 from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
 from fwk.host.hot_reload import forget_modules
-from fwk.host.memory import limit_memory
-from fwk.host.plain_logging import forward_logging
-from fwk.host.process import StopSignal, die_with_parent, give_memory_back, run_forked
-from fwk.host.process_title import name_process
+from fwk.host.log_capture import forward_logging, log_uncaught
+from fwk.host.process import StopSignal, die_with_parent, give_memory_back, limit_memory, name_process, run_forked
 from fwk.host.profile import Profile, ProfileRequest
-from fwk.host.uncaught import log_uncaught
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.supervisor.processes.preload import preload

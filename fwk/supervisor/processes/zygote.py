@@ -10,8 +10,7 @@ from fwk.component.images import Ring
 from fwk.engine.assignment import Start
 from fwk.host.crash_marker import CrashMarker
 from fwk.host.debugger import DebugRequest
-from fwk.host.process import die_with_parent, end_child, run_forked, wait_for_end
-from fwk.host.process_title import name_process
+from fwk.host.process import die_with_parent, end_child, name_process, run_forked, wait_for_end
 from fwk.host.profile import ProfileRequest
 from fwk.model.plan import Plan
 from fwk.supervisor.options import RunBrokenError

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fwk.bus.complaints import Complaints
+from fwk.bus.receiver import Complaints
 from fwk.clock import Clock
 from fwk.component.log import Logger
 from fwk.engine.metrics import ComponentMetrics, told
