@@ -80,8 +80,9 @@ class TimeSource:
         elif self._next_us >= 0:
             self._wrong += 1
             if str(self._wrong).strip("0") == "1":
+                so_often = f" ({self._wrong} times so far)" if self._wrong > 1 else ""
                 said = f"next_us = {self._next_us} is not after this tick's time, {now_us} us"
-                return f"time source: {said}; time advances by the period instead ({self._wrong} times so far)"
+                return f"time source: {said}; time advances by the period instead{so_often}"
         elif not self._was_right:
             self._silent += 1
             if self._silent == _SILENT_ITERATIONS:

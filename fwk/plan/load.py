@@ -10,6 +10,7 @@ from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
 from fwk.model.sections import RecordPlan
 from fwk.model.selection import chosen, groups_of
+from fwk.plan.cameras import check_cameras
 from fwk.plan.files.folders import folders_of, join
 from fwk.plan.files.launch_file import Files, find_launch_file, lay_over, read_files
 from fwk.plan.files.overrides import overrides
@@ -133,6 +134,7 @@ class _Loading:
             **shared,
         )
         check_clock(components, shared["clock"], problems)
+        check_cameras(components, whole.channels, problems)
         self._check_ports(made)
         check_processes(made.hosts, made.components, asked, problems)
         problems.stop_if_any()

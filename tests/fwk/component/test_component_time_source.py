@@ -38,10 +38,9 @@ def test_time_that_advances_is_not_reported() -> None:
 def test_time_set_backwards_is_reported_repeatedly() -> None:
     lines = logged(12, step_us=-1)
     assert lines[0] == (
-        "time source: next_us = 49999 is not after this tick's time, 50000 us; "
-        "time advances by the period instead (1 times so far)"
+        "time source: next_us = 49999 is not after this tick's time, 50000 us; time advances by the period instead"
     )
-    assert [line.rpartition("(")[2] for line in lines] == ["1 times so far)", "10 times so far)"]
+    assert [line.partition("instead")[2] for line in lines] == ["", " (10 times so far)"]
 
 
 def test_a_time_source_that_never_sets_time_is_reported_once() -> None:

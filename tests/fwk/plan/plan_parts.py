@@ -109,6 +109,32 @@ class Eye(Component):
     image: Image
 
 
+class MirrorConfig(Config):
+    height_m: float = 0.75
+    """Above the ground."""
+    size_px: tuple[int, int] = (400, 400)
+    """Of the frames."""
+
+
+class MirroredConfig(Config):
+    mirror: MirrorConfig = MirrorConfig()
+    """How the camera sees."""
+    gain: float = 1.0
+    """Of its own."""
+
+
+class MirroredCamera(Camera):
+    """Gives out frames of a mirror."""
+
+    config: MirroredConfig
+
+
+class MirroredEye(Eye):
+    """Looks at frames of a mirror."""
+
+    config: MirroredConfig
+
+
 class Announcer(Component):
     """Writes messages like a camera's announcements, without frames."""
 

@@ -271,6 +271,27 @@ def test_templates_and_names(folder: Path, broken: Broken) -> None:
         {"without": ["*/camera"]},
     ),
     Broken(
+        "it.yaml:3: a/eye: 'mirror.height_m' is 0.5 in a/eye, but 0.75 in a/camera; both use the frames of a/image: "
+        "set them alike, for example under 'shared:'",
+        """
+        components:
+          a/camera: {use: plan_parts:MirroredCamera, config: {gain: 2}}
+          a/eye: {use: plan_parts:MirroredEye, config: {mirror: {height_m: 0.5}}}
+          b/camera: {use: plan_parts:MirroredCamera, config: {mirror: {height_m: 0.5}}}
+          b/eye: {use: plan_parts:MirroredEye, config: {mirror: {height_m: 0.5}}}
+          c/eye: {use: plan_parts:Eye, channels: {image: b/image}}
+        """,
+    ),
+    Broken(
+        "it.yaml:2: a/camera: 'mirror.size_px' is [400, 400] in a/eye, but [640, 480] in a/camera; both use the "
+        "frames of a/image: set them alike, for example under 'shared:'",
+        """
+        components:
+          a/camera: {use: plan_parts:MirroredCamera, config: {mirror: {size_px: [640, 480]}}}
+          a/eye: {use: plan_parts:MirroredEye}
+        """,
+    ),
+    Broken(
         "it.yaml:3: b/sun: two time sources: a/sun (it.yaml:2) and b/sun; keep one",
         """
         components:
