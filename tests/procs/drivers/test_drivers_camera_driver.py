@@ -128,7 +128,7 @@ def test_device_may_be_named_by_its_number() -> None:
 
 def test_unreadable_device_is_refused_with_its_group(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("os.access", lambda *_: False)  # root may read everything
-    with pytest.raises(SourceError, match="most systems want you in the group 'video'"):
+    with pytest.raises(SourceError, match="on most systems users have to be in the group 'video'"):
         bench("/dev/null")
 
 
