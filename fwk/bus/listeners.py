@@ -1,4 +1,4 @@
-"""The programs of this machine that listen on a multicast port, and whether they still work on what they got."""
+"""Programs of this machine that listen on a multicast port, and whether they still process what they received."""
 
 import contextlib
 import os
@@ -8,13 +8,13 @@ from pathlib import Path
 from fwk.clock import US_PER_S, monotonic_us
 
 LOOK_US = US_PER_S
-"""Wall time between two looks for programs that listen."""
+"""Wall time between two searches for programs that listen."""
 FIRST_LOOK_US = US_PER_S // 4
 """The same as long as no program listens."""
 THREADS_MAX = 8
 """Number of threads up to which all threads of a program are watched; of a larger one, those that ran lately."""
 QUEUE_LOOK_US = 10_000
-"""Wall time between two looks at what waits in sockets; what the gateway sends meanwhile fits into a small socket."""
+"""Wall time between two checks of the sockets; the gateway's messages of that time fit into a small socket."""
 _SOCKETS = Path("/proc/net/udp")
 _STATE_BYTES = 128
 
@@ -23,8 +23,8 @@ class Listeners:
     """The listeners on a port, except this process, as far as the kernel shows them to this user.
 
     A listener is busy while one of its threads can run: it has not taken everything from its socket, or has not
-    handled everything that it took. A listener whose threads wait has handled everything, or is held up: a Java program
-    while it tidies its memory. So the sockets are looked at too, less often, because that takes longer.
+    handled everything that it took. A listener whose threads wait has handled everything, or is paused, as a Java
+    program during garbage collection. So the sockets are checked too, less often, because that takes longer.
 
     Args:
         port: UDP port on which the programs listen.
@@ -40,10 +40,10 @@ class Listeners:
         self._inodes: set[str] = set()
         self._processes: dict[str, str] = {}  # by inode of their sockets
         self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
-        self._runs: dict[str, str] = {}  # by thread: how often it had run at the last look
+        self._runs: dict[str, str] = {}  # by thread: how often it had run at the last check
 
     def busy(self) -> str | None:
-        """Returns the name of a listener that still works on what it got; empty if none does, None if none exists."""
+        """Returns the name of a listener that is still busy; empty if none is, None if none exists."""
         now_us = monotonic_us()
         if now_us >= self._look_us:
             self._look()
@@ -52,7 +52,7 @@ class Listeners:
             return None
         for process, threads in list(self._threads.items()):
             try:
-                # One thread may hand its work over to another while these are looked at, so they are looked at twice.
+                # One thread may pass its work to another during a check, so all are checked twice.
                 if any(_can_run(thread) for thread in threads) or any(_can_run(thread) for thread in threads):
                     return _name_of(process)
             except OSError:  # the program, or one of its threads, has ended
@@ -69,7 +69,7 @@ class Listeners:
             self._forget(process)
 
     def _look(self) -> None:
-        """Finds out which processes listen, if they are others than before, and which threads they have."""
+        """Finds the listening processes, if they have changed, and their threads."""
         inodes = {inode for inode, _ in self._sockets()}
         if inodes != self._inodes:
             self._inodes = inodes

@@ -1,4 +1,4 @@
-"""Follows the main loop by its tick records, collects each tick's messages and hands them on in one fixed order."""
+"""Follows the main loop by its tick records, collects each tick's messages and passes them on in one fixed order."""
 
 import struct
 from collections.abc import Callable, Iterable, Sequence
@@ -44,9 +44,9 @@ HEARD_AT_ONCE = 256
 HANDED_AT_ONCE = 32
 """Messages that a sink gets before the public bus has its turn again."""
 PATIENCE_US = 2_000_000
-"""Wall time that the public bus waits for a busy listener at the most."""
+"""Longest wall time that the public bus waits for a busy listener."""
 REAL_TIME_PATIENCE_US = 100_000
-"""The same in a run on the wall clock, in which programs outside need the newest messages in time."""
+"""The same in real time, in which programs outside need the newest messages in time."""
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost a report."""
 SECOND_REQUEST_US = 20_000
@@ -118,7 +118,7 @@ class Gateway:
         self._handlers[descriptor] = handler
 
     def serve(self) -> Steps[None]:
-        """Reports that it hears everything from now on, and works until the supervisor closes the connection."""
+        """Reports that it receives everything from now on, and works until the supervisor closes the connection."""
         self._acknowledge()
         while self._open:
             ready = yield self._wake_us()
@@ -146,7 +146,7 @@ class Gateway:
         return sequence
 
     def _idle(self) -> None:
-        """Repeats the last report if the supervisor perhaps lacks it."""
+        """Repeats the last report if the supervisor may lack it."""
         self._idle_us = self._network.now_us() + IDLE_US
         if self._ingress.marks or self._next == 1:
             self._acknowledge()
@@ -156,7 +156,7 @@ class Gateway:
         return min(self._idle_us, due_us, self._sender.due_us, self.publisher.due_us)
 
     def _send_due(self) -> None:
-        """Sends what was put off: fragments, messages for the public bus, a request for missing records."""
+        """Sends delayed data: fragments, messages for the public bus, a request for missing records."""
         self._sender.send_due()
         self.publisher.send_due()
         if self.publisher.overrun != self._overrun:
@@ -164,7 +164,7 @@ class Gateway:
             self.log.warning(f"public bus: {self._overrun} does not keep up; it may lack messages")
 
     def _finish(self) -> Steps[None]:
-        """Writes what is left and closes everything."""
+        """Writes the remaining data and closes everything."""
         self._pass_on(self._lines, log_t)
         self._pass_on(self._status, status_t)
         for sink in self.sinks:
@@ -222,7 +222,7 @@ class Gateway:
             raise MessageError("a tick record with a component that the plan does not have")
 
     def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
-        """Hands a tick on to the sinks; returns False if the supervisor closed the connection meanwhile."""
+        """Passes a tick on to the sinks; returns False if the supervisor closed the connection."""
         self.clock.tick, self.clock.now_us = record.tick, record.time_us
         for change in record.channels:
             self._open_channels(change)
@@ -251,7 +251,7 @@ class Gateway:
         return True
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
-        """Fetches visible messages that are not here; only hosts and the supervisor are heard meanwhile."""
+        """Fetches visible messages that are missing; during the wait only hosts and the supervisor are served."""
         descriptors = (*self._handlers, self._records.fileno())
         others = [each for each in descriptors if each not in (self._own.fileno(), self._control.fileno())]
         for descriptor in others:
@@ -288,7 +288,7 @@ class Gateway:
                 self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
 
     def _acknowledge(self) -> None:
-        """Reports to the supervisor which tick is recorded, which channels are heard, and what came from outside."""
+        """Reports to the supervisor the newest recorded tick, the channels received, and the messages from outside."""
         recorded = recorded_t()
         recorded.run, recorded.tick, recorded.change = self._run, self._next - 1, self._announced
         marks = self._ingress.marks
@@ -296,7 +296,7 @@ class Gateway:
         self._sender.publish(sync.RECORDED, sync.encode_recorded(recorded), self._ports.sync)
 
     def _request_records(self) -> None:
-        """Asks the supervisor for tick records that are missing, again and again until they come."""
+        """Asks the supervisor for missing tick records, repeatedly until they come."""
         if self._next in self._waiting or not self._waiting:
             self._request = None
             return
@@ -344,7 +344,7 @@ class Gateway:
         return heard > 1
 
     def _hear_supervisor(self) -> None:
-        """Takes note that the supervisor has closed the connection."""
+        """Notes that the supervisor has closed the connection."""
         try:
             self._open = bool(self._control.recv(1)) and self._open
         except BlockingIOError:
@@ -353,7 +353,7 @@ class Gateway:
             self._open = False
 
     def _hear_hosts(self) -> None:
-        """Answers what hosts send to the gateway alone."""
+        """Answers messages of hosts to the gateway alone."""
         for channel, data in self._own.messages(b"fwk/gone", sync.LEAVING, b"fwk/fetch"):
             try:
                 if channel == sync.LEAVING:
@@ -366,7 +366,7 @@ class Gateway:
                 self._own.refuse(str(error))
 
     def _release(self, leaving: leaving_t) -> None:
-        """Answers a host that leaves as soon as all that it has sent is here; it repeats itself until then."""
+        """Answers a leaving host as soon as all of its messages are here; the host repeats itself until then."""
         if leaving.run != self._run or not 0 <= leaving.host < len(self._plan.hosts):
             return
         marks = [pair for pair in zip(leaving.channel, leaving.sequence, strict=True) if pair[0] in self._inputs]

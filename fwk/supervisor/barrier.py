@@ -17,30 +17,30 @@ from fwk.supervisor.wait_report import WaitReport
 NEVER_US = 1 << 62
 REPEAT_LONGEST_US = 100_000
 LOOK_US = 20_000
-"""How often a stage that waits looks after hosts that are being started again."""
+"""Interval at which a waiting stage attends to hosts that are being restarted."""
 STUCK_US = 1_000_000
-"""How long a host that shall stop may keep the loop from its next boundary."""
+"""Time for which a host that has to stop may keep the loop from its next boundary."""
 WINDOW = 16
 """Ticks that the loop may be ahead of the gateway."""
 REAL_TIME_WINDOW_US = 4_000_000
-"""In real time as many ticks as take this long: the loop goes on while the gateway stands still."""
+"""In real time as many ticks as take this long: the loop goes on while the gateway is stopped."""
 ANNOUNCE_US = 20_000
-"""How long a gateway that stands still may hold up real time when channels are opened."""
+"""Time for which a stopped gateway may delay real time when channels are opened."""
 
 
 class Barrier(ABC):
-    """Runs stages: sends the tick, waits for the dones, repeats what may be lost."""
+    """Runs stages: sends the tick, waits for the dones, repeats ticks that may be lost."""
 
     window: int
     """Ticks that the loop may be ahead of the gateway."""
     announce_us = 0
-    """How long the gateway may take to listen to new channels; 0: as long as it takes."""
+    """Longest time for the gateway to listen to new channels; 0: as long as it takes."""
 
     def __init__(self, core: Core, hosts: Hosts, tick_log: TickLog, times: LoopTimes, report: WaitReport) -> None:
         self.repeated = 0
         """Ticks that had to be repeated."""
         self.late = 0
-        """Iterations that were not done in their stage's time."""
+        """Iterations that were not done within the time of their stage."""
         self.outstanding: set[int] = set()
         """Hosts that have not answered the running stage."""
         self.turn = Turn(-1, -1, [])
@@ -57,7 +57,7 @@ class Barrier(ABC):
         self._times = times
         self._timeouts = [RetransmissionTimeout() for _ in core.plan.stages]
         self._tick = Tick(0, 0, -1)
-        self._rejoined = False  # a host joined the running stage: tell it at once
+        self._rejoined = False  # a host joined the running stage: send it the tick at once
 
     def run(self, tick: Tick, turn: Turn) -> Steps[None]:
         """Runs one stage of a tick to its end."""
@@ -98,17 +98,17 @@ class Barrier(ABC):
         return Backoff(now_us, first_us, max(first_us, REPEAT_LONGEST_US))
 
     def answered(self, host: HostProcess) -> None:
-        """Takes note that a host has answered the running stage."""
+        """Notes that a host has answered the running stage."""
         self.outstanding.discard(host.index)
         host.answered_step = self.ledger_step
 
     def joined(self) -> None:
-        """Takes note that a host is ready: it may belong to the running stage."""
+        """Notes that a host is ready: it may belong to the running stage."""
         self._rejoined = True
 
     @abstractmethod
     def lost(self, host: HostProcess) -> None:
-        """Takes note that the process of a host ended."""
+        """Notes that the process of a host ended."""
 
     @abstractmethod
     def _participants(self, hosts: Sequence[HostProcess]) -> set[int]:
@@ -116,7 +116,7 @@ class Barrier(ABC):
 
     @abstractmethod
     def _ends_us(self, began_us: int) -> int:
-        """Returns the wall time at which a stage ends at the latest."""
+        """Returns the latest wall time at which a stage ends."""
 
     def _leave_behind(self) -> None:
         """Ends the stage without the hosts that have not answered."""
@@ -131,7 +131,7 @@ class Barrier(ABC):
         self.outstanding = set()
 
     def _look_after(self, began_us: int) -> None:
-        """Starts hosts again that crashed, and gives up those that do not come back."""
+        """Restarts hosts that crashed, and gives up those that do not come back."""
         now_us = self._core.now_us()
         for index in sorted(self.outstanding):
             host = self._core.hosts[index]
@@ -145,19 +145,19 @@ class Barrier(ABC):
         self.report.waiting(began_us, waited_for, f"tick {self._tick.number}")
 
     def _break_off(self, host: HostProcess, now_us: int) -> None:
-        """Kills a host that shall stop but keeps the loop from reaching the boundary at which it would."""
+        """Kills a host that has to stop but keeps the loop from reaching the boundary for that."""
         host.asked_us, host.reason = now_us, "did not come out of its iteration; killed"
         self._core.log.warning(f"{host.name}: shall stop, but {host.reason}")
         self._hosts.kill(host)
 
 
 class Lockstep(Barrier):
-    """A stage ends when all hosts have answered, also those that are being started again."""
+    """A stage ends when all hosts have answered, including those that are being restarted."""
 
     window = WINDOW
 
     def lost(self, host: HostProcess) -> None:
-        """Goes on waiting for a host that is started again."""
+        """Continues to wait for a host that is restarted."""
         if not host.expected:
             self.outstanding.discard(host.index)
 
@@ -169,7 +169,9 @@ class Lockstep(Barrier):
 
 
 class RealTime(Barrier):
-    """A stage ends when all running hosts have answered, or when its time is up; late hosts are absent meanwhile."""
+    """A stage ends when all running hosts have answered, or when its time is up; late hosts are absent until they
+    answer.
+    """
 
     announce_us = ANNOUNCE_US
 
@@ -179,7 +181,7 @@ class RealTime(Barrier):
         self._stage_time_us = core.plan.stage_time_us or core.plan.period_us
 
     def lost(self, host: HostProcess) -> None:
-        """Goes on without a host that ended."""
+        """Continues without a host that ended."""
         self.outstanding.discard(host.index)
 
     def _participants(self, hosts: Sequence[HostProcess]) -> set[int]:
@@ -190,6 +192,6 @@ class RealTime(Barrier):
 
 
 def barrier_of(core: Core, hosts: Hosts, tick_log: TickLog, times: LoopTimes, report: WaitReport) -> Barrier:
-    """Makes the barrier that the plan's clock asks for."""
+    """Makes the barrier for the plan's clock."""
     kind = Lockstep if core.lockstep else RealTime
     return kind(core, hosts, tick_log, times, report)
