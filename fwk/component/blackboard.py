@@ -7,7 +7,7 @@ from typing import Any, Literal, TypeVar, cast
 from fwk.component.channels import Reads, ReadsHistory, Stamp, Writes, WritesPlain
 from fwk.component.each import Each
 from fwk.lcm import envelope, messages
-from fwk.model.channel_table import BlackboardEvent, ChannelTable, Fact, Instance, InstanceView
+from fwk.model.channel_table import BlackboardEvent, ChannelState, ChannelTable, ChannelView, Fact
 from fwk.model.names import mistake_in
 
 T = TypeVar("T")
@@ -90,7 +90,7 @@ class Blackboard:
         self._readers = readers
         self._writers = writers
         self._declared = frozenset({*readers, *writers})
-        self._instances: ChannelTable | None = None
+        self._table: ChannelTable | None = None
         self._handles: dict[int, Handle] = {}
         self._numbers: dict[int, int] = {}  # id of a handle that is open or requested, to its number
         self._newest = 0
@@ -170,10 +170,10 @@ class Blackboard:
         if isinstance(handle, OpenReadsEach) and not handle:
             del self._handles[number]
 
-    def instances(self, pattern: str = "*") -> list[InstanceView]:
+    def instances(self, pattern: str = "*") -> list[ChannelView]:
         """Returns the channels of this tick whose names match, ordered by name."""
-        table = self._instances
-        return [table.view(instance) for instance in table.matching(pattern)] if table else []
+        table = self._table
+        return [table.view(state) for state in table.matching(pattern)] if table else []
 
     def has_writer(self, channel: str) -> bool:
         """Returns whether a component that takes part in the run writes the channel."""
@@ -181,11 +181,11 @@ class Blackboard:
 
     def writer(self, channel: str) -> str:
         """Returns the full name of the component that writes the channel in this tick; empty if there is none."""
-        return self._asked_of(channel, lambda instances, instance: instances.writer(instance), "")
+        return self._asked_of(channel, lambda table, state: table.writer(state), "")
 
     def readers(self, channel: str) -> tuple[str, ...]:
         """Returns the full names of the components that read the channel in this tick, ordered."""
-        return self._asked_of(channel, lambda instances, instance: instances.readers(instance), ())
+        return self._asked_of(channel, lambda table, state: table.readers(state), ())
 
     def events_of(self, pattern: str) -> list[BlackboardEvent]:
         """Returns those of `events` that concern channels whose names match."""
@@ -202,14 +202,14 @@ class Blackboard:
         return taken
 
     def _take_over(
-        self, instances: ChannelTable, component: int, fact: Fact, events: Sequence[BlackboardEvent]
+        self, table: ChannelTable, component: int, fact: Fact, events: Sequence[BlackboardEvent]
     ) -> Literal["opened", "closed", ""]:
         """Applies a decision between two iterations.
 
         Returns whether the component begins or ceases to read the fact's channel.
         """
         before = len(self._readers)
-        self._instances = instances
+        self._table = table
         self._arrived += events
         handle = self._handles.get(fact.handle) if fact.component == component else None
         if handle is not None:
@@ -220,19 +220,19 @@ class Blackboard:
         after = len(self._readers)
         return "opened" if after > before else "closed" if after < before else ""
 
-    def _first(self, instances: ChannelTable) -> None:
+    def _first(self, table: ChannelTable) -> None:
         """Takes the channel table before the first iteration."""
-        self._instances = instances
+        self._table = table
 
     def _settle(self, fact: Fact, handle: Handle) -> None:
-        name = fact.opening.name if fact.opening else ""
+        name = fact.channel.name if fact.channel else ""
         if fact.kind == "refuse" and not isinstance(handle, OpenReadsEach):
             handle.refused = fact.reason
             self._numbers.pop(id(handle), None)
             _forget(self._writing if isinstance(handle, OpenWrites) else self._reading, handle)
-        elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.opening:
+        elif fact.kind == "write" and isinstance(handle, OpenWrites) and fact.channel:
             if id(handle) in self._numbers:  # not closed in the same iteration
-                handle.is_open, handle.sequence = True, fact.opening.sequence
+                handle.is_open, handle.sequence = True, fact.channel.sequence
                 self._writers[name] = handle
         elif fact.kind == "read" and not isinstance(handle, OpenWrites):
             self._begin_reading(name, fact.handle, handle)
@@ -301,9 +301,9 @@ class Blackboard:
         namespace = self._name.rpartition("/")[0]
         return channel if "/" in channel or not namespace else f"{namespace}/{channel}"
 
-    def _asked_of(self, channel: str, question: Callable[[ChannelTable, Instance], T], nothing: T) -> T:
-        instance = self._instances.find(self._full(channel)) if self._instances else None
-        return question(self._instances, instance) if self._instances and instance else nothing
+    def _asked_of(self, channel: str, question: Callable[[ChannelTable, ChannelState], T], nothing: T) -> T:
+        state = self._table.find(self._full(channel)) if self._table else None
+        return question(self._table, state) if self._table and state else nothing
 
 
 def _forget(table: dict[str, Any], handle: OpenReads[Any] | OpenWrites[Any]) -> None:

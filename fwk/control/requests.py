@@ -74,7 +74,7 @@ def _possible(speed: float) -> float:
     return speed
 
 
-class Clock(_Request):
+class SetClock(_Request):
     """Pauses, resumes or steps simulated time, or sets its speed; answered after the effect."""
 
     verb: Literal["pause", "resume", "step", "speed"]
@@ -142,7 +142,7 @@ class Watch(_Request):
     channel: str
 
 
-class Call(_Request):
+class CallService(_Request):
     """Sends a command to a component through the gateway; answered at once and for each answer of the component."""
 
     verb: Literal["call"]
@@ -154,9 +154,9 @@ class Call(_Request):
 
 
 SupervisorRequest = (
-    Run | Status | Times | Steer | Clock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
+    Run | Status | Times | Steer | SetClock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
 )
-GatewayRequest = Channels | Show | Watch | Call
+GatewayRequest = Channels | Show | Watch | CallService
 _LATER = ConfigDict(defer_build=True)  # validators are built for the first request: most runs never get one
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(
     Annotated[SupervisorRequest, Field(discriminator="verb")], config=_LATER

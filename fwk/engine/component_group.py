@@ -15,7 +15,7 @@ from fwk.engine.input_view import InputView
 from fwk.engine.metrics import ComponentMetrics
 from fwk.engine.plan_match import check_ports, check_unchanged, config_of
 from fwk.engine.runner import LOST_FRAMES, Runner, RunSection
-from fwk.model.channel_table import ChannelTable, Fact, Opening, facts_in, facts_of
+from fwk.model.channel_table import ChannelTable, Fact, OpenChannel, facts_in, facts_of
 from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.requests import channel_request, lost_frame, main_loop_request, plugin_request
@@ -147,16 +147,16 @@ class ComponentGroup:
             if component.opens:
                 runner = self.runners[component.name]
                 done = runner.blackboard._take_over(self.table, component.index, fact, events)
-                if fact.opening and done == "opened":
-                    self._begin_reading(component.name, fact.opening)
-                elif fact.opening and done == "closed":
-                    self._readers[fact.opening.channel].remove(component.name)
-                    self._views[component.name].leave(fact.opening.name)
-        return fact.opening is not None and bool(self._readers.get(fact.opening.channel))
+                if fact.channel and done == "opened":
+                    self._begin_reading(component.name, fact.channel)
+                elif fact.channel and done == "closed":
+                    self._readers[fact.channel.index].remove(component.name)
+                    self._views[component.name].leave(fact.channel.name)
+        return fact.channel is not None and bool(self._readers.get(fact.channel.index))
 
-    def _begin_reading(self, name: str, opening: Opening) -> None:
+    def _begin_reading(self, name: str, opened: OpenChannel) -> None:
         """Starts a component on the newest message that another reader in the group has; otherwise on none."""
-        readers, channel = self._readers.setdefault(opening.channel, []), opening.name
+        readers, channel = self._readers.setdefault(opened.index, []), opened.name
         newest: list[bytes] = []
         if readers:
             other = readers[0]

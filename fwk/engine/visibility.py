@@ -88,20 +88,20 @@ class Visibility:
         channels = [channel for channel in self._read[host] if self._changed[channel] > since]
         return channels, [self.marks[channel] for channel in channels]
 
-    def opened(self, instances: ChannelTable) -> None:
+    def opened(self, table: ChannelTable) -> None:
         """Takes over the readers and writers of dynamic channels; stages are told from the next step on."""
         for lists, before in ((self._interest, self._declared_interest), (self._read, self._declared_read)):
             for place, channels in enumerate(before):
                 lists[place] = list(channels)
-        for instance in instances.matching("*"):
-            for component in dict.fromkeys(component for component, _ in instance.readers):
-                self._opened_by(instance.index, component)
-            if instance.writer:
-                host = self.plan.components[instance.writer[0]].host
+        for state in table.matching("*"):
+            for component in dict.fromkeys(component for component, _ in state.readers):
+                self._opened_by(state.index, component)
+            if state.writer:
+                host = self.plan.components[state.writer[0]].host
                 for channels in self._written:
-                    if instance.index in channels:
-                        channels.remove(instance.index)
-                self._written[host].append(instance.index)
+                    if state.index in channels:
+                        channels.remove(state.index)
+                self._written[host].append(state.index)
 
     def _opened_by(self, channel: int, component: int) -> None:
         host = self.plan.components[component].host

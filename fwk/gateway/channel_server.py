@@ -11,7 +11,7 @@ from fwk.control.requests import RequestError
 from fwk.control.server import Connection, Server
 from fwk.lcm import envelope, messages
 from fwk.lcm.messages import Header, MessageError
-from fwk.model.channel_table import ChannelTable, Instance
+from fwk.model.channel_table import ChannelState, ChannelTable
 from fwk.model.errors import hint
 from fwk.model.plan import NOBODY, ChannelPlan, Plan
 
@@ -32,7 +32,7 @@ class ChannelServer:
         self,
         plan: Plan,
         channels: ChannelTable,
-        call: Callable[[requests.Call, Connection], None],
+        call: Callable[[requests.CallService, Connection], None],
         listener: socket.socket,
     ) -> None:
         self._plan = plan
@@ -79,7 +79,7 @@ class ChannelServer:
             if isinstance(request, requests.Channels):
                 connection.reply({"ok": True, "channels": [self._row(each) for each in self._all()]})
                 return
-            if isinstance(request, requests.Call):
+            if isinstance(request, requests.CallService):
                 self._call(request, connection)
                 return
             answer = self._shown(request.channel)
@@ -93,19 +93,19 @@ class ChannelServer:
 
     def _known(self, name: str) -> ChannelPlan:
         """Returns the channel of that name, of the plan or dynamic."""
-        instance = self._table.find(name)
-        if instance is None:
+        state = self._table.find(name)
+        if state is None:
             raise RequestError(f"no channel '{name}'; {hint(name, [each.name for each in self._all()])}")
-        return self._channels[name] if instance.declared else self._opened(instance)
+        return self._channels[name] if state.declared else self._opened(state)
 
     def _all(self) -> list[ChannelPlan]:
         """Returns the plan's channels, then the dynamic ones."""
-        opened = [instance for instance in self._table.matching("*") if not instance.declared]
+        opened = [state for state in self._table.matching("*") if not state.declared]
         return [*self._plan.channels, *map(self._opened, opened)]
 
-    def _opened(self, instance: Instance) -> ChannelPlan:
-        writer = instance.writer[0] if instance.writer else NOBODY
-        return ChannelPlan(instance.index, instance.name, instance.type_name, writer, ())
+    def _opened(self, state: ChannelState) -> ChannelPlan:
+        writer = state.writer[0] if state.writer else NOBODY
+        return ChannelPlan(state.index, state.name, state.type_name, writer, ())
 
     def _row(self, channel: ChannelPlan) -> dict[str, Any]:
         names = [component.name for component in self._plan.components]
@@ -131,8 +131,8 @@ class ChannelServer:
 
     def _readers(self, channel: ChannelPlan) -> list[int]:
         """Returns the readers of the plan, then those that opened the channel during the run."""
-        instance = self._table.find(channel.name)
-        opened = sorted({component for component, _ in instance.readers}) if instance else []
+        state = self._table.find(channel.name)
+        opened = sorted({component for component, _ in state.readers}) if state else []
         return list(dict.fromkeys([*channel.readers, *opened]))
 
     def _shown(self, name: str) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from typing import Any
 from fwk.clock import US_PER_S, Clock
 from fwk.component.calls import state_of
 from fwk.component.services import ANSWERS, QUEUE_MAX, RequestState
-from fwk.control.requests import Call, RequestError
+from fwk.control.requests import CallService, RequestError
 from fwk.control.server import Connection
 from fwk.gateway.ingress import WRITER, IngressFullError
 from fwk.lcm import messages
@@ -47,7 +47,7 @@ class CommandBridge:
         self._take_in = take_in
         self._clock = clock
 
-    def call(self, request: Call, connection: Connection) -> None:
+    def call(self, request: CallService, connection: Connection) -> None:
         """Sends a tool's request into the run; replies go to the connection as they come.
 
         Raises:

@@ -213,7 +213,7 @@ class Gateway:
         channels = len(self._plan.channels) + self._plan.spare_channels
         facts = [fact for change in record.channels for fact in facts_in(change)]
         named = [*record.channel, *(each.channel for each in record.voids)]
-        named += [fact.opening.channel for fact in facts if fact.opening]
+        named += [fact.channel.index for fact in facts if fact.channel]
         if record.version != protocol_t.VERSION:
             raise MessageError(f"protocol version {record.version}, this gateway has {protocol_t.VERSION}")
         if any(not 0 <= channel < channels for channel in named):
@@ -271,21 +271,21 @@ class Gateway:
         facts = facts_in(change)
         self.channels.apply(facts)
         self._listen(facts)
-        opened = [fact for fact in facts if fact.opening and fact.opening.channel >= len(self._plan.channels)]
-        for component, kind, opening in ((fact.component, fact.kind, fact.opening) for fact in opened):
-            assert opening
-            self.dynamic_plain.discard(opening.name)
-            if envelope.is_plain(opening.type_name):
-                self.dynamic_plain.add(opening.name)
+        dynamic = [fact for fact in facts if fact.channel and fact.channel.index >= len(self._plan.channels)]
+        for component, kind, opened in ((fact.component, fact.kind, fact.channel) for fact in dynamic):
+            assert opened
+            self.dynamic_plain.discard(opened.name)
+            if envelope.is_plain(opened.type_name):
+                self.dynamic_plain.add(opened.name)
             if kind == "write":
-                self._inputs.set_writer(opening.channel, self._plan.components[component].host)
+                self._inputs.set_writer(opened.index, self._plan.components[component].host)
 
     def _listen(self, facts: Iterable[Fact]) -> None:
         """Listens to channels that were never open before."""
         for fact in facts:
-            opening = fact.opening
-            if opening and opening.channel not in self._inputs:
-                self._inputs.open(ChannelPlan(opening.channel, opening.name, opening.type_name, NOBODY, ()))
+            opened = fact.channel
+            if opened and opened.index not in self._inputs:
+                self._inputs.open(ChannelPlan(opened.index, opened.name, opened.type_name, NOBODY, ()))
 
     def _acknowledge(self) -> None:
         """Reports to the supervisor the newest recorded tick, the channels received, and the messages from outside."""

@@ -122,11 +122,11 @@ class MemoryHost:
         """
         self._channels.append(change)
         for fact in facts_in(change):
-            opening = fact.opening
-            if fact.kind == "read" and fact.component in self._components and opening:
-                port = self._ports.channel(opening.channel)
-                self._names[port] = opening.name.encode()
-                begin = [newest[opening.channel]] if opening.channel in newest else []
+            opened = fact.channel
+            if fact.kind == "read" and fact.component in self._components and opened:
+                port = self._ports.channel(opened.index)
+                self._names[port] = opened.name.encode()
+                begin = [newest[opened.index]] if opened.index in newest else []
                 # An earlier decision that the host does not have yet needs the messages since then.
                 self._expected[port] = change.number, self._expected.get(port, (0, begin))[1]
 

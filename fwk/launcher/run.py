@@ -13,7 +13,7 @@ from fwk.host.process import name_process, raise_file_limit
 from fwk.host.profile import ProfileRequest, ProfilerMissingError, check_profiler
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.launcher.reservations import Reservations
-from fwk.launcher.signals import Signals
+from fwk.launcher.signals import StopSignals
 from fwk.lcm import envelope, messages
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
@@ -53,7 +53,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     reservations.gateway.close()  # the gateway's process has it
     network = UdpNetwork(reservations.own)
     name_process(plan.name, "supervisor")
-    machine = Machine(zygote, Signals(), partial(Server, reservations.supervisor), rings, reservations.hosts, debug)
+    machine = Machine(zygote, StopSignals(), partial(Server, reservations.supervisor), rings, reservations.hosts, debug)
     supervisor = Supervisor(plan, options, number, network, machine)
     reason, failed = network.run(supervisor.work(helpers))
     status, failures = network.run(supervisor.stop())

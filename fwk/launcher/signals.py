@@ -6,7 +6,7 @@ import signal
 ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-class Signals:
+class StopSignals:
     """Collects the signals that ask this process to end; a descriptor is readable when one came."""
 
     def __init__(self) -> None:

@@ -29,12 +29,12 @@ class BlackboardEvent:
 
 
 @dataclass(frozen=True)
-class Opening:
+class OpenChannel:
     """An open dynamic channel; `handle` is the number that the component gave its request."""
 
     component: int
     handle: int
-    channel: int
+    index: int
     name: str
     type_name: str
     fingerprint: str
@@ -58,19 +58,19 @@ class Fact:
     kind: FactKind
     component: int
     handle: int = 0
-    opening: Opening | None = None
+    channel: OpenChannel | None = None
     reason: str = ""
 
     def numbered(self, sequence: int) -> "Fact":
         """Returns the fact with the sequence number of the channel's newest message."""
-        return replace(self, opening=replace(self.opening, sequence=sequence)) if self.opening else self
+        return replace(self, channel=replace(self.channel, sequence=sequence)) if self.channel else self
 
     def plain(self) -> list[Any]:
         """Returns plain data for JSON."""
         made: list[Any] = [self.kind, self.component, self.handle]
-        if self.opening:
-            each = self.opening
-            return [*made, each.channel, each.name, each.type_name, each.fingerprint, each.sequence]
+        if self.channel:
+            each = self.channel
+            return [*made, each.index, each.name, each.type_name, each.fingerprint, each.sequence]
         return [*made, self.reason] if self.reason else made
 
     @classmethod
@@ -78,12 +78,12 @@ class Fact:
         """Returns the fact of plain data from `plain`."""
         kind, component, handle, *rest = data
         if kind in ("read", "write", "close"):
-            return cls(kind, component, handle, Opening(component, handle, *rest))
+            return cls(kind, component, handle, OpenChannel(component, handle, *rest))
         return cls(kind, component, handle, reason=rest[0] if rest else "")
 
 
 @dataclass(frozen=True)
-class InstanceView:
+class ChannelView:
     """A channel as it is in a tick."""
 
     name: str
@@ -97,7 +97,7 @@ class InstanceView:
 
 
 @dataclass
-class Instance:
+class ChannelState:
     """A channel in the table."""
 
     index: int
@@ -123,39 +123,39 @@ class ChannelTable:
         self.present: set[int] = set()
         """Components that take part in the run."""
         self._by_name = {
-            channel.name: Instance(channel.index, channel.name, channel.type_name, channel.writer, channel.readers)
+            channel.name: ChannelState(channel.index, channel.name, channel.type_name, channel.writer, channel.readers)
             for channel in plan.channels
         }
         self._indices: dict[tuple[str, str], int] = {}  # name and fingerprint of all dynamic channels so far
         self._declared = len(self._by_name)
 
-    def find(self, name: str) -> Instance | None:
+    def find(self, name: str) -> ChannelState | None:
         """Returns the channel of a name; None if there is none."""
         return self._by_name.get(name)
 
-    def matching(self, pattern: str) -> list[Instance]:
+    def matching(self, pattern: str) -> list[ChannelState]:
         """Returns the channels whose names match, ordered by name."""
         return [self._by_name[name] for name in sorted(self._by_name) if fnmatchcase(name, pattern)]
 
-    def writer(self, instance: Instance) -> str:
+    def writer(self, state: ChannelState) -> str:
         """Returns the full name of the component that writes a channel now; empty if there is none."""
-        index = instance.writer[0] if instance.writer else instance.declared_writer
+        index = state.writer[0] if state.writer else state.declared_writer
         return self.names[index] if index in self.present else ""
 
-    def readers(self, instance: Instance) -> tuple[str, ...]:
+    def readers(self, state: ChannelState) -> tuple[str, ...]:
         """Returns the full names of the components that read a channel now, in alphabetical order."""
-        indices = {*instance.declared_readers, *(component for component, _ in instance.readers)} & self.present
+        indices = {*state.declared_readers, *(component for component, _ in state.readers)} & self.present
         return tuple(sorted(self.names[index] for index in indices))
 
-    def view(self, instance: Instance) -> InstanceView:
+    def view(self, state: ChannelState) -> ChannelView:
         """Returns the channel as components see it."""
-        writer, readers = self.writer(instance), self.readers(instance)
-        return InstanceView(instance.name, instance.type_name, writer, readers, instance.declared)
+        writer, readers = self.writer(state), self.readers(state)
+        return ChannelView(state.name, state.type_name, writer, readers, state.declared)
 
     def index_of(self, name: str, fingerprint: str) -> int | None:
         """Returns the index of a present or former channel; one that is opened again with its type keeps it."""
-        instance = self._by_name.get(name)
-        return instance.index if instance else self._indices.get((name, fingerprint))
+        state = self._by_name.get(name)
+        return state.index if state else self._indices.get((name, fingerprint))
 
     @property
     def known(self) -> int:
@@ -165,20 +165,20 @@ class ChannelTable:
     def opened_by(self, component: int) -> list[Fact]:
         """Returns facts that close every channel that a component has open."""
         found = []
-        for instance in self._by_name.values():
-            opened = [*([instance.writer] if instance.writer else []), *instance.readers]
-            found += [(handle, instance) for owner, handle in opened if owner == component]
+        for state in self._by_name.values():
+            opened = [*([state.writer] if state.writer else []), *state.readers]
+            found += [(handle, state) for owner, handle in opened if owner == component]
         found.sort(key=lambda pair: (pair[0], pair[1].name))
-        return [Fact("close", component, handle, _opening(component, handle, instance)) for handle, instance in found]
+        return [Fact("close", component, handle, _open_channel(component, handle, state)) for handle, state in found]
 
     def snapshot(self) -> list[Fact]:
         """Returns facts that rebuild this table from an empty one."""
         made = [Fact("come", component) for component in sorted(self.present)]
         for name in sorted(self._by_name):
-            instance = self._by_name[name]
-            if instance.writer:
-                made.append(Fact("write", *instance.writer, _opening(*instance.writer, instance)))
-            made += [Fact("read", *reader, _opening(*reader, instance)) for reader in instance.readers]
+            state = self._by_name[name]
+            if state.writer:
+                made.append(Fact("write", *state.writer, _open_channel(*state.writer, state)))
+            made += [Fact("read", *reader, _open_channel(*reader, state)) for reader in state.readers]
         return made
 
     def apply(self, facts: Iterable[Fact]) -> list[BlackboardEvent]:
@@ -200,61 +200,61 @@ class ChannelTable:
         return events
 
     def _open(self, fact: Fact) -> list[BlackboardEvent]:
-        opening = fact.opening
-        assert opening
-        events, instance = [], self._by_name.get(opening.name)
-        if instance is None:
-            instance = Instance(
-                opening.channel, opening.name, opening.type_name, declared=False, fingerprint=opening.fingerprint
+        opened = fact.channel
+        assert opened
+        events, state = [], self._by_name.get(opened.name)
+        if state is None:
+            state = ChannelState(
+                opened.index, opened.name, opened.type_name, declared=False, fingerprint=opened.fingerprint
             )
-            self._by_name[opening.name] = instance
-            self._indices[opening.name, opening.fingerprint] = opening.channel
-            events.append(self._event("instance_created", instance, fact.component))
+            self._by_name[opened.name] = state
+            self._indices[opened.name, opened.fingerprint] = opened.index
+            events.append(self._event("instance_created", state, fact.component))
         if fact.kind == "write":
-            instance.writer = (fact.component, fact.handle)
-            events.append(self._event("writer_added", instance, fact.component))
+            state.writer = (fact.component, fact.handle)
+            events.append(self._event("writer_added", state, fact.component))
             return events
-        before = self.readers(instance)
-        insort(instance.readers, (fact.component, fact.handle))
-        if self.readers(instance) != before:
-            events.append(self._event("reader_added", instance, fact.component))
+        before = self.readers(state)
+        insort(state.readers, (fact.component, fact.handle))
+        if self.readers(state) != before:
+            events.append(self._event("reader_added", state, fact.component))
         return events
 
     def _close(self, fact: Fact) -> list[BlackboardEvent]:
-        assert fact.opening
-        instance, key = self._by_name.get(fact.opening.name), (fact.component, fact.handle)
-        if instance is None:
+        assert fact.channel
+        state, key = self._by_name.get(fact.channel.name), (fact.component, fact.handle)
+        if state is None:
             return []
         events = []
-        if instance.writer == key:
-            instance.writer = None
-            events.append(self._event("writer_removed", instance, fact.component))
-        elif key in instance.readers:
-            before = self.readers(instance)
-            instance.readers.remove(key)
-            if self.readers(instance) != before:
-                events.append(self._event("reader_removed", instance, fact.component))
-        if not (instance.declared or instance.writer or instance.readers):
-            del self._by_name[instance.name]
-            events.append(self._event("instance_destroyed", instance, fact.component))
+        if state.writer == key:
+            state.writer = None
+            events.append(self._event("writer_removed", state, fact.component))
+        elif key in state.readers:
+            before = self.readers(state)
+            state.readers.remove(key)
+            if self.readers(state) != before:
+                events.append(self._event("reader_removed", state, fact.component))
+        if not (state.declared or state.writer or state.readers):
+            del self._by_name[state.name]
+            events.append(self._event("instance_destroyed", state, fact.component))
         return events
 
     def _presence(self, component: int, how: Literal["added", "removed"]) -> list[BlackboardEvent]:
         """Returns the events of a component that joins or leaves, for the channels that it declares."""
         events = []
-        for instance in self._by_name.values():
-            if instance.declared_writer == component:
-                events.append(self._event("writer_added" if how == "added" else "writer_removed", instance, component))
-            if component in instance.declared_readers:
-                events.append(self._event("reader_added" if how == "added" else "reader_removed", instance, component))
+        for state in self._by_name.values():
+            if state.declared_writer == component:
+                events.append(self._event("writer_added" if how == "added" else "writer_removed", state, component))
+            if component in state.declared_readers:
+                events.append(self._event("reader_added" if how == "added" else "reader_removed", state, component))
         return events
 
-    def _event(self, kind: EventKind, instance: Instance, component: int) -> BlackboardEvent:
-        return BlackboardEvent(kind, instance.name, instance.type_name, self.names[component])
+    def _event(self, kind: EventKind, state: ChannelState, component: int) -> BlackboardEvent:
+        return BlackboardEvent(kind, state.name, state.type_name, self.names[component])
 
 
-def _opening(component: int, handle: int, instance: Instance) -> Opening:
-    return Opening(component, handle, instance.index, instance.name, instance.type_name, instance.fingerprint)
+def _open_channel(component: int, handle: int, state: ChannelState) -> OpenChannel:
+    return OpenChannel(component, handle, state.index, state.name, state.type_name, state.fingerprint)
 
 
 def facts_of(text: str) -> list[Fact]:
@@ -313,10 +313,10 @@ def _fact_message(fact: Fact) -> channel_fact_t:
     made = channel_fact_t()
     made.kind, made.component, made.handle, made.channel = _KINDS[fact.kind], fact.component, fact.handle, -1
     made.reason = fact.reason
-    if opening := fact.opening:
-        made.channel, made.name, made.type_name = opening.channel, opening.name, opening.type_name
-        made.sequence = opening.sequence
-        made.fingerprint = fingerprint_number(opening.fingerprint) if opening.fingerprint else 0
+    if opened := fact.channel:
+        made.channel, made.name, made.type_name = opened.index, opened.name, opened.type_name
+        made.sequence = opened.sequence
+        made.fingerprint = fingerprint_number(opened.fingerprint) if opened.fingerprint else 0
     return made
 
 
@@ -324,10 +324,10 @@ def _fact_in(message: channel_fact_t) -> Fact:
     kind = _KIND_NAMES.get(message.kind)
     if kind is None:
         raise ValueError(f"channel fact of the unknown kind {message.kind}")
-    opening = None
+    opened = None
     if kind in ("read", "write", "close"):
         fingerprint = fingerprint_text(message.fingerprint) if message.fingerprint else ""
-        opening = Opening(
+        opened = OpenChannel(
             message.component,
             message.handle,
             message.channel,
@@ -336,4 +336,4 @@ def _fact_in(message: channel_fact_t) -> Fact:
             fingerprint,
             message.sequence,
         )
-    return Fact(cast(FactKind, kind), message.component, message.handle, opening, message.reason)
+    return Fact(cast(FactKind, kind), message.component, message.handle, opened, message.reason)

@@ -13,7 +13,7 @@ from fwk.supervisor.barrier import LOOK_US, Barrier
 from fwk.supervisor.changes import Changes
 from fwk.supervisor.channel_requests import ChannelRequests
 from fwk.supervisor.core import Core
-from fwk.supervisor.host_events import HostLeaves, HostLost, HostReady
+from fwk.supervisor.host_events import HostEnded, HostLeaves, HostReady
 from fwk.supervisor.host_process import HostProcess
 from fwk.supervisor.lifecycle import Lifecycle, PluginRequests
 from fwk.supervisor.processes.hosts import Hosts
@@ -75,7 +75,7 @@ class Boundary:
             "settings": self._set,
         }
         core.events.subscribe(HostReady, self._take_ready)
-        core.events.subscribe(HostLost, self._take_lost)
+        core.events.subscribe(HostEnded, self._take_lost)
         core.events.subscribe(HostLeaves, self._take_leaves)
 
     def ask_settings(self, new: NewSettings, origin: str) -> SettingsRequest:
@@ -180,7 +180,7 @@ class Boundary:
         self._barrier.joined()
         self._channels.came(host)
 
-    def _take_lost(self, event: HostLost) -> None:
+    def _take_lost(self, event: HostEnded) -> None:
         self._tick_log.event(tick_events.HostLost(event.host.index))
         self._forget(event.host)
         self._barrier.lost(event.host)

@@ -29,7 +29,7 @@ class ChannelRequests:
 
     def snapshot(self) -> str:
         """Returns the present table of dynamic channels, for a starting host."""
-        return text_of(self._grants.instances.snapshot()) if self._exist else "[]"
+        return text_of(self._grants.table.snapshot()) if self._exist else "[]"
 
     def ask(self, tick: int, step: int, request: channel_request_t) -> None:
         """Takes a request for a dynamic channel."""
@@ -52,12 +52,12 @@ class ChannelRequests:
         facts, _ = self._grants.decide(self._busy)
         announced = None
         if facts:
-            written = {fact.opening.channel for fact in facts if fact.kind == "write" and fact.opening}
+            written = {fact.channel.index for fact in facts if fact.kind == "write" and fact.channel}
             change = self._changes.change_channels([self._numbered(fact) for fact in facts])
             self._tick_log.event(ChannelsChanged(change.number))
             announced = None if written <= self._written else change
             self._written |= written
-            self._core.ledger.opened(self._grants.instances)
+            self._core.ledger.opened(self._grants.table)
         for fact in facts:
             if fact.kind == "refuse":
                 self._core.log.warning(f"{self._core.plan.components[fact.component].name}: {fact.reason}; refused")
@@ -65,7 +65,7 @@ class ChannelRequests:
 
     def _numbered(self, fact: Fact) -> Fact:
         """Adds the newest sequence number of the channel, from which its writer continues."""
-        return fact.numbered(self._core.ledger.latest(fact.opening.channel)) if fact.opening else fact
+        return fact.numbered(self._core.ledger.latest(fact.channel.index)) if fact.channel else fact
 
     def _busy(self, component: int) -> bool:
         host = self._core.host_of(component)

@@ -13,7 +13,7 @@ class HostReady:
 
 
 @dataclass(frozen=True)
-class HostLost:
+class HostEnded:
     """The process of a host ended without a request."""
 
     host: HostProcess

@@ -19,7 +19,7 @@ FINISH_US = 2_000_000
 """Longest wait of an interrupted run for the gateway."""
 
 
-class MainLoop:
+class Loop:
     """Runs ticks as the page on the protocol describes."""
 
     def __init__(

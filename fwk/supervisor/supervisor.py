@@ -31,7 +31,7 @@ from fwk.supervisor.dones import Dones
 from fwk.supervisor.event_loop import EventLoop
 from fwk.supervisor.host_process import host_processes
 from fwk.supervisor.lifecycle import Lifecycle
-from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.loop import Loop
 from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.options import RunBrokenError, RunOptions
 from fwk.supervisor.processes.attach import Attach
@@ -125,7 +125,7 @@ class Supervisor:
         requests, schedule, lifecycle = BoundaryRequests(), Schedule(plan), Lifecycle(plan, table)
         dones = Dones(core, barrier, continuous, requests, tick_log, times, complaints)
         boundary = Boundary(core, hosts, schedule, channels, changes, requests, lifecycle, barrier, tick_log)
-        self.loop = MainLoop(core, boundary, schedule, barrier, continuous, dones, tick_log, times)
+        self.loop = Loop(core, boundary, schedule, barrier, continuous, dones, tick_log, times)
         attach = Attach(core, hosts, machine.rings, machine.host_sockets)
         self._control = Control(core, options, hosts, self.loop, changes.settings, lifecycle, attach, machine.listen)
         self._status = StatusReport(core, self.loop)

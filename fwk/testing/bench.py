@@ -10,7 +10,7 @@ from fwk.component.port import Port
 from fwk.component.services import ANSWERS
 from fwk.engine.runner import Runner, RunSection
 from fwk.lcm import envelope
-from fwk.testing.opening import Opening
+from fwk.testing.channel_decisions import ChannelDecisions
 from fwk.testing.plans import alone
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench
 from lcmtypes.core import log_t
@@ -73,9 +73,9 @@ class Bench:
         self.runner.clock.every = self._every = self.declaration.every if every is None else every
         self._offset = self.declaration.offset if offset is None else offset
         self._sent: dict[str, list[bytes]] = {}
-        self._opening: Opening | None = None
+        self._decisions: ChannelDecisions | None = None
         if self.runner.has_blackboard:
-            self._opening = Opening(alone(component, name), {name: self.runner}, self._sent)
+            self._decisions = ChannelDecisions(alone(component, name), {name: self.runner}, self._sent)
         self.runner.init()
 
     def _command_ports(self, port: Port, target: str, name: str) -> tuple[str, str]:
@@ -135,7 +135,7 @@ class Bench:
             if self.tick % self._every != self._offset % self._every:
                 self.runner.pass_over(self.tick, 0, stage, self.time_us)
                 continue
-            closed = self._open() if self._opening else set()
+            closed = self._open() if self._decisions else set()
             fresh = {name: port.waiting for name, port in self._ports.items() if port.waiting and name not in closed}
             for name in fresh:
                 self._ports[name].waiting = []
@@ -146,8 +146,8 @@ class Bench:
                     self._sent.setdefault(channel, []).append(data)
                     port.sent.append(envelope.decode(port.message_type, data, channel))
                 fresh = {}
-            if self._opening:
-                self._opening.ask(self.tick, 0, self.runner)
+            if self._decisions:
+                self._decisions.ask(self.tick, 0, self.runner)
 
     def opened(self, channel: str) -> PortBench:
         """Returns the other side of a dynamic channel that the component has opened or asked for."""
@@ -156,11 +156,11 @@ class Bench:
 
     def _open(self) -> set[str]:
         """Grants the requests of the last iteration; returns dynamic channels that the component does not read now."""
-        assert self._opening
-        list(self._opening.decide())
-        for channel, kind in self._opening.types.items():
+        assert self._decisions
+        list(self._decisions.decide())
+        for channel, kind in self._decisions.types.items():
             self._ports.setdefault(channel, PortBench(channel, kind))
-        return set(self._opening.types) - set(self.runner.readers)
+        return set(self._decisions.types) - set(self.runner.readers)
 
     def finalize(self) -> None:
         """Finalizes the component; its messages are in `sent`."""

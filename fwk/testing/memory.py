@@ -77,7 +77,7 @@ class MemorySystem:
         self._newest: dict[int, bytes] = {}
         self._ledger = Visibility(plan)
         self._schedule = Schedule(plan)
-        self._openings = ChannelGrants(plan)
+        self._grants = ChannelGrants(plan)
         self._changes = 0
         self._next_us = -1  # logical time of the next tick, as the time source set it last
         self._time_source = [
@@ -88,7 +88,7 @@ class MemorySystem:
         self._due_us: dict[int, int] = {}  # of the continuous components
         rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
         for component in plan.components:
-            self._openings.came(component.index, 1)
+            self._grants.came(component.index, 1)
         self._hosts = [
             MemoryHost(
                 Assignment(plan, component.index, 0, Start(1, {}, {}), rings),
@@ -118,7 +118,7 @@ class MemorySystem:
             self.ticks += 1
             self.now_us = self._next_us if self._next_us >= 0 else self.now_us + self._plan.period_us
             self._schedule.decide()
-            if self._openings.asked:
+            if self._grants.asked:
                 self._decide()
             self._ledger.begin()
             late = [self._iterate_on(component) for component in self._due()]
@@ -174,7 +174,7 @@ class MemorySystem:
             self._schedule.ask(done.tick, place_of(done), request)
         if done.channels:
             asked = [channel_request_of(request) for request in done.channels]
-            self._openings.ask(done.tick, place_of(done), component.name, asked)
+            self._grants.ask(done.tick, place_of(done), component.name, asked)
         return written
 
     def _publish(self, written: Written) -> None:
@@ -189,23 +189,21 @@ class MemorySystem:
 
     def _decide(self) -> None:
         """Decides the requests for dynamic channels at the boundary."""
-        facts, _ = self._openings.decide()
-        numbered = [
-            fact.numbered(self._ledger.latest(fact.opening.channel)) if fact.opening else fact for fact in facts
-        ]
+        facts, _ = self._grants.decide()
+        numbered = [fact.numbered(self._ledger.latest(fact.channel.index)) if fact.channel else fact for fact in facts]
         self._changes += 1
         change = change_message(self._changes, numbered)
-        self._ledger.opened(self._openings.instances)
+        self._ledger.opened(self._grants.table)
         for fact in numbered:
-            if fact.opening:
-                opening = fact.opening
-                self._types[opening.name] = messages.type_named(opening.type_name)
-                self.sent.setdefault(opening.name, [])
-                self._readers.setdefault(opening.channel, set())
+            if fact.channel:
+                opened = fact.channel
+                self._types[opened.name] = messages.type_named(opened.type_name)
+                self.sent.setdefault(opened.name, [])
+                self._readers.setdefault(opened.index, set())
                 if fact.kind == "write":
-                    self._indices[opening.name] = opening.channel
+                    self._indices[opened.name] = opened.index
                 elif fact.kind == "read":
-                    self._readers[opening.channel].add(fact.component)
+                    self._readers[opened.index].add(fact.component)
         for component in self._plan.components:
             if component.opens:
                 self._hosts[component.index].decide(change, self._newest)

@@ -8,7 +8,7 @@ from hypothesis import strategies as some
 from fwk.bus import sync
 from fwk.lcm import messages
 from fwk.lcm.type_registry import by_fingerprint
-from fwk.model.channel_table import Fact, Opening, change_message
+from fwk.model.channel_table import Fact, OpenChannel, change_message
 from fwk.model.plain_values import value_messages
 from fwk.model.requests import channel_request, lost_frame, lost_message, main_loop_request, plugin_request
 from fwk.model.tick_events import HostLost, StageBegun, StageDone, TickTold, events_message
@@ -70,8 +70,8 @@ def sync_messages() -> dict[type[messages.Message], bytes]:
     """Returns a tick, a done and a record with an element in every list."""
     void, settings = void_t(), settings_change_t()
     settings.values = value_messages({"gain": 1.0, "names": ["a", None, True]})
-    opening = Opening(0, 1, 2, "r/note", "robot.imu_t", "00" * 8)
-    channels: channels_change_t = change_message(3, [Fact("come", 0), Fact("write", 0, 1, opening)])
+    opened = OpenChannel(0, 1, 2, "r/note", "robot.imu_t", "00" * 8)
+    channels: channels_change_t = change_message(3, [Fact("come", 0), Fact("write", 0, 1, opened)])
     tick, done, record = tick_t(), done_t(), tick_record_t()
     tick.run, tick.tick, tick.step = 5, 7, 3
     for each in (tick, done, record):

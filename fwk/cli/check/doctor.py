@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from fwk.cli.check.machine_checks import Level, all_checks
+from fwk.cli.check.machine_checks import Severity, all_checks
 from fwk.cli.run_options import Json
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -31,5 +31,5 @@ def doctor(
         typer.echo(f"{finding.level:8} {finding.subject}: {finding.text}")
         if finding.advice:
             typer.echo(f"{'':8} type: {finding.advice}")
-    if any(finding.level is Level.BAD for finding in findings):
+    if any(finding.level is Severity.BAD for finding in findings):
         raise typer.Exit(1)

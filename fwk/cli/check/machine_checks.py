@@ -21,7 +21,7 @@ _PORTS_END = 65536
 _FILES = 1024  # a supervisor of a hundred processes, or a gateway to a few hundred channels
 
 
-class Level(StrEnum):
+class Severity(StrEnum):
     """Severity of a finding."""
 
     OK = "ok"
@@ -35,7 +35,7 @@ class Level(StrEnum):
 class Finding:
     """The result of one check."""
 
-    level: Level
+    level: Severity
     subject: str
     text: str
     advice: str = ""
@@ -60,9 +60,9 @@ def receive_buffers() -> Finding:
         probe.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
         size = probe.getsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF) // 2  # the kernel reports twice the size
     if size >= BUFFER_BYTES:
-        return Finding(Level.OK, subject, f"{size} bytes")
+        return Finding(Severity.OK, subject, f"{size} bytes")
     advice = f"sudo sysctl -w net.core.rmem_max={BUFFER_BYTES}; for good: the same line in /etc/sysctl.d/60-lcm.conf"
-    return Finding(Level.WARNING, subject, f"{size} bytes, wanted {BUFFER_BYTES}: bursts lose messages", advice)
+    return Finding(Severity.WARNING, subject, f"{size} bytes, wanted {BUFFER_BYTES}: bursts lose messages", advice)
 
 
 def ports(wanted: Ports) -> Finding:
@@ -70,16 +70,16 @@ def ports(wanted: Ports) -> Finding:
     subject = f"ports {wanted.base} to {wanted.end - 1}"
     if wanted.end > _PORTS_END:
         advice = f"fwk-launch FILE --bus-port {_PORTS_END - wanted.end + wanted.base}"
-        return Finding(Level.BAD, subject, f"the highest port is {_PORTS_END - 1}", advice)
+        return Finding(Severity.BAD, subject, f"the highest port is {_PORTS_END - 1}", advice)
     try:
         PortLock(wanted, "the next run").release()
     except PortsInUseError as error:
-        return Finding(Level.WARNING, subject, str(error))
+        return Finding(Severity.WARNING, subject, str(error))
     taken = [port for port in range(wanted.base, wanted.end) if not _is_free(port)]
     if taken:
         advice = f"fwk-launch FILE --bus-port {wanted.end + 1000}"
-        return Finding(Level.WARNING, subject, f"other programs use {', '.join(map(str, taken[:5]))}", advice)
-    return Finding(Level.OK, subject, "free")
+        return Finding(Severity.WARNING, subject, f"other programs use {', '.join(map(str, taken[:5]))}", advice)
+    return Finding(Severity.OK, subject, "free")
 
 
 def java() -> Finding:
@@ -87,8 +87,8 @@ def java() -> Finding:
     missing = [program for program in ("java", "javac", "jar") if not shutil.which(program)]
     if missing:
         text = f"no {', '.join(missing)}: 'fwk spy' does not work"
-        return Finding(Level.WARNING, "Java", text, "sudo apt install default-jdk")
-    return Finding(Level.OK, "Java", "installed, for 'fwk spy'")
+        return Finding(Severity.WARNING, "Java", text, "sudo apt install default-jdk")
+    return Finding(Severity.OK, "Java", "installed, for 'fwk spy'")
 
 
 def shared_memory() -> Finding:
@@ -104,9 +104,9 @@ def shared_memory() -> Finding:
         finally:
             os.close(descriptor)
     except OSError as error:
-        return Finding(Level.BAD, subject, f"{error.strerror}: cameras do not work")
+        return Finding(Severity.BAD, subject, f"{error.strerror}: cameras do not work")
     return Finding(
-        Level.OK if works else Level.BAD, subject, "works" if works else "a second mapping reads other bytes"
+        Severity.OK if works else Severity.BAD, subject, "works" if works else "a second mapping reads other bytes"
     )
 
 
@@ -116,19 +116,19 @@ def generator() -> Finding:
     try:
         result = subprocess.run([lcm_gen(), "--version"], capture_output=True, text=True, check=False)
     except OSError as error:
-        return Finding(Level.BAD, subject, f"{lcm_gen()}: {error.strerror}", advice)
+        return Finding(Severity.BAD, subject, f"{lcm_gen()}: {error.strerror}", advice)
     if result.returncode:
-        return Finding(Level.BAD, subject, f"{lcm_gen()}: {result.stderr.strip()}", advice)
-    return Finding(Level.OK, subject, result.stdout.strip())
+        return Finding(Severity.BAD, subject, f"{lcm_gen()}: {result.stderr.strip()}", advice)
+    return Finding(Severity.OK, subject, result.stdout.strip())
 
 
 def open_files() -> Finding:
     """Checks the number of files and sockets that a process may open."""
     limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     if limit == resource.RLIM_INFINITY or limit >= _FILES:
-        return Finding(Level.OK, "open files", f"{limit} a process")
+        return Finding(Severity.OK, "open files", f"{limit} a process")
     advice = f"ulimit -n {_FILES if hard == resource.RLIM_INFINITY else min(_FILES, hard)}"
-    return Finding(Level.WARNING, "open files", f"{limit} a process: large launch files need {_FILES}", advice)
+    return Finding(Severity.WARNING, "open files", f"{limit} a process: large launch files need {_FILES}", advice)
 
 
 def all_checks(wanted: Ports) -> list[Callable[[], Finding]]:
@@ -159,15 +159,15 @@ def _multicast(subject: str, interface: str | None, advice: str) -> Finding:
             sends.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, address)
             sends.sendto(b"fwk doctor", (GROUP, hears.getsockname()[1]))
         except OSError as error:
-            return Finding(Level.BAD, subject, str(error.strerror), advice)
+            return Finding(Severity.BAD, subject, str(error.strerror), advice)
         if not select.select([hears], [], [], _WAIT_S)[0]:
             return Finding(
-                Level.BAD,
+                Severity.BAD,
                 subject,
                 "a datagram that was sent did not arrive; is there a firewall?",
                 "sudo nft list ruleset",
             )
-    return Finding(Level.OK, subject, "datagrams arrive")
+    return Finding(Severity.OK, subject, "datagrams arrive")
 
 
 def _is_free(port: int) -> bool:

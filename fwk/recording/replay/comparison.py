@@ -7,7 +7,7 @@ from fwk.lcm.messages import sequence_of
 from fwk.recording.difference import Difference, changed, missing
 
 
-class Comparison:
+class OutputComparison:
     """Compares messages byte for byte, and keeps track of messages that the recording lacks."""
 
     def __init__(self) -> None:

@@ -68,8 +68,8 @@ class RecordedFrames:
         return self._decoded[1].copy()
 
 
-class View:
-    """View of a camera for one incarnation of a component, without the frames that it lost in the run."""
+class FrameView:
+    """FrameView of a camera for one incarnation of a component, without the frames that it lost in the run."""
 
     def __init__(self, source: FrameSource) -> None:
         self._source = source

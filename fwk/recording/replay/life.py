@@ -12,7 +12,7 @@ from fwk.engine.visibility import Visibility
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import decode
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
-from fwk.recording.replay.frames import FrameSource, View
+from fwk.recording.replay.frames import FrameSource, FrameView
 from lcmtypes.core import frame_t, tick_t
 
 Newest = Mapping[int, bytes]
@@ -43,7 +43,7 @@ class Life:
         further_stages: Sequence[int] = (),
     ) -> None:
         self.plan = component
-        self._views = {channel: View(source) for channel, source in frames.items()}
+        self._views = {channel: FrameView(source) for channel, source in frames.items()}
         self._channels = {channel.name: channel.index for channel in plan.channels}
         self._told: deque[tick_t] = deque()  # ticks that a continuous component has not iterated on
         self._catch_up = CatchUp(start.incarnation)

@@ -159,8 +159,8 @@ class Recording:
         for fact in facts:
             if not 0 <= fact.component < len(self.plan.components):
                 raise ValueError(f"a channel of component {fact.component}")
-            if fact.opening:
-                self._channels.add(fact.opening.channel)
+            if fact.channel:
+                self._channels.add(fact.channel.index)
 
     def _possible(self, event: TickEvent, changed: set[int]) -> bool:
         plan = self.plan

@@ -35,7 +35,7 @@ from fwk.model.tick_events import (
     TickTold,
 )
 from fwk.recording.difference import Difference
-from fwk.recording.replay.comparison import Comparison
+from fwk.recording.replay.comparison import OutputComparison
 from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.recording.replay.life import Life, Owed, one_component_a_host
@@ -68,7 +68,7 @@ class Replay:
         plan = recording.plan
         self.recording = recording
         self.iterations = 0
-        self._comparison = Comparison()
+        self._comparison = OutputComparison()
         self._messages = RecordedMessages(recording.path, self._comparison.lost)
         self._run_plan = plan
         self._plan = one_component_a_host(plan)
@@ -138,7 +138,7 @@ class Replay:
         record, stage, step = tick.record, -1, -1
         changes = {change.number: change for change in record.channels}
         for change in changes.values():
-            self._names |= {fact.opening.channel: fact.opening.name for fact in facts_in(change) if fact.opening}
+            self._names |= {fact.channel.index: fact.channel.name for fact in facts_in(change) if fact.channel}
         self._messages.add(tick, self._names)
         for settings in record.settings:
             self._set(settings, record.tick)
@@ -206,9 +206,9 @@ class Replay:
         self._table.apply(facts)
         self._ledger.opened(self._table)
         for fact in facts:
-            if fact.kind == "write" and fact.opening:
-                name = fact.opening.name
-                self._indices[name] = fact.opening.channel
+            if fact.kind == "write" and fact.channel:
+                name = fact.channel.name
+                self._indices[name] = fact.channel.index
                 for channels in self._host_channels:
                     if name in channels:
                         channels.remove(name)

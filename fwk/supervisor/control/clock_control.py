@@ -5,8 +5,8 @@ from typing import Any
 
 from fwk.clock import speed_word
 from fwk.component.log import Logger
-from fwk.control.requests import Clock, RequestError
-from fwk.supervisor.loop import MainLoop
+from fwk.control.requests import RequestError, SetClock
+from fwk.supervisor.loop import Loop
 from fwk.supervisor.run_clock import RunClock
 
 _WORDS = {"pause": "paused", "resume": "resumed", "step": "stepped", "speed": "run at another speed"}
@@ -15,12 +15,12 @@ _WORDS = {"pause": "paused", "resume": "resumed", "step": "stepped", "speed": "r
 class ClockControl:
     """Controls simulated time. Components see logical time alone, so none of this changes what they see."""
 
-    def __init__(self, loop: MainLoop, clock: RunClock, log: Logger) -> None:
+    def __init__(self, loop: Loop, clock: RunClock, log: Logger) -> None:
         self._loop = loop
         self._run_clock = clock
         self._log = log
 
-    def ask(self, request: Clock) -> Callable[[], dict[str, Any] | None]:
+    def ask(self, request: SetClock) -> Callable[[], dict[str, Any] | None]:
         """Carries a request out; the returned function gives the reply as soon as the request has taken effect.
 
         Raises:

@@ -16,7 +16,7 @@ from fwk.supervisor.control.view import component_view, period_us, times_view
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess, HostState
 from fwk.supervisor.lifecycle import Lifecycle
-from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.loop import Loop
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.attach import Attach
 from fwk.supervisor.processes.hosts import Hosts
@@ -47,7 +47,7 @@ class Control:
         core: Core,
         options: RunOptions,
         hosts: Hosts,
-        loop: MainLoop,
+        loop: Loop,
         settings: RunSettings,
         lifecycle: Lifecycle,
         attach: Attach,
@@ -72,7 +72,7 @@ class Control:
             requests.Times: lambda _request, _connection: times_view(self._plan, self._loop.times, core.hosts),
             requests.Steer: self._steer,
             requests.TakePlace: self._take_place,
-            requests.Clock: self._steer_clock,
+            requests.SetClock: self._steer_clock,
             requests.Settings: lambda request, _: {"settings": self._settings.rows(request.names)},
             requests.SetSettings: self._set,
             requests.WatchSettings: self._watch_settings,
@@ -129,7 +129,7 @@ class Control:
     def _answer_status(self, request: requests.Status, _connection: Connection) -> Reply:
         return {**self._run(), **self._now(), "components": self._components(request.names)}
 
-    def _steer_clock(self, request: requests.Clock, connection: Connection) -> Reply:
+    def _steer_clock(self, request: requests.SetClock, connection: Connection) -> Reply:
         self._answer_when(connection, self._clock.ask(request))
         return None
 

@@ -5,7 +5,7 @@ from copy import copy
 from fwk.clock import US_PER_S
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess
-from fwk.supervisor.loop import MainLoop
+from fwk.supervisor.loop import Loop
 from lcmtypes.core import component_state_t, host_status_t, status_t
 
 PERIOD_US = US_PER_S // 2
@@ -14,7 +14,7 @@ PERIOD_US = US_PER_S // 2
 class StatusReport:
     """Makes status messages and measures the speed of the run."""
 
-    def __init__(self, core: Core, loop: MainLoop) -> None:
+    def __init__(self, core: Core, loop: Loop) -> None:
         self._core = core
         self._loop = loop
         self._began_us = core.now_us()

@@ -10,7 +10,7 @@ from fwk.model.plan import NOBODY
 from fwk.supervisor.changes import Changes
 from fwk.supervisor.channel_requests import ChannelRequests
 from fwk.supervisor.core import Core
-from fwk.supervisor.host_events import HostLeaves, HostLost, HostReady
+from fwk.supervisor.host_events import HostEnded, HostLeaves, HostReady
 from fwk.supervisor.host_process import HostProcess, HostState
 from fwk.supervisor.options import RunBrokenError
 from fwk.supervisor.processes.external_process import ExternalProcess
@@ -288,7 +288,7 @@ class Hosts:
         host.ended(code, self._core.now_us(), self._stopping, core, culprit)
         self._core.ledger.void(host.index, host.incarnation + 1, self._core.clock.tick)
         if not asked:
-            self._core.events.emit(HostLost(host))
+            self._core.events.emit(HostEnded(host))
         if not self._stopping:  # its next process may be far off: the loop may wait for the gateway before it starts
             self._forward_fetches(host)
         if not self._stopping and not asked:

@@ -8,7 +8,7 @@ from hypothesis import strategies as some
 
 from fwk.bus import sync
 from fwk.lcm.messages import MessageError, to_dict
-from fwk.model.channel_table import Fact, FactKind, Opening, change_message, facts_in
+from fwk.model.channel_table import Fact, FactKind, OpenChannel, change_message, facts_in
 from fwk.model.plain_values import value_messages, value_of
 from fwk.model.requests import channel_request, lost_frame, lost_message, main_loop_request, plugin_request
 from fwk.model.tick_events import (
@@ -68,8 +68,8 @@ def facts(draw: some.DrawFn) -> Fact:
     if kind == "refuse":
         return Fact(kind, component, handle, reason=draw(TEXT))
     fingerprint = draw(some.binary(min_size=8, max_size=8).filter(any)).hex()
-    opening = Opening(component, handle, draw(INT32), draw(TEXT), draw(TEXT), fingerprint, draw(INT64))
-    return Fact(kind, component, handle, opening)
+    opened = OpenChannel(component, handle, draw(INT32), draw(TEXT), draw(TEXT), fingerprint, draw(INT64))
+    return Fact(kind, component, handle, opened)
 
 
 @some.composite

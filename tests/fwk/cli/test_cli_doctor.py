@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from fwk.bus.port_lock import PortLock
 from fwk.cli.check import machine_checks as checks
 from fwk.cli.check.doctor import doctor
-from fwk.cli.check.machine_checks import Finding, Level
+from fwk.cli.check.machine_checks import Finding, Severity
 from fwk.model.ports import Ports
 from tests.harness.runs import PortBlock
 
@@ -23,43 +23,48 @@ DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.check.doctor import 
 
 def test_ports_of_another_run_are_named(ports: PortBlock) -> None:
     wanted = Ports(ports.bus, 3, 4)
-    assert checks.ports(wanted).level is Level.OK
+    assert checks.ports(wanted).level is Severity.OK
     lock = PortLock(wanted, "other")
     try:
         found = checks.ports(wanted)
     finally:
         lock.release()
-    assert found.level is Level.WARNING
+    assert found.level is Severity.WARNING
     assert "are used by another run" in found.text
-    assert checks.ports(wanted).level is Level.OK
+    assert checks.ports(wanted).level is Severity.OK
 
 
 def test_ports_of_other_programs_are_named(ports: PortBlock) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", ports.bus + 2))
         found = checks.ports(Ports(ports.bus, 3, 4))
-    assert (found.level, found.text) == (Level.WARNING, f"other programs use {ports.bus + 2}")
+    assert (found.level, found.text) == (Severity.WARNING, f"other programs use {ports.bus + 2}")
     assert found.advice.startswith("fwk-launch FILE --bus-port ")
 
 
 def test_missing_java_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     assert checks.java() == Finding(
-        Level.WARNING, "Java", "no java, javac, jar: 'fwk spy' does not work", "sudo apt install default-jdk"
+        Severity.WARNING, "Java", "no java, javac, jar: 'fwk spy' does not work", "sudo apt install default-jdk"
     )
 
 
 def test_small_buffers_and_few_files_are_warnings(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(checks, "BUFFER_BYTES", 1 << 30)
     found = checks.receive_buffers()
-    assert (found.level, found.advice.split(";")[0]) == (Level.WARNING, "sudo sysctl -w net.core.rmem_max=1073741824")
+    assert (found.level, found.advice.split(";")[0]) == (
+        Severity.WARNING,
+        "sudo sysctl -w net.core.rmem_max=1073741824",
+    )
     limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (256, hard))
     try:
         few = checks.open_files()
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
-    assert few == Finding(Level.WARNING, "open files", "256 a process: large launch files need 1024", "ulimit -n 1024")
+    assert few == Finding(
+        Severity.WARNING, "open files", "256 a process: large launch files need 1024", "ulimit -n 1024"
+    )
 
 
 def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,14 +73,14 @@ def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.Mon
 
     monkeypatch.setattr(checks, "lcm_gen", lambda: "/bin/false")
     monkeypatch.setattr(os, "memfd_create", refused)
-    assert checks.generator().level is Level.BAD
+    assert checks.generator().level is Severity.BAD
     assert checks.shared_memory() == Finding(
-        Level.BAD, "shared memory (memfd)", "Function not implemented: cameras do not work"
+        Severity.BAD, "shared memory (memfd)", "Function not implemented: cameras do not work"
     )
 
 
-@pytest.mark.parametrize(("level", "code"), [(Level.OK, 0), (Level.WARNING, 0), (Level.BAD, 1)])
-def test_only_problems_that_stop_runs_are_failures(monkeypatch: pytest.MonkeyPatch, level: Level, code: int) -> None:
+@pytest.mark.parametrize(("level", "code"), [(Severity.OK, 0), (Severity.WARNING, 0), (Severity.BAD, 1)])
+def test_only_problems_that_stop_runs_are_failures(monkeypatch: pytest.MonkeyPatch, level: Severity, code: int) -> None:
     found = [lambda: Finding(level, "gears", "turning", "oil them" if code else "")]
     monkeypatch.setattr("fwk.cli.check.doctor.all_checks", lambda wanted: found)
     app = typer.Typer()

@@ -48,56 +48,56 @@ def begun(spare_channels: int = 8) -> ChannelGrants:
     return made
 
 
-def decided(openings: ChannelGrants) -> list[tuple[str, int, str]]:
+def decided(grants: ChannelGrants) -> list[tuple[str, int, str]]:
     """Returns kind, component, and channel or reason."""
-    facts, _ = openings.decide()
-    return [(fact.kind, fact.component, fact.opening.name if fact.opening else fact.reason) for fact in facts]
+    facts, _ = grants.decide()
+    return [(fact.kind, fact.component, fact.channel.name if fact.channel else fact.reason) for fact in facts]
 
 
-def happened(openings: ChannelGrants) -> list[tuple[str, str, str]]:
-    _, events = openings.decide()
+def happened(grants: ChannelGrants) -> list[tuple[str, str, str]]:
+    _, events = grants.decide()
     return [(event.kind, event.channel, event.component) for event in events]
 
 
 def test_a_starting_component_writes_and_reads_what_it_declares() -> None:
-    openings = ChannelGrants(plan())
-    openings.came(READER, 1)
-    openings.came(A, 1)
-    assert openings.asked
-    assert happened(openings) == [("writer_added", "a/imu", "a/opener"), ("reader_added", "a/imu", "a/reader")]
-    assert not openings.asked
-    imu = openings.instances.find("a/imu")
+    grants = ChannelGrants(plan())
+    grants.came(READER, 1)
+    grants.came(A, 1)
+    assert grants.asked
+    assert happened(grants) == [("writer_added", "a/imu", "a/opener"), ("reader_added", "a/imu", "a/reader")]
+    assert not grants.asked
+    imu = grants.table.find("a/imu")
     assert imu
-    assert (openings.instances.writer(imu), openings.instances.readers(imu)) == ("a/opener", ("a/reader",))
-    openings.left(A)
-    assert happened(openings) == [("writer_removed", "a/imu", "a/opener")]
-    assert openings.instances.writer(imu) == ""
+    assert (grants.table.writer(imu), grants.table.readers(imu)) == ("a/opener", ("a/reader",))
+    grants.left(A)
+    assert happened(grants) == [("writer_removed", "a/imu", "a/opener")]
+    assert grants.table.writer(imu) == ""
 
 
 def test_first_open_creates_and_last_close_destroys_a_channel() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["read", 1, "x/spot", *IMU]])
-    assert happened(openings) == [
+    grants = begun()
+    grants.ask(1, 0, "a/opener", [["read", 1, "x/spot", *IMU]])
+    assert happened(grants) == [
         ("instance_created", "x/spot", "a/opener"),
         ("reader_added", "x/spot", "a/opener"),
     ]
-    openings.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU]])
-    assert happened(openings) == [("writer_added", "x/spot", "b/opener")]
-    openings.ask(3, 0, "a/opener", [["close", 1]])
-    assert happened(openings) == [("reader_removed", "x/spot", "a/opener")]
-    openings.ask(4, 0, "b/opener", [["close", 1]])
-    assert happened(openings) == [
+    grants.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU]])
+    assert happened(grants) == [("writer_added", "x/spot", "b/opener")]
+    grants.ask(3, 0, "a/opener", [["close", 1]])
+    assert happened(grants) == [("reader_removed", "x/spot", "a/opener")]
+    grants.ask(4, 0, "b/opener", [["close", 1]])
+    assert happened(grants) == [
         ("writer_removed", "x/spot", "b/opener"),
         ("instance_destroyed", "x/spot", "b/opener"),
     ]
 
 
 def test_requests_are_granted_by_tick_step_sender_and_number() -> None:
-    openings = begun()
-    openings.ask(2, 0, "a/opener", [["write", 2, "x/late", *IMU]])
-    openings.ask(1, 1, "a/opener", [["write", 1, "x/spot", *IMU]])
-    openings.ask(1, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "x/late", *IMU]])
-    assert [(component, name) for _, component, name in decided(openings)] == [
+    grants = begun()
+    grants.ask(2, 0, "a/opener", [["write", 2, "x/late", *IMU]])
+    grants.ask(1, 1, "a/opener", [["write", 1, "x/spot", *IMU]])
+    grants.ask(1, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "x/late", *IMU]])
+    assert [(component, name) for _, component, name in decided(grants)] == [
         (B, "x/spot"),
         (B, "x/late"),
         (A, "x/spot: b/opener is its writer; a/opener has to wait"),
@@ -133,69 +133,69 @@ def test_requests_are_granted_by_tick_step_sender_and_number() -> None:
 )
 def test_a_refusal_names_both_sides(wish: list[Any], reason: str) -> None:
     components: dict[str, type[Component]] = {"a/opener": Opener, "b/opener": Opener, "c/camera": Camera}
-    openings = ChannelGrants(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
+    grants = ChannelGrants(plan_of(components, outside={"out/joy": "robot.imu_t"}, spare_channels=2))
     for component in range(len(components)):
-        openings.came(component, 1)
-    openings.ask(1, 0, "b/opener", [["write", 1, "b/spot", *IMU], ["read", 2, "x/read", *IMU]])
-    openings.decide()
-    openings.ask(2, 0, "a/opener", [wish])
-    assert decided(openings) == [("refuse", A, f"{wish[2]}: {reason}")]
+        grants.came(component, 1)
+    grants.ask(1, 0, "b/opener", [["write", 1, "b/spot", *IMU], ["read", 2, "x/read", *IMU]])
+    grants.decide()
+    grants.ask(2, 0, "a/opener", [wish])
+    assert decided(grants) == [("refuse", A, f"{wish[2]}: {reason}")]
 
 
 def test_there_are_as_many_channels_as_the_plan_has_spare() -> None:
-    openings = begun(spare_channels=1)
-    openings.ask(1, 0, "a/opener", [["write", 1, "x/one", *IMU], ["write", 2, "x/two", *IMU]])
-    assert [kind for kind, _, _ in decided(openings)] == ["write", "refuse"]
-    openings.ask(2, 0, "a/opener", [["close", 1]])
-    assert [kind for kind, _, _ in decided(openings)] == ["close"]
-    openings.ask(3, 0, "a/opener", [["write", 3, "x/one", *IMU], ["write", 4, "x/one", *ODOMETRY]])
-    facts, _ = openings.decide()
+    grants = begun(spare_channels=1)
+    grants.ask(1, 0, "a/opener", [["write", 1, "x/one", *IMU], ["write", 2, "x/two", *IMU]])
+    assert [kind for kind, _, _ in decided(grants)] == ["write", "refuse"]
+    grants.ask(2, 0, "a/opener", [["close", 1]])
+    assert [kind for kind, _, _ in decided(grants)] == ["close"]
+    grants.ask(3, 0, "a/opener", [["write", 3, "x/one", *IMU], ["write", 4, "x/one", *ODOMETRY]])
+    facts, _ = grants.decide()
     assert [fact.kind for fact in facts] == ["write", "refuse"]
-    assert facts[0].opening
-    assert facts[0].opening.channel == len(plan().channels)
+    assert facts[0].channel
+    assert facts[0].channel.index == len(plan().channels)
 
 
 def test_pattern_follows_channels_of_its_type_without_owning() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["each", 1, "*/imu", *IMU], ["each", 2, "x/*", *IMU]])
-    assert decided(openings) == [("read", A, "a/imu"), ("read", A, "b/imu")]
-    openings.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["write", 2, "x/other", *ODOMETRY]])
-    assert decided(openings)[2:] == [("read", A, "x/spot")]
-    openings.ask(3, 0, "b/opener", [["close", 1]])
-    assert decided(openings) == [("close", B, "x/spot"), ("close", A, "x/spot")]
-    assert openings.instances.find("x/spot") is None
+    grants = begun()
+    grants.ask(1, 0, "a/opener", [["each", 1, "*/imu", *IMU], ["each", 2, "x/*", *IMU]])
+    assert decided(grants) == [("read", A, "a/imu"), ("read", A, "b/imu")]
+    grants.ask(2, 0, "b/opener", [["write", 1, "x/spot", *IMU], ["write", 2, "x/other", *ODOMETRY]])
+    assert decided(grants)[2:] == [("read", A, "x/spot")]
+    grants.ask(3, 0, "b/opener", [["close", 1]])
+    assert decided(grants) == [("close", B, "x/spot"), ("close", A, "x/spot")]
+    assert grants.table.find("x/spot") is None
 
 
 def test_leaving_component_closes_channels_and_voids_requests() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU]])
-    openings.decide()
-    openings.ask(2, 0, "a/opener", [["write", 3, "x/more", *IMU]])
-    openings.left(A)
-    openings.came(A, 2)
-    _, events = openings.decide()
+    grants = begun()
+    grants.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU]])
+    grants.decide()
+    grants.ask(2, 0, "a/opener", [["write", 3, "x/more", *IMU]])
+    grants.left(A)
+    grants.came(A, 2)
+    _, events = grants.decide()
     assert BlackboardEvent("instance_destroyed", "x/spot", "robot.imu_t", "a/opener") in events
-    assert openings.instances.find("x/more") is None
-    assert A in openings.instances.present
+    assert grants.table.find("x/more") is None
+    assert A in grants.table.present
 
 
 def test_a_busy_component_is_served_later() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU]])
-    openings.left(B)
-    assert openings.decide(lambda _: True) == ([], [])
-    assert openings.asked
-    assert [kind for kind, _, _ in decided(openings)] == ["go", "write"]
+    grants = begun()
+    grants.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU]])
+    grants.left(B)
+    assert grants.decide(lambda _: True) == ([], [])
+    assert grants.asked
+    assert [kind for kind, _, _ in decided(grants)] == ["go", "write"]
 
 
 def test_facts_travel_and_a_snapshot_makes_the_same_table() -> None:
-    openings = begun()
-    openings.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU], ["read", 3, "y/z", *IMU]])
-    facts, _ = openings.decide()
+    grants = begun()
+    grants.ask(1, 0, "a/opener", [["write", 1, "x/spot", *IMU], ["read", 2, "b/imu", *IMU], ["read", 3, "y/z", *IMU]])
+    facts, _ = grants.decide()
     assert facts_of(text_of(facts)) == facts
     refused = [Fact("refuse", 1, 2, reason="because")]
     assert facts_of(text_of(refused)) == refused
     copy = ChannelTable(plan())
-    copy.apply(facts_of(text_of(openings.instances.snapshot())))
-    views = [[table.view(each) for each in table.matching("*")] for table in (copy, openings.instances)]
+    copy.apply(facts_of(text_of(grants.table.snapshot())))
+    views = [[table.view(each) for each in table.matching("*")] for table in (copy, grants.table)]
     assert views[0] == views[1]

@@ -10,7 +10,7 @@ from fwk.engine.failures import ComponentFailedError
 from fwk.engine.visibility import Visibility
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import fingerprint
-from fwk.model.channel_table import ChannelTable, Fact, Opening, change_message
+from fwk.model.channel_table import ChannelTable, Fact, OpenChannel, change_message
 from fwk.model.plan import Plan
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t
@@ -180,7 +180,7 @@ def test_continuous_host_iterates_once_on_the_newest_marks() -> None:
 
 def fact(told: Told, kind: Literal["read", "close"], handle: int) -> Fact:
     index, name = told.channels["r/imu"], fingerprint(imu_t).hex()
-    return Fact(kind, READER, handle, Opening(READER, handle, index, "r/imu", "robot.imu_t", name))
+    return Fact(kind, READER, handle, OpenChannel(READER, handle, index, "r/imu", "robot.imu_t", name))
 
 
 def decide(told: Told, number: int, *facts: Fact) -> None:

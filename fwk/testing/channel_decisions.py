@@ -9,7 +9,7 @@ from fwk.model.channel_table import ChannelTable, Fact
 from fwk.model.plan import Plan
 
 
-class Opening:
+class ChannelDecisions:
     """Decides the requests of the components of a plan; `sent` has every message so far, by channel."""
 
     def __init__(self, plan: Plan, runners: Mapping[str, Runner], sent: dict[str, list[bytes]]) -> None:
@@ -39,17 +39,17 @@ class Opening:
             events = self._table.apply([fact])
             for index, runner in self._runners.items():
                 done = runner.blackboard._take_over(self._table, index, fact, events)
-                if done and fact.opening:
-                    sent, begins = self._sent[fact.opening.name], fact.opening.begins
+                if done and fact.channel:
+                    sent, begins = self._sent[fact.channel.name], fact.channel.begins
                     alike = [place for place, data in enumerate(sent) if data.startswith(begins)]
-                    yield runner.name, fact.opening.name, [len(sent), *alike][-1] if done == "opened" else -1
+                    yield runner.name, fact.channel.name, [len(sent), *alike][-1] if done == "opened" else -1
 
     def _numbered(self, fact: Fact) -> Fact:
-        if not fact.opening:
+        if not fact.channel:
             return fact
-        name, begins = fact.opening.name, fact.opening.begins
+        name, begins = fact.channel.name, fact.channel.begins
         self._sent.setdefault(name, [])
-        self.types[name] = messages.type_named(fact.opening.type_name)
+        self.types[name] = messages.type_named(fact.channel.type_name)
         return fact.numbered(_newest_of(begins, self._sent[name]))
 
 
