@@ -1,7 +1,7 @@
 """Follows the main loop by its tick records, collects each tick's messages and passes them on in one fixed order."""
 
 import struct
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from typing import Any
 
@@ -14,18 +14,17 @@ from fwk.clock import Clock
 from fwk.component.log import Logger, is_plausible
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.gateway.connections import Outsiders, Sink, SupervisorConnection
+from fwk.gateway.dynamic_channels import FollowedChannels
 from fwk.gateway.fetch_server import FetchServer
 from fwk.gateway.ingress import Ingress
 from fwk.gateway.pacing import PacedPublisher
 from fwk.host.inputs import Inputs
-from fwk.lcm import envelope, messages
+from fwk.lcm import messages
 from fwk.lcm.messages import Header, MessageError
-from fwk.model.channel_table import ChannelTable, Fact, facts_in
-from fwk.model.plan import NOBODY, ChannelPlan, Plan
+from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from lcmtypes.core import (
     announcement_t,
-    channels_change_t,
     done_t,
     fetch_records_t,
     fetch_t,
@@ -60,10 +59,6 @@ class Gateway:
         self, plan: Plan, run: int, network: Network, control: SupervisorConnection, public: Outsiders | None
     ) -> None:
         self.sinks: list[Sink] = []
-        self.channels = ChannelTable(plan)
-        """The channels that exist, including the dynamic ones."""
-        self.dynamic_plain: set[str] = set()
-        """Dynamic channels whose type has no header."""
         self.clock = Clock(plan.period_us)
         self.log = Logger("gateway", self.clock, self._log_line)
         self._plan = plan
@@ -75,6 +70,8 @@ class Gateway:
         self._sender = sender = Sender(ports.host(ports.gateway), network)
         self._complaints = complaints = Complaints(self.log)
         self._inputs = Inputs(plan, plan.channels, [], ports.gateway, run, network, sender, complaints)
+        self.dynamic = FollowedChannels(plan, self._inputs)
+        """The dynamic channels."""
         self._ingress = Ingress(plan, sender, self._inputs, self.clock, complaints)
         self._fetches = FetchServer(plan, self._inputs, self._ingress, sender, self._give_up)
         supervisor = (ports.supervisor,), "the supervisor's"
@@ -85,7 +82,6 @@ class Gateway:
         self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
         self._next = 1  # tick whose record comes next
         self._request: Backoff | None = None  # of the record that is missing
-        self._announced = 0  # newest change whose channels were announced
         self._open = True
         self._idle_us = 0
         self._handlers: dict[int, Callable[[], object]] = {
@@ -195,8 +191,7 @@ class Gateway:
 
     def _hear_announcement(self, announcement: announcement_t) -> None:
         if announcement.run == self._run:
-            self._listen(facts_in(announcement.change))
-            self._announced = announcement.change.number
+            self.dynamic.announce(announcement.change)
             self._acknowledge()
 
     def _hear_record(self, record: tick_record_t, data: bytes) -> None:
@@ -211,21 +206,18 @@ class Gateway:
     def _check(self, record: tick_record_t) -> None:
         """Raises ValueError or MessageError for a record that names what the plan does not have."""
         channels = len(self._plan.channels) + self._plan.spare_channels
-        facts = [fact for change in record.channels for fact in facts_in(change)]
         named = [*record.channel, *(each.channel for each in record.voids)]
-        named += [fact.channel.index for fact in facts if fact.channel]
         if record.version != protocol_t.VERSION:
             raise MessageError(f"protocol version {record.version}, this gateway has {protocol_t.VERSION}")
         if any(not 0 <= channel < channels for channel in named):
             raise MessageError("a tick record with a channel that the plan does not have")
-        if any(not 0 <= fact.component < len(self._plan.components) for fact in facts):
-            raise MessageError("a tick record with a component that the plan does not have")
+        self.dynamic.check(record.channels)
 
     def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
         """Passes a tick on to the sinks; returns False if the supervisor closed the connection."""
         self.clock.tick, self.clock.now_us = record.tick, record.time_us
         for change in record.channels:
-            self._open_channels(change)
+            self.dynamic.apply(change)
         moved = self._inputs.advance(record.channel, record.sequence, record.voids)
         lacking = self._inputs.collect(moved)
         if lacking and not (yield from self._fetch(lacking)):
@@ -266,31 +258,10 @@ class Gateway:
         self._hear_supervisor()
         return self._open
 
-    def _open_channels(self, change: channels_change_t) -> None:
-        """Collects the messages of dynamic channels from now on."""
-        facts = facts_in(change)
-        self.channels.apply(facts)
-        self._listen(facts)
-        dynamic = [fact for fact in facts if fact.channel and fact.channel.index >= len(self._plan.channels)]
-        for component, kind, opened in ((fact.component, fact.kind, fact.channel) for fact in dynamic):
-            assert opened
-            self.dynamic_plain.discard(opened.name)
-            if envelope.is_plain(opened.type_name):
-                self.dynamic_plain.add(opened.name)
-            if kind == "write":
-                self._inputs.set_writer(opened.index, self._plan.components[component].host)
-
-    def _listen(self, facts: Iterable[Fact]) -> None:
-        """Listens to channels that were never open before."""
-        for fact in facts:
-            opened = fact.channel
-            if opened and opened.index not in self._inputs:
-                self._inputs.open(ChannelPlan(opened.index, opened.name, opened.type_name, NOBODY, ()))
-
     def _acknowledge(self) -> None:
         """Reports to the supervisor the newest recorded tick, the channels received, and the messages from outside."""
         recorded = recorded_t()
-        recorded.run, recorded.tick, recorded.change = self._run, self._next - 1, self._announced
+        recorded.run, recorded.tick, recorded.change = self._run, self._next - 1, self.dynamic.announced
         marks = self._ingress.marks
         recorded.channel, recorded.sequence = list(marks), list(marks.values())
         self._sender.publish(sync.RECORDED, sync.encode_recorded(recorded), self._ports.sync)

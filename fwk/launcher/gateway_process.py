@@ -42,12 +42,12 @@ def run_gateway(
     network = UdpNetwork(reservations.keep_for_gateway())
     gateway = Gateway(plan, run, network, control, public)
     bridge = CommandBridge(plan, gateway.take_in, gateway.clock)
-    channel_server = ChannelServer(plan, gateway.channels, bridge.call, reservations.gateway)
+    channel_server = ChannelServer(plan, gateway.dynamic.table, bridge.call, reservations.gateway)
     gateway.watch(channel_server.fileno(), channel_server.handle)
     plain = plain_channels(plan)
     ours = plain - set(plan.outside)  # the public bus had these messages before
     if public:
-        mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.dynamic_plain)
+        mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.dynamic.plain)
         gateway.sinks.append(targets.above(mirror, plan.log.bus))
     gateway.sinks += [
         *targets.files(plan.log, options.run_dir, gateway.log.error),
@@ -61,7 +61,7 @@ def run_gateway(
     if options.record:
         try:
             recorder = _recorder(plan, options.record, rings, gateway.log.error)
-            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic_plain), plan.log.recording))
+            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic.plain), plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     run_files = RunFiles(options, gateway.log.error)

@@ -236,7 +236,7 @@ class System:
         gateway = Gateway(self.plan, RUN, process, self._closed, self._public)
         recorder = self._recorder = sinks.Recorder(self.plan, outcome.path, gateway.log.error)
         gateway.sinks += [
-            Unwrap(recorder, plain_channels(self.plan), gateway.dynamic_plain),
+            Unwrap(recorder, plain_channels(self.plan), gateway.dynamic.plain),
             _SlowDisk(process, self.world),
         ]
         yield from gateway.serve()
