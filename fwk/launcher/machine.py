@@ -1,9 +1,11 @@
 """Requirements of a run on the machine, checked before its start: network, ports, names, files, cores, memory."""
 
 import errno
+import fcntl
 import os
 import resource
 import socket
+import struct
 from pathlib import Path
 
 from fwk.bus.port_owner import port_owner
@@ -14,6 +16,7 @@ from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 
+_SIOCGIFFLAGS, _IFF_UP = 0x8913, 1
 _PORTS_NAMED = 3
 _FILES_BESIDE = 64
 _FILES_A_HOST = 4
@@ -98,6 +101,11 @@ def _check_loopback() -> None:
     advice = "type: sudo ip link set lo up multicast on"
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+            if _is_up("lo", probe):
+                advice = f"type: sudo ip address add {LOOPBACK}/8 dev lo"
+                probe.bind((LOOPBACK, 0))
+                advice = "type: sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo"
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
             probe.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
             probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
@@ -106,6 +114,15 @@ def _check_loopback() -> None:
             probe.sendto(b"", (GROUP, probe.getsockname()[1]))
     except OSError as error:
         raise MachineError(f"no IPv4 multicast on the interface lo: {error.strerror}; {advice}") from error
+
+
+def _is_up(interface: str, any_socket: socket.socket) -> bool:
+    request = struct.pack("16sh14x", interface.encode(), 0)
+    try:
+        (flags,) = struct.unpack_from("h", fcntl.ioctl(any_socket, _SIOCGIFFLAGS, request), 16)
+    except OSError:
+        return False
+    return bool(flags & _IFF_UP)
 
 
 def _check_names(plan: Plan) -> None:

@@ -43,7 +43,7 @@ _CACHED_LENGTH = 256
 """Longer arrays take longer to convert than a format takes to read, and there may be arrays of any length."""
 
 
-class RareShape(Exception):  # noqa: N818 - not an error: the type is left to lcm-gen's code
+class RareShapeError(Exception):
     """A member has a shape that is left to the code of lcm-gen."""
 
 
@@ -55,7 +55,7 @@ def encoder(message_type: type[Any]) -> Encoder | None:
     """
     try:
         return _EncoderSource(message_type).function()
-    except RareShape:
+    except RareShapeError:
         return None
 
 
@@ -67,7 +67,7 @@ def decoder(message_type: type[Any]) -> Decoder | None:
     """
     try:
         return _DecoderSource(message_type).function()
-    except RareShape:
+    except RareShapeError:
         return None
 
 
@@ -110,7 +110,7 @@ class _Source(ABC):
 
     def _struct(self, message_type: type[Any], owner: str) -> None:
         if message_type in self._within:
-            raise RareShape
+            raise RareShapeError
         self._within.append(message_type)
         slots, kinds, shapes = message_type.__slots__, message_type.__typenames__, message_type.__dimensions__
         members = zip(slots, kinds, shapes, strict=True)
@@ -410,7 +410,7 @@ def _check_fixed(kind: str, dimensions: Dimensions) -> None:
     """Leaves arrays of several dimensions to lcm-gen, except numbers in two fixed dimensions."""
     known = len(dimensions) == 2 and all(isinstance(size, int) for size in dimensions)
     if not known or kind not in _ENCODED or kind == "byte":
-        raise RareShape
+        raise RareShapeError
 
 
 def _type(kind: str) -> type[Any]:

@@ -12,7 +12,7 @@ from tools.bench.component import run
 from tools.bench.sample import Sample
 from tools.bench.shape import LAST_WARM_UP_TICK, Shape
 from tools.bench.sides import STOP
-from tools.bench.supervise import NoAnswer, measure, run_tick
+from tools.bench.supervise import NoAnswerError, measure, run_tick
 
 
 class Ring:
@@ -66,7 +66,7 @@ def test_an_answer_to_an_older_tick_does_not_count() -> None:
 def test_silence_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(supervise, "_GIVE_UP_S", 0.0)
     ring = Ring(Shape(5), lose=10**9)
-    with pytest.raises(NoAnswer, match="tick 9, stage 0: no answer from 1 components: c0"):
+    with pytest.raises(NoAnswerError, match="tick 9, stage 0: no answer from 1 components: c0"):
         run_tick(ring, ring.shape, 9)
 
 

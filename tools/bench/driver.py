@@ -30,7 +30,7 @@ _LOOK_S = 0.2
 Started = list[subprocess.Popen[bytes]]
 
 
-class RunFailed(Exception):  # noqa: N818 - an outcome of a run
+class RunFailedError(Exception):
     """The run gave no figures; the text gives the reason."""
 
 
@@ -41,9 +41,9 @@ def main() -> None:
         if job["isolated"]:
             namespace.set_up(job["loss"])
         elif job["loss"]:
-            raise RunFailed("packet loss needs a network namespace")
+            raise RunFailedError("packet loss needs a network namespace")
         result = run(PEERS[job["peer"]], Shape(**job["shape"]), job["ticks"], job["seconds"])
-    except (RunFailed, namespace.NoNamespace) as error:
+    except (RunFailedError, namespace.NoNamespaceError) as error:
         result = {"error": str(error)}
     print(json.dumps(result))
 
@@ -52,7 +52,7 @@ def run(peer: Peer, shape: Shape, ticks: int, seconds: float) -> dict[str, Any]:
     """Measures up to `ticks` ticks in at most `seconds`; see `docs/numbers.md` for the fields.
 
     Raises:
-        RunFailed: no first tick, or a component fell silent.
+        RunFailedError: no first tick, or a component fell silent.
     """
     with TemporaryDirectory(prefix="bench-") as folder:
         shape = replace(shape, folder=folder)
@@ -74,8 +74,8 @@ def run(peer: Peer, shape: Shape, ticks: int, seconds: float) -> dict[str, Any]:
                 memory_mb, threads = accounting.pss_mb(pids), accounting.threads(pids)
                 lines.write("stop\n")
                 lines.flush()
-        except (OSError, ValueError, RunFailed) as error:
-            raise RunFailed(f"{error}; {_complaints(folder)}") from error
+        except (OSError, ValueError, RunFailedError) as error:
+            raise RunFailedError(f"{error}; {_complaints(folder)}") from error
         stale = _stale(shape)
     count = len(measured["tick_us"])
     wanted = shape.components * (2 + len(shape.sources(0)) * shape.fragments)  # a tick, a done, the inputs
@@ -131,17 +131,17 @@ def _connect(listener: socket.socket, started: Started) -> TextIO:
             connection, _ = listener.accept()
         except TimeoutError:
             if all(process.poll() is not None for process in started):
-                raise RunFailed("every process ended before the first tick") from None
+                raise RunFailedError("every process ended before the first tick") from None
             continue
         connection.settimeout(_FIRST_TICK_S)
         return connection.makefile("rw")
-    raise RunFailed(f"no supervisor within {_FIRST_TICK_S:.0f} s")
+    raise RunFailedError(f"no supervisor within {_FIRST_TICK_S:.0f} s")
 
 
 def _read(lines: TextIO) -> dict[str, Any]:
     answer: dict[str, Any] = json.loads(lines.readline() or '{"error": "the supervisor ended"}')
     if "error" in answer:
-        raise RunFailed(answer["error"])
+        raise RunFailedError(answer["error"])
     return answer
 
 

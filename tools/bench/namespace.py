@@ -13,7 +13,7 @@ _SET_UP = (
 )
 
 
-class NoNamespace(Exception):  # noqa: N818 - a property of the machine
+class NoNamespaceError(Exception):
     """This machine does not permit network namespaces; the text gives the reason."""
 
 
@@ -21,7 +21,7 @@ def command() -> list[str]:
     """Returns the words before a command that runs it in a new network namespace.
 
     Raises:
-        NoNamespace: neither as this user nor in a user namespace.
+        NoNamespaceError: neither as this user nor in a user namespace.
     """
     for words in ([*_UNSHARE], [*_UNSHARE, "--map-root-user"]):
         if (
@@ -29,14 +29,14 @@ def command() -> list[str]:
             and subprocess.run([*words, "true"], capture_output=True, check=False).returncode == 0
         ):
             return words
-    raise NoNamespace("unshare --net --pid is not allowed here; run as root, or allow user namespaces")
+    raise NoNamespaceError("unshare --net --pid is not allowed here; run as root, or allow user namespaces")
 
 
 def set_up(loss: float) -> None:
     """Sets up the new namespace: loopback with multicast, an empty /dev/shm, and loss of a share of all IP packets.
 
     Raises:
-        NoNamespace: ip or iptables is missing or refuses.
+        NoNamespaceError: ip or iptables is missing or refuses.
     """
     commands = [words.split() for words in _SET_UP]
     if loss:
@@ -46,6 +46,6 @@ def set_up(loss: float) -> None:
         try:
             result = subprocess.run(words, capture_output=True, text=True, check=False)
         except OSError as error:
-            raise NoNamespace(f"{' '.join(words)}: {error}") from error
+            raise NoNamespaceError(f"{' '.join(words)}: {error}") from error
         if result.returncode:
-            raise NoNamespace(f"{' '.join(words)}: {result.stderr.strip()}")
+            raise NoNamespaceError(f"{' '.join(words)}: {result.stderr.strip()}")

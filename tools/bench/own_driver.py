@@ -19,7 +19,7 @@ from fwk.lcm import wire
 from fwk.model.ports import Ports
 from lcmtypes.core import status_t, tick_record_t
 from tools.bench import accounting, fwk_launch_file, namespace
-from tools.bench.driver import RunFailed
+from tools.bench.driver import RunFailedError
 from tools.bench.environments import CORE, REPOSITORY
 from tools.bench.shape import Shape
 from tools.bench.timing import now_us, sleep_s
@@ -41,7 +41,7 @@ def main() -> None:
         measure = {"jitter": jitter, "soak": jitter, "start": start}[job["kind"]]
         with TemporaryDirectory(prefix="bench-") as folder:
             result = measure(job, folder)
-    except (RunFailed, namespace.NoNamespace, OSError) as error:
+    except (RunFailedError, namespace.NoNamespaceError, OSError) as error:
         result = {"error": str(error)}
     print(json.dumps(result))
 
@@ -52,7 +52,7 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
     It also counts missed ticks: periods that lasted two or more, and late iterations.
 
     Raises:
-        RunFailed: the run broke.
+        RunFailedError: the run broke.
     """
     shape = Shape(job["components"], stages=job["stages"], folder=folder)
     file = fwk_launch_file.write(shape, shape.save(), wall_period_s=job["period_s"])
@@ -63,18 +63,18 @@ def jitter(job: dict[str, Any], folder: str) -> dict[str, Any]:
         try:
             run.wait(job["seconds"] + _PATIENCE_S)
         except subprocess.TimeoutExpired as error:
-            raise RunFailed(f"did not end; {_last_words(folder)}") from error
+            raise RunFailedError(f"did not end; {_last_words(folder)}") from error
     probe = Path(folder, "probe.json")
     if run.returncode or not probe.exists():
-        raise RunFailed(f"exit code {run.returncode}; {_last_words(folder)}")
+        raise RunFailedError(f"exit code {run.returncode}; {_last_words(folder)}")
     began_us = json.loads(probe.read_text())[_WARM_PERIODS:]
     period_us = job["period_s"] * 1e6
     errors_us = [abs(after - before - period_us) for before, after in pairwise(began_us)]
     if not errors_us:
-        raise RunFailed("too few ticks")
+        raise RunFailedError("too few ticks")
     late = re.search(r"\blate (\d+)", Path(folder, "output").read_text(errors="replace"))
     if not late:
-        raise RunFailed(f"no count of late iterations; {_last_words(folder)}")
+        raise RunFailedError(f"no count of late iterations; {_last_words(folder)}")
     return {"error_us": errors_us, "missed": sum(error >= period_us for error in errors_us) + int(late[1])}
 
 
@@ -82,7 +82,7 @@ def start(job: dict[str, Any], folder: str) -> dict[str, Any]:
     """Measures the time from command to first tick, the memory of all processes, and the restart of a component.
 
     Raises:
-        RunFailed: no first tick, or the killed component did not come back.
+        RunFailedError: no first tick, or the killed component did not come back.
     """
     records, states = multicast_receiver(_PORTS.record), multicast_receiver(_PORTS.status)
     start_us = now_us()
@@ -117,7 +117,7 @@ def _message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str)
     """Returns the next message on a socket of the run.
 
     Raises:
-        RunFailed: the run ended instead, or no message came for long.
+        RunFailedError: the run ended instead, or no message came for long.
     """
     source.settimeout(_LOOK_S)
     end_us = now_us() + int(_PATIENCE_S * 1e6)
@@ -129,7 +129,7 @@ def _message(source: socket.socket, run: "subprocess.Popen[bytes]", folder: str)
         message = wire.Assembler().feed(datagram, port)
         if message:
             return message[1]
-    raise RunFailed(f"exit code {run.poll()}, or silence for {_PATIENCE_S:.0f} s; {_last_words(folder)}")
+    raise RunFailedError(f"exit code {run.poll()}, or silence for {_PATIENCE_S:.0f} s; {_last_words(folder)}")
 
 
 def _has_started(record: tick_record_t, host: int) -> bool:

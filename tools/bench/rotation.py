@@ -22,7 +22,7 @@ def isolation() -> list[str]:
     """Returns words that run a command in a namespace; none where that is not permitted: then ports differ."""
     try:
         return namespace.command()
-    except namespace.NoNamespace:
+    except namespace.NoNamespaceError:
         return []
 
 

@@ -17,7 +17,7 @@ _REPEAT_MAX_S = 0.2
 _GIVE_UP_S = 80.0
 
 
-class NoAnswer(Exception):  # noqa: N818 - an outcome of a tick
+class NoAnswerError(Exception):
     """Components did not answer a tick; the text names them."""
 
 
@@ -50,7 +50,7 @@ def main() -> None:
             result = measure(side, shape, tick, int(words[1]), float(words[2]))
             tick += len(result["tick_us"])
             answer(result)
-    except NoAnswer as error:
+    except NoAnswerError as error:
         answer({"error": str(error)})
     for _ in range(3):  # a lost one would leave a component behind
         for stage in range(shape.stages):
@@ -76,7 +76,7 @@ def run_tick(side: SupervisorSide, shape: Shape, tick: int) -> int:
     """Runs one pass of all stages; returns how often a stage was repeated because an answer was missing.
 
     Raises:
-        NoAnswer: components stayed silent.
+        NoAnswerError: components stayed silent.
     """
     repeated = 0
     for stage in range(shape.stages):
@@ -93,7 +93,7 @@ def run_tick(side: SupervisorSide, shape: Shape, tick: int) -> int:
                 continue
             if now_us() - start_us > _GIVE_UP_S * 1e6:
                 silent = ", ".join(f"c{index}" for index in sorted(waiting)[:5])
-                raise NoAnswer(f"tick {tick}, stage {stage}: no answer from {len(waiting)} components: {silent}")
+                raise NoAnswerError(f"tick {tick}, stage {stage}: no answer from {len(waiting)} components: {silent}")
             repeated += 1
             patience_s = min(2 * patience_s, _REPEAT_MAX_S)
             side.begin(stage, tick)

@@ -135,7 +135,7 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
         )
     except RecursionError:
         problems.add(f"{shown}:1", "", "values are nested too deeply; use a few levels")
-    except _TooMuch:
+    except _TooManyValuesError:
         problems.add(f"{shown}:1", "", f"more than {VALUES_MAX} values when its aliases are written out; use fewer")
     finally:
         if loader:
@@ -143,7 +143,7 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
     return None
 
 
-class _TooMuch(Exception):  # noqa: N818 - a mistake in the file
+class _TooManyValuesError(Exception):
     pass
 
 
@@ -159,7 +159,7 @@ class _Converter:
         place = f"{self._shown}:{line}"
         self._values += 1
         if self._values > VALUES_MAX:
-            raise _TooMuch
+            raise _TooManyValuesError
         if node in self._around:
             self._problems.add(place, "", "this value contains itself; write it out")
             return Node(None, place)

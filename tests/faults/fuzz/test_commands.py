@@ -31,7 +31,7 @@ TINY = {
 }
 
 
-class _WouldRun(Exception):  # noqa: N818 - what happens
+class _WouldRunError(Exception):
     pass
 
 
@@ -40,7 +40,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a launch file whose run is never started."""
 
     def run(*_: object) -> None:
-        raise _WouldRun
+        raise _WouldRunError
 
     write_files(tmp_path, TINY)
     monkeypatch.chdir(tmp_path)
@@ -52,7 +52,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def check(app: Typer, *arguments: str) -> None:
     result = CliRunner().invoke(app, arguments)
     caught = result.exception
-    assert caught is None or isinstance(caught, SystemExit | _WouldRun), (arguments, caught)
+    assert caught is None or isinstance(caught, SystemExit | _WouldRunError), (arguments, caught)
     assert result.exit_code in (0, 1, 2)
 
 

@@ -3,16 +3,21 @@
 import os
 import resource
 import socket
+import subprocess
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
 from fwk.bus.sockets import LOOPBACK
+from fwk.cli.run.run_directory import RUNS
 from fwk.control.address import gateway_address, supervisor_address
 from fwk.launcher import machine
 from fwk.launcher.machine import MachineError, advice, check_machine, check_ports
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from tests.fwk.cli.cli_processes import PROCS, run, write_files
 from tests.fwk.cli.cli_runs import plan as some_plan
 
 
@@ -52,10 +57,31 @@ def test_a_control_name_of_another_process_is_named(plan: Plan, address: type) -
             check_machine(plan)
 
 
-def test_an_interface_that_is_down_is_named(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(machine, "LOOPBACK", "192.0.2.1")  # the address of no local interface
-    with pytest.raises(MachineError, match=r"no IPv4 multicast on the interface lo: .*; type: sudo ip link set lo up"):
-        check_machine(plan)
+@pytest.mark.system
+@pytest.mark.parametrize(
+    ("before", "remedy"),
+    [
+        ("true", "ip link set lo up multicast on"),
+        ("ip link set lo up && ip address del 127.0.0.1/8 dev lo", "ip address add 127.0.0.1/8 dev lo"),
+    ],
+    ids=["down", "IPv6 only"],
+)
+def test_a_missing_network_is_named_and_the_advice_helps(
+    before: str, remedy: str, tmp_path: Path, needs: Callable[..., None], leave_out: Callable[[str], None]
+) -> None:
+    needs("unshare", "ip")
+    without_network = ["unshare", "--user", "--map-root-user", "--net", "sh", "-c"]
+    if subprocess.run([*without_network, "true"], check=False, capture_output=True).returncode:
+        leave_out("needs the right to make a network namespace: run as root")
+    write_files(tmp_path, PROCS)
+    start = "fwk-launch cards.yaml --ticks 2"
+    sick = run(tmp_path, *without_network, f"{before} && {start}")
+    assert (sick.returncode, "Traceback" in sick.stdout) == (2, False), sick.stdout
+    assert sick.stdout.startswith("no IPv4 multicast on the interface lo: ")
+    assert sick.stdout.endswith(f"; type: sudo {remedy}\n")
+    assert not list((tmp_path / RUNS).glob("*"))
+    well = run(tmp_path, *without_network, f"{before} && {remedy} && {start}")
+    assert well.returncode == 0, well.stdout
 
 
 def test_a_public_bus_that_cannot_be_opened_is_named(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
