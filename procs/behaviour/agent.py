@@ -58,6 +58,8 @@ class Agent(Component):
         if frame != self._frame:
             self._frame, self._tactics = frame, Tactics(self.config.field)
         game = game_of(self.game_state.value, self._team, frame)
+        if role.role == roles.ABSENT and self._robot not in game.sent_off:
+            role.role = roles.DEFENDER
         view = view_of(self.world_model.value, self._robot, role.role, frame).without(game.sent_off)
         role.role, order = self._decide(view, game)
         role.intention = order.intention or order.skill

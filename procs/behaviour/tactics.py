@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from procs.behaviour import aim, ballistics, formation
 from procs.behaviour.game import Game, Whose
-from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
+from procs.behaviour.roles import ABSENT, ATTACKER, DEFENDER, GOALKEEPER, Job
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
 from procs.model.geometry import ahead, bearing_rad, clamp
@@ -83,7 +83,7 @@ class Tactics:
         others = (*view.mates, *view.opponents)
         if game.stopped or not view.mates or holds_ball:
             return 0.0
-        if self._taking and self._last.skill == "pass":
+        if self._taking and self._last.skill in ("pass", "shoot"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
         touched = any(math.dist(other.place, view.ball.place) < _TOUCHED_M for other in others)
         return 0.0 if touched else self._barred_s
@@ -133,8 +133,10 @@ class Tactics:
         pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
         carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
         impatient = self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
+        if self._taking and view.mates:
+            return self._pass_on(view, back_m=math.inf) or self._clear(view)
         if self._taking:
-            order = self._pass_on(view, back_m=math.inf) or self._shot(view, _ROOM_M)
+            order = self._shot(view, _ROOM_M)
         elif pressed or impatient:
             order = self._shot(view, _ROOM_PRESSED_M) or self._pass_on(view, back_m=_BACK_M)
         else:
@@ -234,7 +236,7 @@ def _others(view: View) -> tuple[Robot, ...]:
 
 
 def _field_players(view: View) -> list[Robot]:
-    return [mate for mate in view.mates if mate.role != GOALKEEPER]
+    return [mate for mate in view.mates if mate.role not in (GOALKEEPER, ABSENT)]
 
 
 def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:

@@ -227,7 +227,7 @@ class Whistle:
 
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball
-        self._released = self._released or self._rolled(ball)
+        self._set_free(ball)
         foul = self._book.watch(scene)
         self._resting_s += scene.duration_s
         if foul:
@@ -248,7 +248,7 @@ class Whistle:
         elif self.state is State.DROP_BALL and self._touches.robots:
             self._play(scene.sight.ball)
         elif self._rolled(scene.sight.ball):
-            self._released = True
+            self._set_free(scene.sight.ball)
             self._play(scene.sight.ball)
         elif self.state is State.PENALTY:
             if not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s:
@@ -262,7 +262,7 @@ class Whistle:
         left = [event for event in scene.sight.events if event.kind in (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)]
         attacked = self.ends.side_of(self.team.other)
         scored = any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
-        self._released = self._released or self._rolled(scene.sight.ball)
+        self._set_free(scene.sight.ball)
         late = not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s
         missed = bool(left) or late or self._touches.again or self.time_in_state_s >= self.rules.shot_s
         if not scored and not missed:
@@ -274,6 +274,11 @@ class Whistle:
             self.end_half()
         else:
             self.interrupt(self._next_penalty(), "" if scored else "missed")
+
+    def _set_free(self, ball: Point) -> None:
+        """Notices that the taker of a set piece has set the ball free, and may not touch it again."""
+        taken = bool(self._touches.robots) and self._piece not in (State.PLAY, State.DROP_BALL)
+        self._released = self._released or (taken and self._rolled(ball))
 
     def _rolled(self, ball: Point) -> bool:
         """Returns whether the ball has rolled without a touch far enough to be set free."""
@@ -304,6 +309,8 @@ class Whistle:
         self._since_placed_s = 0.0
 
     def _play(self, ball: Point) -> None:
+        if not self._touches.robots:
+            self._piece = State.PLAY  # no robot took the set piece in its time
         self._enter(State.PLAY, Team.NONE, stopped=False)
         self._resting_at, self._resting_s = ball, 0.0
 

@@ -15,8 +15,8 @@ from procs.behaviour.skiller import Skiller
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
 from procs.referee.referee import Referee
+from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.simulation.simulator import Simulator
-from tests.procs.behaviour.perfect_world import PerfectWorldModel
 
 PARTS: dict[str, type[Component]] = {
     "base": Base,

@@ -268,3 +268,22 @@ def test_collision_in_the_own_area_brings_a_penalty() -> None:
     script.tick(Event(Kind.COLLISION, "magenta2", "cyan2", 9.5, 0.5, 3.5))
     assert script.state == (State.PENALTY, CYAN, True)
     assert script.whistle.spot == pytest.approx((7.4, 0.0))
+
+
+def test_ball_that_no_robot_has_taken_is_no_double_touch() -> None:
+    script = Script().started()
+    script.roll(3.0, 0.0)
+    script.touch("cyan2")
+    script.roll(4.0, 0.0)
+    script.touch("cyan2")
+    assert (script.state[0], script.reasons) == (State.PLAY, [])
+
+
+def test_dropped_ball_has_no_taker() -> None:
+    script = Script(deadlock_s=1.0).playing()
+    script.wait(1.1)
+    script.started()
+    script.touch("cyan2")
+    script.roll(script.ball.x_m + 1.0, 0.0)
+    script.touch("cyan2")
+    assert script.reasons == ["deadlock"]

@@ -4,6 +4,7 @@ import numpy as np
 
 from fwk import Clock, Component, Config, Each, Reads, Writes, channel
 from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
+from procs.behaviour.roles import ABSENT
 from procs.model.robot import team_of
 
 
@@ -50,7 +51,8 @@ class PerfectWorldModel(Component):
         model.opponents = [_estimate(each) for each in others if team_of(each.name) != team_of(robot)]
         for opponent in model.opponents:
             opponent.name = ""
-        model.mate_roles = [self.role[mate.name].value.role for mate in model.mates]
+        roles = {name: role.value.role for name, role in self.role.items()}
+        model.mate_roles = [roles.get(mate.name, ABSENT) for mate in model.mates]
         self.world_model.value = model
         self.world_model.write()
 

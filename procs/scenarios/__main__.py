@@ -1,0 +1,35 @@
+"""Plays scenarios and says which succeed: `python -m procs.scenarios [FILE...]`; without a file all of the book."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from fwk.testing import ExpressionError
+from procs.scenarios.scenario import BOOK, ScenarioError, run
+
+
+def main() -> int:
+    """Plays the scenarios of the command line; returns 0 if all succeed, 1 if one fails, 2 for a bad file."""
+    parser = argparse.ArgumentParser(prog="python -m procs.scenarios", description=__doc__)
+    parser.add_argument(
+        "files", nargs="*", type=Path, help="scenario files; names in the book need no folder or ending"
+    )
+    failed = 0
+    for file in parser.parse_args().files or sorted(BOOK.glob("*.yaml")):
+        path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
+        try:
+            verdict = run(path)
+        except (ScenarioError, ExpressionError, OSError) as error:
+            print(f"{path.stem}: {error}", file=sys.stderr)
+            return 2
+        failed += not verdict.ok
+        print(
+            f"{'ok    ' if verdict.ok else 'failed'} {path.stem} ({verdict.time_s:.1f} s)",
+            *verdict.broken,
+            sep="\n       ",
+        )
+    return int(failed > 0)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,66 @@
+"""Field crew of a scenario: sets robots and ball down, and gives the referee commands, each at its time."""
+
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, NonNegativeFloat
+
+from fwk import Call, Calls, Clock, Component, Config, Logger, channel
+from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
+
+
+class Action(BaseModel):
+    """One deed of the crew; exactly one of the three is given."""
+
+    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+
+    at_s: NonNegativeFloat = 0.0
+    """Logical time, from the beginning of the run."""
+    place_ball: dict[str, float] | None = None
+    """Fields of `place_ball_t`: `x_m`, `y_m`, `vx_m_s` and so on."""
+    place_robot: dict[str, Any] | None = None
+    """Fields of `place_robot_t`: `robot`, `x_m`, `y_m`, `heading_rad`."""
+    referee: dict[str, str] | None = None
+    """Fields of `referee_command_t`: `name`, `team`, `robot`."""
+
+
+class CrewConfig(Config):
+    """Settings of the crew."""
+
+    actions: list[Action] = []
+    """Deeds in any order."""
+
+
+class Crew(Component):
+    """Does its deeds in the order of their times."""
+
+    stage = "sensor_acquire"
+
+    config: CrewConfig
+    clock: Clock
+    log: Logger
+    place_ball: Calls[place_ball_t] = channel("world/place_ball")
+    place_robot: Calls[place_robot_t] = channel("world/place_robot")
+    referee: Calls[referee_command_t] = channel("world/referee_command")
+
+    def init(self) -> None:
+        self._left = sorted(self.config.actions, key=lambda action: action.at_s)
+        self._asked: list[Call] = []
+
+    def loop(self) -> None:
+        while self._left and self._left[0].at_s * 1e6 <= self.clock.now_us:
+            self._do(self._left.pop(0))
+        for call in [each for each in self._asked if each.finished]:
+            self._asked.remove(call)
+            if not call.done:
+                self.log.error(f"refused: {call.reason}")
+
+    def _do(self, action: Action) -> None:
+        for port, fields in (
+            (self.place_ball, action.place_ball),
+            (self.place_robot, action.place_robot),
+            (self.referee, action.referee),
+        ):
+            if fields is not None:
+                for name, value in fields.items():
+                    setattr(port.value, name, value)
+                self._asked.append(port.call())

@@ -1,0 +1,84 @@
+"""Words of soccer in the conditions of scenarios: `ball`, `play`, `distance(cyan2, ball)`, `x(magenta1)` ..."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from fwk.testing import Words, reads_messages
+from lcmtypes.soccer import game_state_t
+from procs.model.field import Point
+
+Newest = Callable[[str], Any]
+
+_STATES = {name.lower(): value for name, value in vars(game_state_t).items() if name.isupper()}
+
+
+@reads_messages
+def _ball(newest: Newest) -> Point:
+    truth = newest("world/ground_truth")
+    return Point(truth.ball_x_m, truth.ball_y_m)
+
+
+@reads_messages
+def _ball_speed(newest: Newest) -> float:
+    truth = newest("world/ground_truth")
+    return math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s)
+
+
+@reads_messages
+def _distance(newest: Newest) -> Callable[[Any, Any], float]:
+    return lambda one, two: math.dist(_place(newest, one), _place(newest, two))
+
+
+@reads_messages
+def _state(newest: Newest) -> Callable[..., bool]:
+    def state(name: str, team: str = "") -> bool:
+        """Returns whether the game is in a state, for a team if one is named."""
+        game = newest("world/game_state")
+        return game.state == _STATES[name] and (not team or game.state_team == _STATES[f"team_{team}"])
+
+    return state
+
+
+@reads_messages
+def _reasons(newest: Newest) -> list[str]:
+    return [event.reason for event in newest("world/game_state").history if event.reason]
+
+
+def _place(newest: Newest, what: Any) -> Point:
+    """Returns a place: a point, or that of a robot by its name."""
+    if isinstance(what, tuple):
+        return Point(*what)
+    for robot in newest("world/ground_truth").robots:
+        if robot.name == str(what):
+            return Point(robot.x_m, robot.y_m)
+    raise KeyError(f"no robot '{what}'")
+
+
+@reads_messages
+def _touches(newest: Newest) -> list[str]:
+    return [event.robot for event in newest("world/match_events").events if event.kind in (4, 6)]
+
+
+@reads_messages
+def _hardest(newest: Newest) -> float:
+    return max((event.speed_m_s for event in newest("world/match_events").events if event.kind == 5), default=0.0)
+
+
+def _axis(axis: int) -> Callable[[Newest], Callable[[Any], float]]:
+    return reads_messages(lambda newest: lambda what: _place(newest, what)[axis])
+
+
+WORDS: Words = {
+    "ball": _ball,
+    "ball_speed": _ball_speed,
+    "distance": _distance,
+    "state": _state,
+    "reasons": _reasons,
+    "x": _axis(0),
+    "y": _axis(1),
+    "touching": _touches,
+    "collision": _hardest,
+}
+"""`ball` is a place and `ball_speed` a number in m/s; `reasons` are those of all whistles; `touching` are the robots at
+the ball and `collision` the closing speed in this tick, 0 without one; `state("free_kick", "cyan")`."""

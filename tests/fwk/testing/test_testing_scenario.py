@@ -1,0 +1,97 @@
+"""Conditions over messages, and what must happen in a run."""
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from fwk.testing import Expectations, Expression, ExpressionError, Watch, reads_messages
+
+MESSAGES = {"world/state": SimpleNamespace(score=2, names=["a", "b"]), "r1/pose": SimpleNamespace(x_m=1.5)}
+
+
+def newest(channel: str) -> Any:
+    return MESSAGES[channel]
+
+
+@reads_messages
+def twice(newest: Any) -> float:
+    return 2 * float(newest("r1/pose").x_m)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("world.state.score >= 2", True),
+        ("world.state.score == 1 or r1.pose.x_m > 1.0", True),
+        ("'a' in world.state.names and len(world.state.names) == 2", True),
+        ("world.state.names[1]", "b"),
+        ("not -r1.pose.x_m < 0", False),
+        ("abs(r1.pose.x_m - 2.0) < 0.6", True),
+        ("double == 3.0", True),
+        ("half(r1.pose.x_m)", 0.75),
+    ],
+)
+def test_value_of_a_condition(text: str, value: Any) -> None:
+    assert Expression(text, {"double": twice, "half": lambda number: number / 2}).value(newest) == value
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("world.state.score >", "invalid syntax"),
+        ("__import__('os')", "calls only abs"),
+        ("world.state.score.__class__", "begins with an underscore"),
+        ("[each for each in world.state.names]", "ListComp is not allowed"),
+        ("(lambda: 1)()", "calls only|not allowed"),
+        ("world.state.names.append(1)", "calls only"),
+    ],
+)
+def test_text_that_is_not_a_condition(text: str, message: str) -> None:
+    with pytest.raises(ExpressionError, match=message):
+        Expression(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("world.other.score", "KeyError"), ("world.state.goals", "goals"), ("r1.pose.x_m > 'a'", "not supported")],
+)
+def test_condition_that_does_not_fit_the_messages(text: str, message: str) -> None:
+    with pytest.raises(ExpressionError, match=message):
+        Expression(text).value(newest)
+
+
+def judged(values: list[int], **expected: list[str]) -> list[str]:
+    watch = Watch(Expectations(**expected))
+    message = SimpleNamespace(x=0)
+    for tick, value in enumerate(values):
+        message.x = value
+        watch.tick(float(tick), lambda _: message)
+    return watch.verdict(float(len(values)), lambda _: message).broken
+
+
+@pytest.mark.parametrize(
+    ("expected", "broken"),
+    [
+        ({"eventually": ["w.m.x == 3", "w.m.x == 1"]}, []),
+        ({"eventually": ["w.m.x == 4"]}, ["never: w.m.x == 4"]),
+        ({"in_order": ["w.m.x == 1", "w.m.x == 3"]}, []),
+        ({"in_order": ["w.m.x == 3", "w.m.x == 1"]}, ["never: w.m.x == 1"]),
+        ({"in_order": ["w.m.x > 0", "w.m.x > 0"]}, []),
+        ({"always": ["w.m.x < 4"]}, []),
+        ({"always": ["w.m.x < 3"]}, ["2.00 s: not w.m.x < 3"]),
+        ({"at_end": ["w.m.x == 2"]}, []),
+        ({"at_end": ["w.m.x == 3"]}, ["in the end not: w.m.x == 3"]),
+    ],
+)
+def test_verdict(expected: dict[str, list[str]], broken: list[str]) -> None:
+    assert judged([1, 2, 3, 2], **expected) == broken
+
+
+def test_watch_is_finished_when_nothing_can_change() -> None:
+    message = SimpleNamespace(x=1)
+    soon = Watch(Expectations(eventually=["w.m.x == 1"]))
+    later = Watch(Expectations(eventually=["w.m.x == 1"], always=["w.m.x > 0"]))
+    for watch in (soon, later):
+        watch.tick(0.0, lambda _: message)
+    assert (soon.finished, later.finished) == (True, False)
