@@ -9,10 +9,12 @@ from lcmtypes.soccer import line_points_t, pose_t
 from procs.localization.global_search import global_search
 from procs.localization.line_map import line_map
 from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
+from procs.model.algebra import product
 from procs.model.field import Field
-from procs.model.frames import plausible, rotation, wrap
+from procs.model.frames import Floats, plausible, rotation, wrap
 
 _FASTEST_M_S = 8.0  # no robot drives faster
+_STALE_S = 0.5  # points captured before are taken as they are
 
 
 class LocalizationConfig(Config):
@@ -71,6 +73,7 @@ class Localization(Component):
             )
         self._last: odometry_t | None = None
         self._yaw_rate_rad_s = 0.0
+        self._turning_rad_s = 0.0  # mean since the last frame
         self._last_us = 0
         self._localizer = SelfLocalizer(line_map(config.field), self._settings(), np.array(given) if given else None)
         self._updated_us = -1
@@ -80,8 +83,9 @@ class Localization(Component):
         points = self.line_points.value if self.line_points.refreshed else line_points_t()
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         self._updated_us = self.clock.now_us
-        x_m, y_m = np.array(points.x_m), np.array(points.y_m)
-        self._localizer.update(self._motion(), self._compass_rad(), x_m, y_m, passed_s)
+        motion = self._motion()
+        x_m, y_m = self._as_seen_now(points)
+        self._localizer.update(motion, self._compass_rad(), x_m, y_m, passed_s)
         if knew != self._localizer.localized:
             here_m = "({:.2f}, {:.2f})".format(*self._localizer.pose[:2])
             self.log.info(f"localized at {here_m} m" if not knew else "lost, searching the whole field")
@@ -109,6 +113,18 @@ class Localization(Component):
         sound = self.imu.refreshed and plausible(imu.heading_rad, imu.yaw_rate_rad_s)
         return imu.heading_rad if sound else None
 
+    def _as_seen_now(self, points: line_points_t) -> tuple[Floats, Floats]:
+        """Returns the points (n each) in the frame of the robot that has driven on since their exposure."""
+        seen_m = np.column_stack((points.x_m, points.y_m)).reshape(-1, 2)
+        age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
+        if not 0.0 < age_s <= _STALE_S or self._last is None:
+            return seen_m[:, 0], seen_m[:, 1]
+        turn_rad = age_s * self._turning_rad_s
+        way_m = rotation(turn_rad / 2) @ (age_s * self._last.vx_m_s, age_s * self._last.vy_m_s)
+        with np.errstate(over="ignore", invalid="ignore"):  # values that cannot be are left out later
+            seen_m = product(seen_m - way_m, rotation(turn_rad))
+        return seen_m[:, 0], seen_m[:, 1]
+
     def _motion(self) -> Motion:
         """Returns the way since the last frame by the wheels and the turn by the gyro, which slip does not affect."""
         now = self.odometry.value
@@ -118,6 +134,7 @@ class Localization(Component):
         before, passed_s = self._last or now, self.clock.since_s(self._last_us)
         self._last, self._last_us = now, self.clock.now_us
         turn_rad = now.heading_rad - before.heading_rad
+        self._turning_rad_s = now.omega_rad_s if plausible(now.omega_rad_s) else 0.0
         way_m = rotation(-before.heading_rad - turn_rad / 2) @ (now.x_m - before.x_m, now.y_m - before.y_m)
         if np.hypot(*way_m) > _FASTEST_M_S * max(passed_s, self.clock.period_s):
             return Motion(0.0, 0.0, 0.0, 0.0)  # the driver began anew: its frame has moved, not the robot
@@ -125,5 +142,6 @@ class Localization(Component):
             rate_rad_s = self.imu.value.yaw_rate_rad_s
             if before is not now:
                 turn_rad = (rate_rad_s + self._yaw_rate_rad_s) / 2 * passed_s
+                self._turning_rad_s = (rate_rad_s + self._yaw_rate_rad_s) / 2
             self._yaw_rate_rad_s = rate_rad_s
         return Motion(float(way_m[0]), float(way_m[1]), wrap(turn_rad), float(np.hypot(now.vx_m_s, now.vy_m_s)))

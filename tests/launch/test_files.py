@@ -8,9 +8,15 @@ from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
 
 FOLDER = Path(__file__).parents[2] / "launch"
-SYSTEMS = {"soccer.yaml": (5, 5), "soccer-greedy.yaml": (5, 5), "soccer-1v1.yaml": (1, 1), "one-robot.yaml": (1, 0)}
+SYSTEMS = {
+    "soccer.yaml": (5, 5),
+    "soccer-greedy.yaml": (5, 5),
+    "soccer-1v1.yaml": (1, 1),
+    "soccer-percepts.yaml": (5, 5),
+    "one-robot.yaml": (1, 0),
+}
 TOOLS = {"vision.yaml", "frames.yaml"}
-PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml"}
+PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml"}
 
 
 def plan_of(file: str) -> Plan:
@@ -29,9 +35,8 @@ def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int
     assert {name for name in namespaces if name[-1].isdigit()} == expected
     for robot in expected:
         members = [each.name.rpartition("/")[2] for each in plan.components if each.namespace == robot]
-        assert " ".join(members) == (
-            "base kicker camera omni_ball omni_field localization world_model agent skiller navigator"
-        )
+        eyes = "percepts" if file == "soccer-percepts.yaml" else "camera omni_ball omni_field"
+        assert " ".join(members) == f"base kicker {eyes} localization world_model agent skiller navigator"
     assert plan.period_us == 50_000
 
 

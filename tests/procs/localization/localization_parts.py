@@ -40,6 +40,7 @@ class FakeRobot:
         self.drift_rad = 0.03 * self.rng.standard_normal()
         self.scale = 1 + 0.03 * self.rng.standard_normal(2)
         self.velocity = np.zeros(3)
+        self.latency_s = 0.0  # of the camera
         self.measured = np.zeros(3)
 
     def place(self) -> None:
@@ -63,7 +64,10 @@ class FakeRobot:
 
     def white_points(self, count: int = 100) -> tuple[Floats, Floats]:
         """Returns white points in the robot frame, from a shaking picture with clutter."""
-        seen = (paint_m() - self.pose[:2]) @ rotation(self.pose[2])
+        pose = self.pose - self.latency_s * self.velocity * (0, 0, 1)
+        way_m = self.latency_s * self.velocity[:2]
+        pose[:2] -= rotation(self.pose[2] - self.latency_s * self.velocity[2] / 2) @ way_m
+        seen = (paint_m() - pose[:2]) @ rotation(pose[2])
         range_m = np.hypot(seen[:, 0], seen[:, 1])
         inside = np.flatnonzero((range_m < REACH_M) & (range_m > 0.4))
         chosen = inside[self.rng.choice(len(inside), min(count, len(inside)), replace=False)]
@@ -82,7 +86,8 @@ class FakeRobot:
     def show(self, bench: Bench) -> None:
         """Puts this frame's messages on the bench."""
         x_m, y_m = self.white_points()
-        bench.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist())
+        capture_us = round(bench.time_us + (PERIOD_S - self.latency_s) * 1e6) if self.latency_s else 0
+        bench.port("line_points").put(x_m=x_m.tolist(), y_m=y_m.tolist(), capture_us=max(0, capture_us))
         x, y, heading = self.odometry.tolist()
         vx_m_s, vy_m_s, _ = self.measured.tolist()
         bench.port("odometry").put(x_m=x, y_m=y, heading_rad=heading, vx_m_s=vx_m_s, vy_m_s=vy_m_s)

@@ -8,12 +8,16 @@ from pydantic import BaseModel, ValidationError
 
 from fwk.testing import launch_plan
 from procs.model.realism import chosen
-from procs.simulation import camera_errors, radio_links
+from procs.simulation import camera_errors, percept_errors, radio_links
 from procs.simulation.camera import CameraConfig
 from procs.simulation.physics.realism import noise_of
 from procs.simulation.simulator import SimulatorConfig
 
-PRESETS: dict[str, dict[Any, Any]] = {"camera": camera_errors.PRESETS, "radio": radio_links.PRESETS}
+PRESETS: dict[str, dict[Any, Any]] = {
+    "camera": camera_errors.PRESETS,
+    "percepts": percept_errors.PRESETS,
+    "radio": radio_links.PRESETS,
+}
 
 
 @pytest.mark.parametrize("part", PRESETS)

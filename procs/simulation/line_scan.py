@@ -1,0 +1,63 @@
+"""Points at which the scan lines of a robot cross the field's lines, by the truth."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from procs.model.algebra import Floats, product
+from procs.model.field import Field, Point
+
+_PIECE_M = 0.1
+
+
+class LineScan:
+    """The field's lines in short pieces; each is met by the rays and rings that cross it."""
+
+    def __init__(self, field: Field) -> None:
+        starts, ends = [], []
+        for segment in field.segments():
+            cut = np.linspace(segment.start, segment.end, 1 + math.ceil(math.dist(*segment) / _PIECE_M))
+            starts.append(cut[:-1])
+            ends.append(cut[1:])
+        for arc in field.arcs():
+            turn_rad = arc.end_rad - arc.start_rad
+            angles = np.linspace(arc.start_rad, arc.end_rad, 1 + math.ceil(turn_rad * arc.radius_m / _PIECE_M))
+            around = arc.radius_m * np.column_stack((np.cos(angles), np.sin(angles))) + np.array(arc.centre)
+            starts.append(around[:-1])
+            ends.append(around[1:])
+        first, last = np.concatenate(starts), np.concatenate(ends)
+        self._middles_m, self._spans_m = (first + last) / 2, last - first
+
+    def points(
+        self,
+        place: Point,
+        heading_rad: float,
+        rays: int,
+        rings_m: tuple[float, ...],
+        reach_m: float,
+        rng: np.random.Generator,
+    ) -> Floats:
+        """Returns the crossings (n, 2) within reach, robot frame: of rays in equal angles, and of rings.
+
+        A piece that spans half the angle between two rays is met by one of them with a probability of one half.
+        """
+        cosine, sine = math.cos(heading_rad), math.sin(heading_rad)
+        to_robot = np.array(((cosine, -sine), (sine, cosine)))
+        luck = rng.random(len(self._middles_m))
+        away_m = self._middles_m - place
+        near = (away_m**2).sum(axis=1) < reach_m**2
+        at_m, span_m, luck = product(away_m[near], to_robot), product(self._spans_m[near], to_robot), luck[near]
+        range_m = np.maximum(np.hypot(at_m[:, 0], at_m[:, 1]), 1e-6)
+        across = np.abs(at_m[:, 0] * span_m[:, 1] - at_m[:, 1] * span_m[:, 0]) / range_m**2  # rad
+        along_m = np.abs((at_m * span_m).sum(axis=1)) / range_m
+        met = luck < across * rays / math.tau
+        for ring_m in rings_m:
+            met |= np.abs(range_m - ring_m) <= along_m / 2
+        return np.asarray(at_m[met])
+
+
+@lru_cache(maxsize=4)
+def line_scan(field: Field) -> LineScan:
+    """Returns the pieces of a field's lines, made once in each process."""
+    return LineScan(field)

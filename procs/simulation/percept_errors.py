@@ -1,0 +1,90 @@
+"""How far percepts drawn from the truth are from ideal, for each preset; fitted to those of the rendered path.
+
+Deviations are in pixels of the mirror's picture, so that they grow with distance as those of the detectors do. Rates of
+phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator.
+"""
+
+from pydantic import BaseModel, ConfigDict
+
+from procs.model.realism import Realism
+
+
+class PerceptErrors(BaseModel):
+    """Errors of percepts. 0: ideal."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+
+    latency_s: float = 0.0
+    """From the exposure until the percepts are published. ER-Force: 35 ms, MRA: 25 ms."""
+    shake_px: float = 0.0
+    """Standard deviation by which the standing robot's mirror shakes everything that a frame shows."""
+    shake_px_per_m_s: float = 0.0
+    """Growth of that deviation with each m/s of the robot."""
+    ball_px: float = 0.0
+    """Standard deviation of the ball's place."""
+    robot_along_px: float = 0.0
+    """Standard deviation of a robot's place along the ray from the camera."""
+    robot_across_px: float = 0.0
+    """The same across the ray."""
+    line_px: float = 0.0
+    """Standard deviation of a point on a line."""
+    ball_missed: float = 0.0
+    """Part of the frames in which a visible ball is not found. ER-Force: 5 %."""
+    robot_missed: float = 0.0
+    """Part of the frames in which a visible robot is not found. ER-Force: 2 %."""
+    line_missed: float = 0.0
+    """Part of the line points that are not found."""
+    ball_phantoms_1_s: float = 0.0
+    """Balls a second that are not there. B-Human: 0.0005 a frame."""
+    robot_phantoms_1_s: float = 0.0
+    """Robots a second that are not there. B-Human: 0.005 a frame."""
+    line_phantoms: float = 0.0
+    """Part of the points that do not lie on a line."""
+
+
+PRESETS: dict[Realism, PerceptErrors] = {
+    "none": PerceptErrors(),
+    "friendly": PerceptErrors(
+        latency_s=0.02,
+        shake_px=0.1,
+        shake_px_per_m_s=0.15,
+        ball_px=0.1,
+        robot_along_px=0.18,
+        robot_across_px=0.42,
+        line_px=0.05,
+        ball_missed=0.02,
+        robot_missed=0.01,
+        line_missed=0.05,
+        line_phantoms=0.01,
+    ),
+    "realistic": PerceptErrors(
+        latency_s=0.035,
+        shake_px=0.2,
+        shake_px_per_m_s=0.3,
+        ball_px=0.15,
+        robot_along_px=0.35,
+        robot_across_px=0.85,
+        line_px=0.1,
+        ball_missed=0.05,
+        robot_missed=0.02,
+        line_missed=0.1,
+        ball_phantoms_1_s=0.005,
+        robot_phantoms_1_s=0.05,
+        line_phantoms=0.02,
+    ),
+    "harsh": PerceptErrors(
+        latency_s=0.07,
+        shake_px=0.4,
+        shake_px_per_m_s=0.6,
+        ball_px=0.3,
+        robot_along_px=0.7,
+        robot_across_px=1.7,
+        line_px=0.3,
+        ball_missed=0.1,
+        robot_missed=0.04,
+        line_missed=0.2,
+        ball_phantoms_1_s=0.05,
+        robot_phantoms_1_s=0.1,
+        line_phantoms=0.04,
+    ),
+}

@@ -1,0 +1,220 @@
+"""Percepts drawn from the truth instead of pictures: same messages as camera and detectors, without rendering."""
+
+import math
+
+import numpy as np
+from pydantic import Field as Setting
+
+from fwk import Clock, Component, Config, Logger, Reads, Writes, channel
+from lcmtypes.soccer import (
+    ball_percept_t,
+    ground_truth_t,
+    line_points_t,
+    obstacle_percepts_t,
+    obstacle_t,
+    true_robot_t,
+)
+from procs.model.algebra import Floats, product
+from procs.model.ball import BALL, BallModel
+from procs.model.field import Field, Point
+from procs.model.geometry import plausible
+from procs.model.realism import Realism, chosen
+from procs.model.robot import ROBOT, RobotModel
+from procs.model.units import US_PER_S
+from procs.simulation.line_scan import line_scan
+from procs.simulation.past import Past
+from procs.simulation.percept_errors import PRESETS
+from procs.simulation.sight import blurred, claimed, hidden, shaken
+from procs.vision.calibration import MirrorConfig
+
+_LEAST_VISIBLE = 0.4  # of a ball; ER-Force's threshold, too
+_CLAIMED_BALL_PX = 0.5  # deviations that the detectors state, shaking included
+_CLAIMED_ROBOT_PX = (0.6, 1.5)
+
+
+class PerceptsConfig(Config):
+    """Settings of the percepts; those that are not null override the preset."""
+
+    mirror: MirrorConfig = MirrorConfig()
+    """The camera that is imitated."""
+    realism: Realism = "realistic"
+    """How far the percepts are from ideal: none, friendly, realistic or harsh."""
+    latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """From the exposure until the percepts are published."""
+    shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)
+    """Standard deviation by which the standing robot's mirror shakes."""
+    ball_px: float | None = Setting(default=None, ge=0.0)
+    """Standard deviation of the ball's place, in pixels."""
+    ball_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the frames in which a visible ball is not found."""
+    robot_missed: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the frames in which a visible robot is not found."""
+    ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    """Balls a second that are not there."""
+    robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    """Robots a second that are not there."""
+    field: Field = Field()
+    """Measures of the field."""
+    robot: RobotModel = ROBOT
+    """Geometry of all robots."""
+    ball: BallModel = BALL
+    """Size of the ball."""
+    rays: int = Setting(default=180, ge=16, le=720)
+    """Scan lines around the robot, as the detector of lines has them."""
+    ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
+    """Radii of the rings, as the detector of lines has them."""
+    reach_m: float = Setting(default=7.0, gt=0.5)
+    """Largest distance of robots and line points."""
+    ball_reach_m: float = Setting(default=8.0, gt=0.0)
+    """Largest distance of a ball."""
+    most_points: int = Setting(default=150, ge=1)
+    """Line points sent at most."""
+
+
+class Percepts(Component):
+    """Stands in for camera, `omni_ball` and `omni_field` of one robot."""
+
+    stage = "sensor_prepare"
+
+    ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
+    ball_percept: Writes[ball_percept_t]
+    obstacle_percepts: Writes[obstacle_percepts_t]
+    line_points: Writes[line_points_t]
+    config: PerceptsConfig
+    clock: Clock
+    log: Logger
+    rng: np.random.Generator
+
+    @classmethod
+    def preload(cls, config: PerceptsConfig) -> None:
+        """Cuts the field's lines into pieces, which are the same for all robots."""
+        line_scan(config.field)
+
+    def init(self) -> None:
+        self._robot = self.name.rpartition("/")[0]
+        self._past = Past()
+        self._missing = False
+        self._before_us = -1
+        self._apply_settings()
+
+    def loop(self) -> None:
+        if not self.ground_truth.refreshed:
+            return
+        for truth in self.ground_truth.fresh:
+            self._past.add(truth)
+        capture_us = self.ground_truth.header.time_us - round(self._errors.latency_s * US_PER_S)
+        truth = self._past.at(capture_us)
+        own = self._own_robot(truth)
+        passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
+        self._before_us = self.clock.now_us
+        if own is None:
+            return
+        deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
+        forward, left = (deviation_px * self.rng.standard_normal(2)).tolist()
+        others = [(robot.x_m, robot.y_m) for robot in truth.robots if robot.name != self._robot and _is_here(robot)]
+        robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
+        self._see_ball(own, truth, robots_m, (forward, left), passed_s)
+        self._see_robots(robots_m, (forward, left), passed_s)
+        self._see_lines(own, robots_m, (forward, left))
+        for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
+            port.value.capture_us = max(1, capture_us)
+            port.write()
+
+    def config_changed(self) -> None:
+        self._apply_settings()
+
+    def _apply_settings(self) -> None:
+        self._errors = chosen(PRESETS[self.config.realism], self.config)
+        self._mirror = self.config.mirror.mirror()
+        self._lines = line_scan(self.config.field)
+
+    def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
+        own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
+        if own is None and not self._missing:
+            names = ", ".join(robot.name for robot in truth.robots) or "no robot"
+            self.log.warning(f"no percepts: robot '{self._robot}' is not on the field, which has {names}")
+        self._missing = own is None
+        return own
+
+    def _see_ball(
+        self, own: true_robot_t, truth: ground_truth_t, robots_m: Floats, shake_px: tuple[float, float], passed_s: float
+    ) -> None:
+        errors, percept = self._errors, ball_percept_t()
+        missed, *noise = self.rng.random(), *self.rng.standard_normal(2)
+        phantom, direction, distance = self.rng.random(3)
+        if plausible(truth.ball_x_m, truth.ball_y_m, truth.ball_z_m):
+            centre_m = (truth.ball_x_m, truth.ball_y_m)
+            at_m = _seen_from(own, np.array([centre_m]))
+            visible = 1.0 - float(hidden(at_m, robots_m, self.config.robot.radius_m)[0])
+            at_m = at_m * self._lengthened(truth.ball_z_m)
+            range_m = float(np.hypot(*at_m[0]))
+            if missed >= errors.ball_missed and visible >= _LEAST_VISIBLE and range_m <= self.config.ball_reach_m:
+                along, across = shaken(at_m, shake_px)
+                moved = blurred(
+                    self._mirror, at_m, along + errors.ball_px * noise[0], across + errors.ball_px * noise[1]
+                )
+                percept = self._ball(moved[0], visible)
+        if not percept.visible and phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
+            range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
+            percept = self._ball(range_m * np.array((math.cos(angle_rad), math.sin(angle_rad))), _LEAST_VISIBLE)
+        self.ball_percept.value = percept
+
+    def _lengthened(self, height_m: float) -> float:
+        """Returns the factor by which a ball above the ground appears further away than it is."""
+        viewpoint_m = self.config.mirror.height_m - self.config.ball.radius_m
+        return viewpoint_m / max(viewpoint_m - height_m, 1e-3)
+
+    def _ball(self, at_m: Floats, confidence: float) -> ball_percept_t:
+        percept = ball_percept_t()
+        percept.visible, percept.confidence = True, confidence
+        percept.x_m, percept.y_m = at_m.tolist()
+        deviation_px = _CLAIMED_BALL_PX + 2.0 * max(0.0, 0.9 - confidence)
+        percept.covariance_m2 = claimed(self._mirror, percept.x_m, percept.y_m, deviation_px, deviation_px)
+        return percept
+
+    def _see_robots(self, robots_m: Floats, shake_px: tuple[float, float], passed_s: float) -> None:
+        errors, config = self._errors, self.config
+        found_m = robots_m[np.hypot(robots_m[:, 0], robots_m[:, 1]) <= config.reach_m]
+        luck, noise = self.rng.random(len(found_m)), self.rng.standard_normal((2, len(found_m)))
+        phantom, direction, distance = self.rng.random(3)
+        seen = (luck >= errors.robot_missed) & (hidden(found_m, robots_m, config.robot.radius_m) < 1 - _LEAST_VISIBLE)
+        along, across = shaken(found_m, shake_px)
+        moved_m = blurred(
+            self._mirror, found_m, along + errors.robot_along_px * noise[0], across + errors.robot_across_px * noise[1]
+        )[seen]
+        if phantom < -math.expm1(-errors.robot_phantoms_1_s * passed_s):
+            range_m, angle_rad = 0.6 + distance * (config.reach_m - 0.6), direction * math.tau
+            moved_m = np.vstack((moved_m, range_m * np.array((math.cos(angle_rad), math.sin(angle_rad)))))
+        percepts = self.obstacle_percepts.value = obstacle_percepts_t()
+        for x_m, y_m in moved_m.tolist():
+            obstacle = obstacle_t()
+            obstacle.x_m, obstacle.y_m, obstacle.radius_m = x_m, y_m, config.robot.radius_m
+            obstacle.covariance_m2 = claimed(self._mirror, x_m, y_m, *_CLAIMED_ROBOT_PX)
+            percepts.obstacles.append(obstacle)
+
+    def _see_lines(self, own: true_robot_t, robots_m: Floats, shake_px: tuple[float, float]) -> None:
+        errors, config = self._errors, self.config
+        place = Point(own.x_m, own.y_m)
+        found_m = self._lines.points(
+            place, own.heading_rad, config.rays, config.ring_distances_m, config.reach_m, self.rng
+        )
+        luck, noise = self.rng.random((2, len(found_m))), self.rng.standard_normal((2, len(found_m)))
+        found_m[luck[1] < errors.line_phantoms] *= 0.8
+        seen = (luck[0] >= errors.line_missed) & (hidden(found_m, robots_m, config.robot.radius_m) <= 0)
+        along, across = shaken(found_m, shake_px)
+        moved_m = blurred(self._mirror, found_m, along + errors.line_px * noise[0], across + errors.line_px * noise[1])
+        moved_m = moved_m[seen]
+        if len(moved_m) > config.most_points:
+            moved_m = moved_m[np.linspace(0, len(moved_m) - 1, config.most_points).astype(int)]
+        points = self.line_points.value
+        points.x_m, points.y_m = moved_m.T.tolist()
+
+
+def _seen_from(own: true_robot_t, points_m: Floats) -> Floats:
+    """Points (n, 2) of the world frame in the robot frame."""
+    cosine, sine = math.cos(own.heading_rad), math.sin(own.heading_rad)
+    return product(points_m - (own.x_m, own.y_m), np.array(((cosine, -sine), (sine, cosine))))
+
+
+def _is_here(robot: true_robot_t) -> bool:
+    return plausible(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)

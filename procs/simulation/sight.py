@@ -1,0 +1,56 @@
+"""What a robot can see of the truth: bodies in the way hide what is behind them."""
+
+import math
+
+import numpy as np
+
+from procs.model.algebra import Floats, product
+from procs.vision.mirror import Mirror
+from procs.vision.uncertainty import ground_covariance
+
+
+def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
+    """Returns which part (0..1) of the way across each point (n) the nearer round bodies (k, 2) leave hidden.
+
+    All places are in the frame of the robot that looks. A point on the ray through a body's middle is hidden wholly,
+    one that is a radius beside it is not.
+    """
+    if not len(points_m) or not len(bodies_m):
+        return np.zeros(len(points_m))
+    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-6)
+    ahead = points_m / range_m[:, None]
+    along_m = product(ahead, bodies_m.T)
+    beside_m = np.abs(ahead[:, :1] * bodies_m[:, 1] - ahead[:, 1:] * bodies_m[:, 0])
+    behind = (along_m > 0) & (along_m < range_m[:, None] - radius_m)
+    cover = np.clip((radius_m - beside_m) / radius_m, 0.0, 1.0)
+    return np.asarray(np.where(behind, np.minimum(1.0, 2 * cover), 0.0).max(axis=1))
+
+
+def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Floats) -> Floats:
+    """Returns points (n, 2) on the ground moved by so many pixels (n) of the mirror's picture, along and across."""
+    if not len(points_m):
+        return points_m
+    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-3)
+    ahead = points_m / range_m[:, None]
+    aside = np.column_stack((-ahead[:, 1], ahead[:, 0]))
+    scale_m = np.array([mirror.metres_per_px(float(distance_m)) for distance_m in range_m])
+    return np.asarray(
+        points_m + ahead * (along_px * scale_m[:, 0])[:, None] + aside * (across_px * scale_m[:, 1])[:, None]
+    )
+
+
+def shaken(points_m: Floats, shake_px: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Returns the pixels (n) along and across each ray by which a shake (forward, left) moves what points show."""
+    range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-6)
+    ahead = points_m / range_m[:, None]
+    forward, left = shake_px
+    return ahead[:, 0] * forward + ahead[:, 1] * left, ahead[:, 0] * left - ahead[:, 1] * forward
+
+
+def claimed(mirror: Mirror, x_m: float, y_m: float, along_px: float, across_px: float) -> list[list[float]]:
+    """Returns the covariance (2, 2) in m² that a percept states; never quite zero."""
+    least_px = 0.02
+    covariance: list[list[float]] = ground_covariance(
+        mirror, x_m, y_m, math.hypot(along_px, least_px), math.hypot(across_px, least_px)
+    ).tolist()
+    return covariance

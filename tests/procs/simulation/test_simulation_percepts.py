@@ -1,0 +1,183 @@
+"""Percepts drawn from the truth: like those of the rendered path, with its distances, losses and hidden things."""
+
+import math
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from fwk import Component, Writes
+from fwk.testing import Bench, MemorySystem
+from lcmtypes.soccer import ball_percept_t, ground_truth_t, line_points_t, obstacle_percepts_t, true_robot_t
+from procs.localization.line_map import line_map
+from procs.model.algebra import Floats
+from procs.model.field import Field
+from procs.simulation.camera import Camera
+from procs.simulation.percepts import Percepts
+from procs.vision.omni_ball import OmniBall
+from procs.vision.omni_field import OmniField
+
+OWN = (-3.0, 1.5, 0.7)
+FRAMES = 80
+AWAY_M = (1.5, 3.0, 4.5)
+
+
+def robot(name: str, x_m: float, y_m: float, heading_rad: float = 0.0) -> true_robot_t:
+    made = true_robot_t()
+    made.name, made.team, made.x_m, made.y_m, made.heading_rad = name, name[:-1], x_m, y_m, heading_rad
+    return made
+
+
+def truth(ball_m: tuple[float, float], *others: tuple[float, float], ball_z_m: float = 0.0) -> ground_truth_t:
+    made = ground_truth_t()
+    made.ball_x_m, made.ball_y_m, made.ball_z_m = *ball_m, ball_z_m
+    made.robots = [robot("cyan1", *OWN), *(robot(f"magenta{n}", *place) for n, place in enumerate(others, 1))]
+    return made
+
+
+class Scene(Component):
+    """Ball and one other robot go around the robot at one of three distances."""
+
+    stage = "pre_loop"
+    ground_truth: Writes[ground_truth_t]
+
+    def init(self) -> None:
+        self.shown: list[ground_truth_t] = []
+
+    def loop(self) -> None:
+        number = len(self.shown)
+        away_m, angle_rad = AWAY_M[number % 3], 2.4 * number
+        ball_m = (OWN[0] + away_m * math.cos(angle_rad), OWN[1] + away_m * math.sin(angle_rad))
+        other_m = (OWN[0] - away_m * math.cos(angle_rad), OWN[1] - away_m * math.sin(angle_rad))
+        self.ground_truth.value = truth(ball_m, other_m)
+        self.shown.append(self.ground_truth.value)
+        self.ground_truth.write()
+
+
+@cache
+def measured(rendered: bool) -> dict[str, Any]:
+    """Errors of the ball and the obstacle by distance, distances of points from lines, and how much was found."""
+    parts: dict[str, Any] = {"world/scene": Scene}
+    if rendered:
+        parts |= {"cyan1/camera": Camera, "cyan1/omni_ball": OmniBall, "cyan1/omni_field": OmniField}
+    else:
+        parts |= {"cyan1/percepts": Percepts}
+    owner = "camera" if rendered else "percepts"
+    system = MemorySystem(
+        parts,
+        settings={f"cyan1/{owner}": {"latency_s": 0.0}},
+        channels={"world/scene": {"ground_truth": "world/ground_truth"}},
+    )
+    system.tick(3 * FRAMES)
+    scene: Any = system.runners["world/scene"].component
+    balls: dict[float, list[float]] = {away_m: [] for away_m in AWAY_M}
+    robots: dict[float, list[float]] = {away_m: [] for away_m in AWAY_M}
+    lines_m, counts = [], []
+    lines = line_map(Field())
+    decoded = zip(
+        scene.shown,
+        map(ball_percept_t.decode, system.sent["cyan1/ball_percept"]),
+        map(obstacle_percepts_t.decode, system.sent["cyan1/obstacle_percepts"]),
+        map(line_points_t.decode, system.sent["cyan1/line_points"]),
+        strict=True,
+    )
+    for number, (shown, ball, obstacles, points) in enumerate(decoded):
+        assert ball.capture_us == obstacles.capture_us == points.capture_us == shown.header.time_us
+        away_m = AWAY_M[number % 3]
+        if ball.visible:
+            balls[away_m].append(math.dist(world(ball.x_m, ball.y_m), (shown.ball_x_m, shown.ball_y_m)))
+        other = shown.robots[1]
+        errors_m = [math.dist(world(each.x_m, each.y_m), (other.x_m, other.y_m)) for each in obstacles.obstacles]
+        robots[away_m] += [min(errors_m)] if errors_m and min(errors_m) < 1.0 else []
+        places = np.array([world(x_m, y_m) for x_m, y_m in zip(points.x_m, points.y_m, strict=True)])
+        distance_m, _, _ = lines.look_up(places[:, 0], places[:, 1])
+        lines_m += np.abs(distance_m).tolist()
+        counts.append(points.n)
+    return {
+        "ball": {away_m: rms(errors) for away_m, errors in balls.items()},
+        "ball seen": {away_m: len(errors) / FRAMES for away_m, errors in balls.items()},
+        "robot": {away_m: rms(errors) for away_m, errors in robots.items()},
+        "robot seen": {away_m: len(errors) / FRAMES for away_m, errors in robots.items()},
+        "line": float(np.median(lines_m)),
+        "points": float(np.mean(counts)),
+    }
+
+
+def rms(errors: list[float]) -> float:
+    return math.sqrt(sum(error**2 for error in errors) / max(1, len(errors)))
+
+
+def world(x_m: float, y_m: float) -> tuple[float, float]:
+    cosine, sine = math.cos(OWN[2]), math.sin(OWN[2])
+    return OWN[0] + cosine * x_m - sine * y_m, OWN[1] + sine * x_m + cosine * y_m
+
+
+def bench(**settings: Any) -> Bench:
+    return Bench(Percepts, name="cyan1/percepts", **{"latency_s": 0.0, **settings})
+
+
+def look(eyes: Bench, seen: ground_truth_t) -> ball_percept_t:
+    eyes.port("ground_truth").put(seen)
+    eyes.iterate()
+    percept: ball_percept_t = eyes.port("ball_percept").sent[-1]
+    return percept
+
+
+def place_of(percept: ball_percept_t) -> Floats:
+    return np.array(world(percept.x_m, percept.y_m))
+
+
+@pytest.mark.parametrize("what", ["ball", "robot"])
+@pytest.mark.parametrize("away_m", AWAY_M)
+def test_errors_grow_with_distance_as_those_of_pictures(what: str, away_m: float) -> None:
+    drawn, seen = measured(rendered=False)[what][away_m], measured(rendered=True)[what][away_m]
+    assert drawn == pytest.approx(seen, rel=0.3)
+
+
+def test_line_points_are_as_many_and_as_good_as_in_pictures() -> None:
+    drawn, seen = measured(rendered=False), measured(rendered=True)
+    assert drawn["points"] == pytest.approx(seen["points"], rel=0.2)
+    assert drawn["line"] == pytest.approx(seen["line"], rel=0.3)
+
+
+def test_ideal_percepts_are_the_truth() -> None:
+    percept = look(bench(realism="none"), truth((1.0, -1.0)))
+    assert place_of(percept) == pytest.approx((1.0, -1.0))
+
+
+def test_ball_behind_a_robot_is_not_seen() -> None:
+    ahead = (OWN[0] + 3.0, OWN[1])
+    eyes = bench(realism="none")
+    assert not look(eyes, truth(ahead, (OWN[0] + 1.5, OWN[1]))).visible
+    assert look(eyes, truth(ahead, (OWN[0] + 1.5, OWN[1] + 0.4))).visible
+    assert look(eyes, truth(ahead, (OWN[0] + 4.0, OWN[1]))).visible
+
+
+def test_ball_in_flight_appears_further_away() -> None:
+    percept = look(bench(realism="none"), truth((OWN[0] + 2.0, OWN[1]), ball_z_m=0.32))
+    assert place_of(percept) == pytest.approx((OWN[0] + 4.0, OWN[1]))
+
+
+@pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
+def test_that_share_of_balls_is_missed(share: float) -> None:
+    eyes = bench(realism="none", ball_missed=share)
+    seen = sum(look(eyes, truth((0.0, 0.0))).visible for _ in range(400))
+    assert seen / 400 == pytest.approx(1.0 - share, abs=0.08)
+
+
+def test_phantoms_come_at_their_rate() -> None:
+    eyes = bench(realism="none", ball_phantoms_1_s=1.0, robot_phantoms_1_s=2.0)
+    balls = sum(look(eyes, truth((30.0, 0.0))).visible for _ in range(1200))
+    robots = sum(len(percepts.obstacles) for percepts in eyes.port("obstacle_percepts").sent)
+    assert balls / 60 == pytest.approx(1.0, abs=0.4)
+    assert robots / 60 == pytest.approx(2.0, abs=0.6)
+
+
+def test_robot_that_is_not_on_the_field_sees_nothing_and_says_so_once() -> None:
+    eyes = Bench(Percepts, name="cyan7/percepts")
+    for _ in range(3):
+        eyes.port("ground_truth").put(truth((0.0, 0.0)))
+        eyes.iterate()
+    assert eyes.port("ball_percept").sent == []
+    assert [line.text for line in eyes.logged] == ["no percepts: robot 'cyan7' is not on the field, which has cyan1"]
