@@ -13,6 +13,7 @@ SYSTEMS = {
     "soccer-greedy.yaml": (5, 5),
     "soccer-1v1.yaml": (1, 1),
     "soccer-percepts.yaml": (5, 5),
+    "soccer-refbox.yaml": (5, 5),
     "one-robot.yaml": (1, 0),
 }
 TOOLS = {"vision.yaml", "frames.yaml"}

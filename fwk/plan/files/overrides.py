@@ -7,13 +7,15 @@ from fwk.plan.files.settings import over
 from fwk.plan.files.source import Node, read_value
 
 PLACE = "--set"
+SHARED = "shared"
+"""Section of a launch file whose settings go to every component that has them."""
 RUN_KEYS = ("period_s", "clock", "speed", "seed", "stage_time_s", "loop_time_s", "loop_time_warnings", "public_url")
 
 
 def overrides(sets: Sequence[str], problems: Problems) -> Node:
     """Returns the layer of all `--set` options, in the shape of a host file; later options win.
 
-    A path is `cyan1/omni_ball.gain`, `*/camera.noise_levels`, or one of the run's own keys, `period_s`.
+    A path is `cyan1/omni_ball.gain`, `*/camera.gain`, `shared.realism`, or one of the run's own keys, `period_s`.
     """
     made = Node({}, PLACE)
     for text in sets:
@@ -26,7 +28,8 @@ def overrides(sets: Sequence[str], problems: Problems) -> Node:
             problems.add(PLACE, "", f"no setting '{path}'; {right}")
         else:
             node = read_value(value, PLACE, problems)
-            for key in reversed(("config", component, *setting.split(".")) if dot else (path,)):
+            section = () if component == SHARED else ("config",)
+            for key in reversed((*section, component, *setting.split(".")) if dot else (path,)):
                 node = node and Node({key: node}, PLACE)
             made = over(made, node) if node else made
     return made

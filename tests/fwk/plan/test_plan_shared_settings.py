@@ -45,6 +45,12 @@ def test_shared_settings_of_a_later_file_win(load: Load, folder: Path) -> None:
     assert component(plan, "it/wheels").config["limits"]["speed_m_s"] == 1.5
 
 
+def test_option_changes_a_shared_setting(load: Load) -> None:
+    plan = load(DRIVING, sets=["shared.limits.speed_m_s=0.5"])
+    assert component(plan, "it/wheels").config["limits"]["speed_m_s"] == 0.5
+    assert component(plan, "it/wheels").origins["limits.speed_m_s"] == "--set"
+
+
 def test_shared_setting_that_no_component_has_is_refused(load: Load) -> None:
     with pytest.raises(PlanError, match=r"it\.yaml:2: no component has a setting 'gian'; did you mean 'gain'"):
         load("\nshared: {gian: 0.5}\ncomponents: {it/wheels: {use: plan_parts:Wheels}}")
