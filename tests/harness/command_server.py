@@ -121,6 +121,9 @@ def import_all() -> None:
             import_module(module.name)
     for name in _LIBRARIES:
         import_module(name)
+    os.environ["SPT_NOENV"] = "1"  # keeps the environment where /proc/PID/environ shows it
+    import_module("setproctitle").getproctitle()  # finds the title's memory, which it cannot once `carry_out` has begun
+    del os.environ["SPT_NOENV"]
     gc.collect()
     gc.freeze()
 
