@@ -18,8 +18,8 @@ from tests.programs.control_system import Steered, write_system
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
-MATCH_S = 30
-TICKS_BETWEEN = 40
+MATCH_S = 12
+TICKS_BETWEEN = 16
 
 
 def victims(steered: Steered, luck: random.Random) -> Iterator[int]:

@@ -22,7 +22,7 @@ from tests.harness.command_server import MARK, MARK_CHARACTERS, REQUEST_BYTES
 
 BIN = Path(sys.executable).parent
 _SERVER = Path(__file__).with_name("command_server.py")
-_FORKED_WITH = ("HOME", "LD_LIBRARY_PATH", "FWK_TEST_", "PYTEST_")
+_FORKED_WITH = ("HOME", "PATH", "LD_LIBRARY_PATH", "FWK_TEST_", "PYTEST_")
 """Beginnings of the names of variables that nothing reads while it is imported."""
 _ENVIRONMENT = dict(os.environ)
 _RUNS = count()

@@ -2,12 +2,12 @@
 
 import os
 import subprocess
-import sys
 from pathlib import Path
 
+from tests.harness import commands
+from tests.harness.commands import BIN
 from tests.harness.runs import PortBlock
 
-BIN = Path(sys.executable).parent
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
 
 PROCS = {
@@ -60,16 +60,8 @@ def environment(home: Path) -> dict[str, str]:
 
 def run(folder: Path, *command: str) -> subprocess.CompletedProcess[str]:
     """Runs a command to its end in a folder, which is also its home; both outputs together in `stdout`."""
-    return subprocess.run(
-        command,
-        cwd=folder,
-        env=environment(folder),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        timeout=TIMEOUT_S,
-        check=False,
-    )
+    program = str(BIN / command[0]) if command[0] in ("fwk", "fwk-launch") else command[0]
+    return commands.run([program, *command[1:]], folder, environment(folder), TIMEOUT_S, together=True)
 
 
 def launch(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -3,6 +3,7 @@
 import json
 import textwrap
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +37,14 @@ config: {"*/wheels": {mode: hard}, a/wheels: {count: 2}, a: {log_level: warning}
 
 def mistakes(schema: Schema, data: Any) -> list[str]:
     checker = jsonschema.Draft202012Validator(schema)
-    checker.check_schema(schema)
-    return [
-        f"{error.json_path}: {error.message}" for error in jsonschema.Draft202012Validator(schema).iter_errors(data)
-    ]
+    _check(json.dumps(schema))
+    return [f"{error.json_path}: {error.message}" for error in checker.iter_errors(data)]
+
+
+@cache
+def _check(schema: str) -> None:
+    """Checks a schema itself; once, because that takes a second."""
+    jsonschema.Draft202012Validator.check_schema(json.loads(schema))
 
 
 def plain(text: str) -> Any:
@@ -51,14 +56,27 @@ def plain(text: str) -> Any:
 @pytest.fixture
 def schema(load: Callable[..., Plan]) -> Schema:
     load(RIGHT)
-    return schema_of_file("it.yaml")
+    made: Schema = json.loads(_schema_of_right())
+    return made
+
+
+@cache
+def _schema_of_right() -> str:
+    """Returns the schema of the launch file `RIGHT`, made once; it is the same in each folder."""
+    return json.dumps(schema_of_file("it.yaml"))
+
+
+@cache
+def _schema_of_any() -> str:
+    """Returns the schema of all launch files, made once."""
+    return json.dumps(schema_of_files())
 
 
 @pytest.mark.parametrize("file", sorted(LAUNCH.glob("*.yaml")), ids=lambda path: path.name)
 def test_every_launch_file_fits(file: Path) -> None:
     node = read_yaml(file, file.name, Problems())
     assert node
-    for made in (schema_of_files(), schema_of_file(str(file))):
+    for made in (json.loads(_schema_of_any()), schema_of_file(str(file))):
         assert mistakes(made, node.plain()) == []
 
 
