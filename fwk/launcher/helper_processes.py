@@ -90,14 +90,14 @@ class HelperProcesses:
             while packet := self.control.recv(_PACKET_MAX):
                 channel, _, data = packet.partition(b"\0")
                 newest[channel.decode()] = data
-            self.deleted = newest.pop(DELETED.decode(), b"").decode()
-            self.lost = int(newest.pop(sinks.LOST, 0))
         except OSError as error:
             if self._gateway:
                 os.kill(self._gateway, signal.SIGKILL)
             if self._gateway and isinstance(error, TimeoutError):
                 when = f"{_PATIENCE_S:g} s after the end"
                 self.gave_up = f"the gateway was not done {when}; killed: the recording may lack its end"
+        self.deleted = newest.pop(DELETED.decode(), b"").decode()
+        self.lost = int(newest.pop(sinks.LOST, 0))
         if self._gateway:
             how = wait_for_end(self._gateway)
             if not self.gave_up and how != ENDED_WELL:

@@ -9,25 +9,11 @@ import pytest
 from fwk.lcm.event_log import LogReader
 from tests.clients.bus import Bus, process, wait_until
 from tests.clients.lcm_spy import Table, lcm_spy, read_table, screen
+from tests.harness.components import sources
 from tests.harness.runs import Launched, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-BURST = '''
-"""Writes many messages in each tick."""
-
-from fwk import Component, Writes
-from lcmtypes.core import acknowledgement_t
-
-
-class Burst(Component):
-    stage = "think"
-    note: Writes[acknowledgement_t]
-
-    def loop(self) -> None:
-        for _ in range(200):
-            self.note.write()
-'''
 LAUNCH = """
 name: burst
 period_s: 0.05
@@ -38,20 +24,12 @@ components:
 TICKS = 60
 MESSAGES = 200 * TICKS
 SPEEDS = ("1", "max")
-SUBSCRIBER = """
-import lcm, sys
-bus = lcm.LCM(sys.argv[1])
-heard = []
-bus.subscribe("a/note", lambda channel, data: heard.append(data))
-bus.subscribe("fwk/probe", lambda channel, data: open(sys.argv[2], "w").write(f"{data.decode()} {len(heard)}"))
-while True:
-    bus.handle()
-"""
+SUBSCRIBER = Path(__file__).parent / "subscriber.py"
 
 
 def burst(folder: Path, ports: PortBlock, speed: str) -> None:
     """Runs to its end a component that writes 200 messages in each tick."""
-    write_files(folder, {"burst.py": BURST, "burst.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(folder, {**sources("burst.py"), "burst.yaml": LAUNCH.format(url=ports.public_url)})
     options = ("burst.yaml", "--ticks", str(TICKS), "--speed", speed, "--record", "log.lcm")
     run = Launched(folder, ports, options, {})
     try:
@@ -79,7 +57,7 @@ def test_lcm_logger_hears_every_message(tmp_path: Path, ports: PortBlock, speed:
 def test_python_subscriber_hears_every_message(tmp_path: Path, ports: PortBlock, speed: str) -> None:
     bus, answer = default_bus(ports), tmp_path / "answer"
     texts: list[str] = []
-    with process([sys.executable, "-c", SUBSCRIBER, bus.url, str(answer)]):
+    with process([sys.executable, str(SUBSCRIBER), bus.url, str(answer)]):
         bus.publish_until(answer.exists)
         burst(tmp_path, ports, speed)
         bus.publish_until(lambda: _newest(answer, texts).startswith("end "), b"end")

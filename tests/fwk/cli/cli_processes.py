@@ -11,32 +11,8 @@ from tests.harness.runs import PortBlock
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
 
 PROCS = {
-    "procs/counter.py": '''
-"""Counts; the tests' settings make it fail."""
-
-from fwk import Component, Config, Writes
-from lcmtypes.cards import count_t
-
-
-class CounterConfig(Config):
-    last: int = 1_000_000
-    """Fails above this."""
-
-
-class Counter(Component):
-    """Writes how often it has run."""
-
-    stage = "think"
-    config: CounterConfig
-    count: Writes[count_t]
-
-    def loop(self) -> None:
-        self.count.value.number += 1
-        if self.count.value.number > self.config.last:
-            raise RuntimeError("counted too far")
-        self.count.write()
-''',
-    "lcmtypes/cards.lcm": "package cards;\nstruct count_t {\n  core.header_t header;\n  int64_t number;\n}\n",
+    "procs/counter.py": source("card_counter.py"),
+    **sources("lcmtypes/cards.lcm"),
     "launch/cards.yaml": (
         "components:\n"
         "  left/counter: { use: procs.counter }\n"

@@ -5,34 +5,24 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
-COUNTER = '''
-"""Counts the ticks."""
-
-from fwk import Component
-
-
-class Counter(Component):
-    stage = "think"
-
-    def loop(self) -> None: ...
-'''
 LAUNCH = """
 name: counted
 period_s: 0.05
 public_url: {url}
 components:
-  a/counter: {{use: "counter:Counter"}}
+  a/counter: {{use: "idle:Idle"}}
 """
 
 
 @pytest.fixture
 def folder(tmp_path: Path, ports: PortBlock) -> Path:
-    write_files(tmp_path, {"counter.py": COUNTER, "counted.yaml": LAUNCH.format(url=ports.public_url)})
+    write_files(tmp_path, {**sources("idle.py"), "counted.yaml": LAUNCH.format(url=ports.public_url)})
     return tmp_path
 
 
