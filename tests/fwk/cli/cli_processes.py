@@ -6,6 +6,7 @@ from pathlib import Path
 
 from tests.harness import commands
 from tests.harness.commands import BIN
+from tests.harness.components import source, sources
 from tests.harness.runs import PortBlock
 
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
