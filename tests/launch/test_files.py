@@ -17,7 +17,7 @@ SYSTEMS = {
     "one-robot.yaml": (1, 0),
 }
 TOOLS = {"vision.yaml", "frames.yaml"}
-PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml"}
+PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml", "msl-stereo.yaml"}
 
 
 def plan_of(file: str) -> Plan:
@@ -36,7 +36,10 @@ def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int
     assert {name for name in namespaces if name[-1].isdigit()} == expected
     for robot in expected:
         members = [each.name.rpartition("/")[2] for each in plan.components if each.namespace == robot]
-        eyes = "percepts" if file == "soccer-percepts.yaml" else "camera omni_ball omni_field"
+        eyes = {
+            "soccer-percepts.yaml": "percepts",
+            "one-robot.yaml": "camera omni_ball omni_field stereo_camera stereo_obs obstacle_fusion",
+        }.get(file, "camera omni_ball omni_field")
         assert " ".join(members) == f"base kicker {eyes} localization world_model agent skiller navigator"
     assert plan.period_us == 50_000
 

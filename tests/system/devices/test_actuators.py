@@ -28,8 +28,8 @@ STANDING_M_S = 0.02
 @pytest.fixture
 def match(launch: Launch, ports: PortBlock, tmp_path: Path) -> Steered:
     """One moving robot on the field; its base is not restarted when it dies."""
-    robot = (LAUNCH / "msl-robot.yaml").read_text()
-    (tmp_path / "msl-robot.yaml").write_text(
+    robot = (LAUNCH / "msl-stereo.yaml").read_text()
+    (tmp_path / "msl-stereo.yaml").write_text(
         robot.replace("use: procs.drivers.base\n", "use: procs.drivers.base\n      restart: {when: never}\n")
     )
     (tmp_path / "one.yaml").write_text((LAUNCH / "one-robot.yaml").read_text())

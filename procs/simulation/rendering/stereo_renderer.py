@@ -1,0 +1,90 @@
+"""Renders what a forward pair of cameras sees: the ground, and robots as upright cylinders with a pattern."""
+
+from collections.abc import Sequence
+
+import cv2
+import numpy as np
+
+from procs.model.algebra import Floats
+from procs.model.field import Field
+from procs.model.frames import Indices
+from procs.simulation.rendering.carpet import lay_carpet
+from procs.simulation.rendering.renderer import Pose
+from procs.simulation.rendering.shapes import Bodies
+from procs.vision.stereo_rig import Grey, StereoRig
+
+_SKY = 170  # grey level above the horizon
+_NEAREST_M = 0.05
+_PANEL_RAD, _PANEL_M = 0.15, 0.05  # size of the patches on the bodies of robots
+
+
+class StereoRenderer:
+    """Looks along the ray of every pixel, column by column: upright bodies cover whole columns."""
+
+    def __init__(self, rig: StereoRig, field: Field, bodies: Bodies) -> None:
+        self._rig, self._bodies = rig, bodies
+        carpet = lay_carpet(field)
+        self._carpet, self._origin_px, self._scale_m = carpet.pixels, carpet.origin_px, carpet.metres_per_px
+        self._grey = cv2.cvtColor(carpet.pixels, cv2.COLOR_BGR2GRAY)
+        rows = rig.rows
+        self._ground_rows = rows > 0.02
+        self._ground_m = rig.height_m / rows[self._ground_rows]  # distance ahead that each row sees
+
+    def render(self, own: Pose, robots_m: Sequence[tuple[float, float]]) -> Grey:
+        """Returns both frames side by side; `robots_m` are the middles of the other robots, world frame."""
+        halves = [self._frame(own, robots_m, aside_m) for aside_m in (0.5, -0.5)]
+        return np.hstack(halves)
+
+    def _frame(self, own: Pose, robots_m: Sequence[tuple[float, float]], side: float) -> Grey:
+        rig = self._rig
+        cosine, sine = np.cos(own.heading_rad), np.sin(own.heading_rad)
+        left_m = side * rig.baseline_m
+        x_m = own.x_m + cosine * rig.forward_m - sine * left_m
+        y_m = own.y_m + sine * rig.forward_m + cosine * left_m
+        frame = np.full((rig.height_px, rig.width_px), _SKY, np.uint8)
+        ahead_m = self._ground_m[:, None]
+        aside_m = -rig.columns[None] * ahead_m
+        column = (x_m + cosine * ahead_m - sine * aside_m) / self._scale_m + self._origin_px[0]
+        row = (y_m + sine * ahead_m + cosine * aside_m) / self._scale_m + self._origin_px[1]
+        frame[self._ground_rows] = cv2.remap(
+            self._grey, column.astype(np.float32), row.astype(np.float32), cv2.INTER_NEAREST, borderValue=(_SKY - 60,)
+        )
+        depth_m = np.full(rig.width_px, np.inf)
+        for other_x_m, other_y_m in robots_m:
+            dx, dy = other_x_m - x_m, other_y_m - y_m
+            self._paint(frame, depth_m, cosine * dx + sine * dy, cosine * dy - sine * dx)
+        return frame
+
+    def _paint(self, frame: Grey, depth_m: Floats, ahead_m: float, left_m: float) -> None:
+        """Paints one robot where it is nearer than `depth_m` (columns), which it changes."""
+        rig, radius_m = self._rig, self._bodies.robot_radius_m
+        slope = -rig.columns  # of each column's ray: to the left for a metre ahead
+        lengths = 1.0 + slope**2
+        half = (ahead_m + slope * left_m) / lengths
+        square = half**2 - (ahead_m**2 + left_m**2 - radius_m**2) / lengths
+        near_m = half - np.sqrt(np.maximum(square, 0.0))
+        hit = np.flatnonzero((square > 0) & (near_m > _NEAREST_M) & (near_m < depth_m))
+        if not len(hit):
+            return
+        depth_m[hit] = near_m[hit]
+        height_m = rig.height_m - rig.rows[:, None] * near_m[hit]
+        around_rad = np.arctan2(slope[hit] * near_m[hit] - left_m, near_m[hit] - ahead_m)
+        shade = _pattern(np.broadcast_to(around_rad / _PANEL_RAD, height_m.shape), height_m / _PANEL_M)
+        body = (height_m >= 0.0) & (height_m <= self._bodies.robot_height_m)
+        frame[:, hit] = np.where(body, shade, frame[:, hit])
+
+
+def _pattern(across: Floats, up: Floats) -> Floats:
+    """Returns grey levels of a smooth random pattern at places (rows, columns); the same in every process."""
+    column, row = np.floor(across).astype(np.int64), np.floor(up).astype(np.int64)
+    right, above = across - column, up - row
+    low = _level(column, row) * (1 - right) + _level(column + 1, row) * right
+    high = _level(column, row + 1) * (1 - right) + _level(column + 1, row + 1) * right
+    return np.asarray(low * (1 - above) + high * above)
+
+
+def _level(column: Indices, row: Indices) -> Floats:
+    """Returns a level from 10 to 137 by the numbers of a place."""
+    mixed = (column * 374761393 + row * 668265263) & 0xFFFFFFFF
+    mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0xFFFFFFFF
+    return 10.0 + ((mixed ^ (mixed >> 16)) & 127)

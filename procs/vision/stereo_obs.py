@@ -1,0 +1,60 @@
+"""Finds obstacles on the ground in the pictures of a forward stereo pair."""
+
+import cv2
+from pydantic import Field as Setting
+
+from fwk import Component, Config, Image, Writes
+from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
+from procs.model.robot import ROBOT, RobotModel
+from procs.vision.stereo_finder import StereoFinder
+from procs.vision.stereo_rig import StereoRig
+
+
+class StereoObsConfig(Config):
+    """Settings of the detector."""
+
+    rig: StereoRig = StereoRig()
+    """Calibration of the pair."""
+    robot: RobotModel = ROBOT
+    """Geometry of the other robots."""
+    farthest_m: float = Setting(default=4.5, gt=0.5)
+    """Obstacles further ahead are not reported."""
+    deviation_px: float = Setting(default=0.35, gt=0.0)
+    """Standard deviation of a disparity."""
+
+
+class StereoObs(Component):
+    """Publishes the obstacles of every pair."""
+
+    stage = "sensor_prepare"
+    stereo_image: Image
+    stereo_obstacles: Writes[obstacle_percepts_t]
+    config: StereoObsConfig
+
+    def init(self) -> None:
+        cv2.setNumThreads(1)
+        self.config_changed()
+
+    def loop(self) -> None:
+        if not self.stereo_image.changed:
+            return
+        pixels = self.stereo_image.pixels
+        percepts = self.stereo_obstacles.value = obstacle_percepts_t()
+        announced = self.stereo_image.announcement
+        percepts.capture_us = announced.value.capture_us or announced.header.time_us
+        for found in [] if pixels is None else self._finder.find(pixels):
+            obstacle = obstacle_t()
+            obstacle.x_m, obstacle.y_m = float(found.x_m), float(found.y_m)
+            obstacle.radius_m = self.config.robot.radius_m
+            obstacle.covariance_m2 = found.covariance_m2.tolist()
+            percepts.obstacles.append(obstacle)
+        self.stereo_obstacles.write()
+
+    def config_changed(self) -> None:
+        config = self.config
+        self._finder = StereoFinder(
+            config.rig,
+            farthest_m=config.farthest_m,
+            radius_m=config.robot.radius_m,
+            deviation_px=config.deviation_px,
+        )

@@ -1,0 +1,49 @@
+"""Calibration of a forward pair of pinhole cameras, level and parallel; both frames lie side by side in one picture."""
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import Field
+
+from fwk import Config
+from procs.model.algebra import Floats
+
+Grey = NDArray[np.uint8]
+"""Height x width."""
+
+
+class StereoRig(Config):
+    """The pair as it was calibrated; camera and detector use the same."""
+
+    width_px: int = Field(default=400, ge=64, le=1600)
+    """Of each frame."""
+    height_px: int = Field(default=200, ge=32, le=1200)
+    """Of each frame."""
+    focal_px: float = Field(default=300.0, gt=0.0)
+    """Focal length: a thing as wide as it is far away is so wide in the picture."""
+    baseline_m: float = Field(default=0.16, gt=0.0)
+    """Between the two cameras, which look along the robot's x axis."""
+    forward_m: float = 0.1
+    """From the robot's middle to the cameras."""
+    height_m: float = Field(default=0.5, gt=0.0)
+    """Of the cameras above the ground."""
+
+    @property
+    def columns(self) -> Floats:
+        """(width_px): sideways part of each column's direction, to the right, for one metre ahead."""
+        return (np.arange(self.width_px) - (self.width_px - 1) / 2) / self.focal_px
+
+    @property
+    def rows(self) -> Floats:
+        """(height_px): downward part of each row's direction, for one metre ahead."""
+        return (np.arange(self.height_px) - (self.height_px - 1) / 2) / self.focal_px
+
+    def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
+        """Returns the frames of the left and the right camera.
+
+        Raises:
+            ValueError: the picture does not have the size of a pair.
+        """
+        if pixels.shape != (self.height_px, 2 * self.width_px):
+            shape = " x ".join(map(str, pixels.shape))
+            raise ValueError(f"the frame is {shape}; a pair is {self.height_px} x {2 * self.width_px}, grey")
+        return pixels[:, : self.width_px], pixels[:, self.width_px :]
