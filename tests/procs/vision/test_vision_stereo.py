@@ -36,7 +36,7 @@ def seen(*places_m: tuple[float, float], seed: int = 1, noise_levels: float = 5.
 def obstacle(x_m: float, y_m: float, along_m: float = 0.1, across_m: float = 0.1) -> obstacle_t:
     made = obstacle_t()
     made.x_m, made.y_m, made.radius_m = x_m, y_m, 0.25
-    made.covariance_m2 = [(along_m**2, 0.0), (0.0, across_m**2)]
+    made.covariance_m2 = [[along_m**2, 0.0], [0.0, across_m**2]]
     return made
 
 
@@ -110,7 +110,7 @@ def test_fusion_takes_percepts_of_one_time_only() -> None:
 
 def test_impossible_covariance_does_not_spoil_the_other() -> None:
     broken = obstacle(2.0, 0.0)
-    broken.covariance_m2 = [(math.nan, 0.0), (0.0, 1.0)]
+    broken.covariance_m2 = [[math.nan, 0.0], [0.0, 1.0]]
     (kept,) = joined([broken], [obstacle(2.1, 0.0)], same_m=0.4)
     assert kept.x_m == 2.1
 
