@@ -211,7 +211,8 @@ class Gateway:
             raise MessageError(f"protocol version {record.version}, this gateway has {protocol_t.VERSION}")
         if any(not 0 <= channel < channels for channel in named):
             raise MessageError("a tick record with a channel that the plan does not have")
-        self.dynamic.check(record.channels)
+        if record.channels:
+            self.dynamic.check(record.channels)
 
     def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
         """Passes a tick on to the sinks; returns False if the supervisor closed the connection."""
