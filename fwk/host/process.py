@@ -10,8 +10,13 @@ import select
 import signal
 import sys
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
+from types import ModuleType
 
+# Looked up once: a forked process shares with its parent only memory in which neither of them writes.
+_LIBC = ctypes.CDLL(None, use_errno=True)
+_PRCTL, _MALLOPT, _MALLOC_TRIM = _LIBC.prctl, _LIBC.mallopt, _LIBC.malloc_trim
 _PR_SET_PDEATHSIG = 1
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 32 << 20
@@ -27,7 +32,7 @@ ENDED_WELL = "exit code 0"
 
 def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
     """Asks the kernel to send this process `death_signal` when `parent` ends in any way."""
-    ctypes.CDLL(None, use_errno=True).prctl(_PR_SET_PDEATHSIG, death_signal)
+    _PRCTL(_PR_SET_PDEATHSIG, death_signal)
     if os.getppid() != parent:  # the parent has ended before this call
         os._exit(1)
 
@@ -70,24 +75,31 @@ def allow_core_dumps() -> None:
 
 def keep_memory() -> None:
     """Lets the C library keep freed memory, because returning the memory of each image costs page faults."""
-    mallopt = ctypes.CDLL(None).mallopt
-    mallopt(_M_MMAP_THRESHOLD, _KEPT_BYTES)
-    mallopt(_M_TRIM_THRESHOLD, _KEPT_BYTES)
+    _MALLOPT(_M_MMAP_THRESHOLD, _KEPT_BYTES)
+    _MALLOPT(_M_TRIM_THRESHOLD, _KEPT_BYTES)
 
 
 def give_memory_back() -> None:
     """Returns freed memory to the system: `init` often frees more than iterations ever need."""
-    ctypes.CDLL(None).malloc_trim(0)
+    _MALLOC_TRIM(0)
+
+
+@cache
+def _titles() -> ModuleType:
+    """Imports setproctitle, which reads its setting at its first use; forked processes inherit the result."""
+    os.environ[_KEEP_ENVIRONMENT] = "1"
+    import setproctitle
+
+    setproctitle.getproctitle()
+    del os.environ[_KEEP_ENVIRONMENT]
+    return setproctitle
 
 
 def name_process(plan: str, role: str) -> None:
     """Names this process: `fwk: PLAN ROLE` in full, the end of the role in short."""
-    os.environ[_KEEP_ENVIRONMENT] = "1"
-    from setproctitle import setproctitle, setthreadtitle
-
-    setproctitle(f"fwk: {plan} {role}")
-    setthreadtitle(role.encode()[-_SHORT:].decode(errors="ignore"))
-    del os.environ[_KEEP_ENVIRONMENT]
+    titles = _titles()
+    titles.setproctitle(f"fwk: {plan} {role}")
+    titles.setthreadtitle(role.encode()[-_SHORT:].decode(errors="ignore"))
 
 
 def limit_memory(mebibytes: float) -> None:
@@ -132,20 +144,26 @@ class StopSignal:
         self._set = True
 
 
-def _limit_opencv() -> None:
+def limit_opencv() -> None:
     """Limits OpenCV to one thread, if the components have imported it."""
     if opencv := sys.modules.get("cv2"):
         opencv.setNumThreads(1)
 
 
-def run_forked(work: Callable[[StopSignal], int]) -> None:
-    """Runs `work` as the whole rest of a forked child; never returns to the parent's code."""
+def run_forked(work: Callable[[StopSignal], int], prepared: bool = False) -> None:
+    """Runs `work` as the whole rest of a forked child; never returns to the parent's code.
+
+    Args:
+        work: takes the signal to stop; returns the exit code.
+        prepared: whether the parent ran by this function, too, so that the child has inherited the preparations.
+    """
     code = 1
     try:
-        faulthandler.enable()
-        allow_core_dumps()
-        keep_memory()
-        _limit_opencv()
+        if not prepared:
+            faulthandler.enable()
+            allow_core_dumps()
+            keep_memory()
+            limit_opencv()
         code = work(StopSignal())
     except BaseException as error:
         if not isinstance(error, SystemExit):

@@ -19,7 +19,15 @@ from fwk.host.debugger import DebugRequest, debug
 from fwk.host.driver import HostDriver
 from fwk.host.hot_reload import forget_modules
 from fwk.host.log_capture import forward_logging, log_uncaught
-from fwk.host.process import StopSignal, die_with_parent, give_memory_back, limit_memory, name_process, run_forked
+from fwk.host.process import (
+    StopSignal,
+    die_with_parent,
+    give_memory_back,
+    limit_memory,
+    limit_opencv,
+    name_process,
+    run_forked,
+)
 from fwk.host.profile import Profile, ProfileRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -48,6 +56,7 @@ class Forker:
         self._run = run
         self._rings = rings
         self._sockets = sockets
+        self._descriptors = {port: each.fileno() for port, each in sockets.items()}
         self._progress = progress
         self._connection = connection
         self._children: dict[int, tuple[int, int]] = {}
@@ -55,6 +64,7 @@ class Forker:
     def serve(self, stop: StopSignal) -> int:
         """Serves requests until the supervisor closes the connection; returns the exit code."""
         preload(self._plan)
+        limit_opencv()
         gc.collect()
         give_memory_back()  # things that a fork costs, and that hosts would fill with other contents
         gc.freeze()
@@ -111,10 +121,10 @@ class Forker:
             for descriptor in (output, output_write, errors, errors_write):
                 os.close(descriptor)
             assignment = Assignment(self._plan, host, self._run, start, self._rings, fresh_code, self._progress)
-            for other_port, other in self._sockets.items():
-                if other_port != port:
-                    other.close()
-            run_forked(lambda stop: _serve_host(assignment, stop, self._sockets, debugged, profiled))
+            for other_port, descriptor in self._descriptors.items():
+                if other_port != port:  # by number: to close the objects would copy the memory in which they lie
+                    os.close(descriptor)
+            run_forked(lambda stop: _serve_host(assignment, stop, self._sockets, debugged, profiled), prepared=True)
         os.close(output_write)
         os.close(errors_write)
         self._children[pid] = (host, incarnation)
