@@ -105,7 +105,7 @@ def test_a_component_that_does_not_start_is_named(launch: Launch, folder: Path, 
     assert run.gone_within(0.5)
     assert "not started" in run.text
     assert says in run.text
-    assert "starting it again" not in run.text
+    assert "; restart in " not in run.text
     assert "c/player:" not in run.text
 
 
