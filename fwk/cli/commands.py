@@ -8,6 +8,7 @@ import typer
 from typer.core import TyperGroup
 
 from fwk.cli.arguments import SeveralNames
+from fwk.cli.examples import add_examples
 from fwk.cli.version import version
 
 MODULES = {
@@ -79,6 +80,7 @@ def _command(name: str) -> Any:
         made.command(name, cls=SeveralNames)(function)
     command = typer.main.get_command(made)
     command.name = name
+    add_examples(f"fwk {name}", command)
     return command
 
 

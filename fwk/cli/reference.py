@@ -11,6 +11,7 @@ from typing import Any, get_args, get_type_hints
 import typer
 
 from fwk.cli import commands as commands_of_fwk
+from fwk.cli.examples import EXAMPLES
 from fwk.cli.index import FILE as INDEX
 from fwk.cli.run import launch_command
 
@@ -56,7 +57,9 @@ def _section(path: str, command: Any) -> str:
     rows = [f"| `{_cell(_argument(each))}` | {_cell(each.help)} |" for each in arguments]
     rows += [f"| `{_cell(_option(each))}` | {_cell(each.help)} |" for each in options]
     table = ["| what to type | meaning |", "| --- | --- |", *rows, ""] if rows else []
-    return "\n".join([f"## `{words}`", "", cleandoc(command.help or ""), "", *table])
+    examples = EXAMPLES.get(path, ())
+    shown = ["```sh", *examples, "```", ""] if examples else []
+    return "\n".join([f"## `{words}`", "", cleandoc(command.help or ""), "", *table, *shown])
 
 
 def _argument(argument: Any) -> str:

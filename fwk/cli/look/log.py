@@ -4,6 +4,7 @@ import json
 import os
 from collections.abc import Callable
 from enum import StrEnum
+from itertools import islice
 from pathlib import Path
 from typing import Annotated
 
@@ -37,7 +38,12 @@ def log(
         ),
     ] = None,
     follow: Annotated[bool, typer.Option("--follow", "-f", help="wait for more until the run ends")] = False,
-    level: Annotated[Level, typer.Option(help="lines of this level and above")] = Level.DEBUG,
+    last: Annotated[
+        int | None, typer.Option("--last", "-n", min=0, metavar="N", help="only the last N of them")
+    ] = None,
+    level: Annotated[
+        Level, typer.Option(metavar="LEVEL", help="lines of this level and above: debug, info, warning, error")
+    ] = Level.DEBUG,
     component: Annotated[str | None, typer.Option(metavar="NAME", help="lines of this component or pattern")] = None,
     tick: Annotated[str | None, typer.Option(metavar="N|A..B", help="lines of this tick, or from A to B")] = None,
     time: Annotated[str | None, typer.Option(metavar="A..B", help="lines from A to B seconds of logical time")] = None,
@@ -55,6 +61,8 @@ def log(
 ) -> None:
     """Shows the log lines of components and framework that meet all conditions.
 
+    With `--last` and `--follow`, the last lines come first, and then every new one.
+
     In A..B one end may be left out. With `--json` a line is an object with the fields of core.log_t.
     """
     wanted = Filter(
@@ -70,9 +78,10 @@ def log(
     )
     with asking():
         path, runs = _find(run_dir, chosen)
-        for each in read_lines(path, runs if follow else lambda: False):
-            if wanted.wants(each):
-                typer.echo(json.dumps(each) if as_json else log_line(from_plain(each)))
+        skipped = 0 if last is None else max(0, sum(map(wanted.wants, read_lines(path))) - last)
+        lines = filter(wanted.wants, read_lines(path, runs if follow else lambda: False))
+        for each in islice(lines, skipped, None):
+            typer.echo(json.dumps(each) if as_json else log_line(from_plain(each)))
 
 
 def _find(run_dir: Path | None, chosen: str | None) -> tuple[Path, Callable[[], bool]]:

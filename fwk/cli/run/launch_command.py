@@ -14,6 +14,7 @@ from fwk.bus.port_lock import PortLock
 from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
+from fwk.cli.examples import epilog
 from fwk.cli.output import BAD_INPUT, notice
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
@@ -47,7 +48,7 @@ def _run_name(text: str) -> str:
     return text
 
 
-@app.command(cls=SeveralNames)
+@app.command(cls=SeveralNames, epilog=epilog("fwk-launch"))
 def launch(
     file: Annotated[str, typer.Argument(metavar="FILE", help="launch file, looked for as given, then in launch/")],
     ticks: Annotated[int | None, typer.Option(min=1, metavar="N", help="stop after N ticks")] = None,

@@ -1,12 +1,17 @@
 """`fwk` finds its commands in modules."""
 
+import shlex
 import subprocess
 import sys
+from typing import Any
 
 import pytest
+from typer.main import get_command
 from typer.testing import CliRunner
 
 from fwk.cli.commands import MODULES, app
+from fwk.cli.examples import EXAMPLES
+from fwk.cli.run import launch_command
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -15,6 +20,24 @@ def test_every_command_explains_itself(name: str) -> None:
     assert result.exit_code == 0
     assert f"{name} " in result.output
     assert name in CliRunner().invoke(app, ["--help"]).output
+
+
+@pytest.mark.parametrize(
+    ("path", "example"), [(path, each) for path, examples in EXAMPLES.items() for each in examples]
+)
+def test_every_example_can_be_typed(path: str, example: str) -> None:
+    command: Any = get_command(launch_command.app if path == "fwk-launch" else app)
+    words = shlex.split(example.removeprefix('eval "$(').removesuffix(')"'))
+    for word in path.split()[1:]:
+        command = command.commands[word]
+    assert words[: len(path.split())] == path.split()
+    command.make_context(path, words[len(path.split()) :])  # reads the words and runs nothing
+
+
+def test_help_ends_with_examples() -> None:
+    text = CliRunner().invoke(app, ["bb", "show", "--help"]).output
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    assert lines[-3:] == ["Examples:", "fwk bb show cyan1/world_model", "fwk bb show cyan1/world_model --json"]
 
 
 def test_an_unknown_command_is_refused_with_the_nearest() -> None:

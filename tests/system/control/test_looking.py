@@ -150,6 +150,10 @@ def test_fwk_log_follows_and_filters(run: Steered) -> None:
         assert "asked to restart r/finder" in follow.stdout.readline()
         (line,) = [json.loads(each) for each in run.fwk("log", "--file", "control.py", "--json").splitlines()]
         assert (line["component"], line["level"]) == ("supervisor", "info")
+        earlier = ("--tick", f"..{line['tick'] - 1}")
+        lines = run.fwk("log", *earlier).splitlines()
+        assert run.fwk("log", *earlier, "--last", "1").splitlines() == lines[-1:] != []
+        assert run.fwk("log", *earlier, "-n", str(len(lines) + 1)).splitlines() == lines
         assert run.fwk("log", "--since", "0") == ""
         conditions = ("--since", "600", "--line", str(line["line"]), "--tick", f"{line['tick']}-{line['tick'] + 1}")
         assert "asked" in run.fwk("log", *conditions)

@@ -1,0 +1,66 @@
+"""Examples at the end of each command's help and in docs/commands.md."""
+
+from typing import Any
+
+EXAMPLES = {
+    "fwk-launch": (
+        "fwk-launch soccer.yaml --ticks 1200 --speed max --seed 7",
+        "fwk-launch soccer.yaml --run red --detach",
+        "fwk-launch soccer.yaml --set cyan1/omni_ball.deviation_px=2 --without 'magenta*'",
+    ),
+    "fwk check": ("fwk check soccer.yaml", "fwk check soccer.yaml --settings --set cyan1/omni_ball.deviation_px=2"),
+    "fwk ps": ("fwk ps --json",),
+    "fwk status": ("fwk status", "fwk status 'cyan1/*' --run red", "fwk status cyan1/world_model"),
+    "fwk top": ("fwk top", "fwk top --once --since start"),
+    "fwk start": ("fwk start cyan1/world_model",),
+    "fwk stop": ("fwk stop 'cyan2/*'", "fwk stop --all --run red"),
+    "fwk restart": ("fwk restart cyan1/world_model",),
+    "fwk reload": ("fwk reload 'cyan1/*'",),
+    "fwk load": ("fwk load cyan1/omni_ball",),
+    "fwk unload": ("fwk unload cyan1/camera --force",),
+    "fwk kill": ("fwk kill cyan1/world_model",),
+    "fwk debug": ("fwk debug cyan1/world_model",),
+    "fwk pause": ("fwk pause",),
+    "fwk resume": ("fwk resume --run red",),
+    "fwk step": ("fwk step", "fwk step 20"),
+    "fwk speed": ("fwk speed 0.5", "fwk speed max"),
+    "fwk config list": ("fwk config list 'cyan1/*'",),
+    "fwk config get": ("fwk config get cyan1/omni_ball.deviation_px",),
+    "fwk config set": ("fwk config set cyan1/omni_ball.deviation_px=2",),
+    "fwk bb list": ("fwk bb list 'cyan1/*'",),
+    "fwk bb show": ("fwk bb show cyan1/world_model", "fwk bb show cyan1/world_model --json"),
+    "fwk bb watch": ("fwk bb watch world/game_state",),
+    "fwk log": (
+        "fwk log -f --level warning",
+        "fwk log --last 20 --component 'cyan1/*'",
+        "fwk log --tick 100..200 --text 'lost|late'",
+    ),
+    "fwk note": ("fwk note 'the ball was taken away'",),
+    "fwk send": ("fwk send rosy/motor_command vx_m_s=0.2 enabled=true",),
+    "fwk replay": (
+        "fwk replay log.lcm --verify",
+        "fwk replay log.lcm --only 'cyan1/*' --from-tick 100",
+        "fwk replay log.lcm --debug cyan1/world_model --from-tick 500",
+    ),
+    "fwk compare": ("fwk compare before.lcm after.lcm",),
+    "fwk log-info": ("fwk log-info log.lcm",),
+    "fwk runs list": ("fwk runs list",),
+    "fwk video": ("fwk video log.lcm --out match.mp4",),
+    "fwk spy": ("fwk spy",),
+    "fwk doctor": ("fwk doctor",),
+    "fwk completion": ('eval "$(fwk completion bash)"',),
+}
+"""Command, as it is typed, to examples of it."""
+
+
+def epilog(path: str) -> str | None:
+    """Returns the end of a command's help; None without examples."""
+    examples = EXAMPLES.get(path)
+    return "\n\n".join(["Examples:", *examples]) if examples else None
+
+
+def add_examples(path: str, command: Any) -> None:
+    """Adds examples to the help of a command, or of each command of a group."""
+    command.epilog = epilog(path)
+    for name, below in getattr(command, "commands", {}).items():
+        add_examples(f"{path} {name}", below)
