@@ -94,7 +94,7 @@ class _Oracle:
             elif kind == "told":
                 self._visible = dict(self._taken)
                 self._told[record.tick] = self._visible
-            elif kind == "missed" and second in self._channels:  # or it was opened at run time
+            elif kind == "missed" and second in self._channels:  # or it is a dynamic channel
                 self._missed.add((first, self._channels[second]["name"], third))
             elif kind == "started":
                 self._incarnation[first] = second

@@ -184,7 +184,7 @@ def test_an_impossible_mark_is_refused_and_takes_no_memory(log: Path) -> None:
 def test_a_component_failing_in_replay_is_named_with_its_place(log: Path) -> None:
     entries = [(each.channel, each.data) for each in LogReader(log)]
     cut = [(channel, data[:50] if channel == "r/imu" else data) for channel, data in entries]
-    with pytest.raises(RecordingError, match=r"r/thinker fails in tick 1 .*(?s:.*)in loop"):
+    with pytest.raises(RecordingError, match=r"r/thinker fails in tick 1, .*(?s:.*)in loop"):
         replay(write(log, cut))
 
 

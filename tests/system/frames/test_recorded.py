@@ -142,7 +142,7 @@ def test_frames_lost_on_a_full_disk_are_reported(
     assert len({(picture.camera, picture.frame) for picture in pictures_in(log)}) == len(list(pictures_in(log)))
     assert max(picture.tick for picture in pictures_in(log)) > room_at
     told = replayed(eyes, log=log, code=2)
-    said = re.search(r"messages are missing after tick (\d+).*replay what is before it", told)
+    said = re.search(r"messages are missing after tick (\d+).*replay the ticks before it", told)
     assert said, told
     assert int(said[1]) > 5
     assert "equal" in replayed(eyes, "--to-tick", said[1], log=log)
