@@ -48,8 +48,8 @@ REAL_TIME_PATIENCE_US = 100_000
 """The same in real time, in which programs outside need the newest messages in time."""
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost a report."""
-SECOND_REQUEST_US = 20_000
-LONGEST_REQUEST_US = 100_000
+SECOND_REQUEST_US = 5_000
+LONGEST_REQUEST_US = 20_000
 
 
 class Gateway:
