@@ -1,11 +1,14 @@
 """Joins the obstacles of the omnidirectional camera with those of the stereo pair."""
 
+import math
+
 import numpy as np
 from pydantic import Field
 
 from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
+from procs.model.frames import plausible
 from procs.model.units import US_PER_S
 
 
@@ -46,7 +49,7 @@ def joined(around: list[obstacle_t], ahead: list[obstacle_t], same_m: float) -> 
     left = list(ahead)
     made = []
     for one in around:
-        distances_m = [float(np.hypot(one.x_m - other.x_m, one.y_m - other.y_m)) for other in left]
+        distances_m = [math.dist((one.x_m, one.y_m), (other.x_m, other.y_m)) for other in left]
         nearest = min(range(len(left)), key=distances_m.__getitem__, default=-1)
         near = nearest >= 0 and distances_m[nearest] <= same_m
         made.append(_mean(one, left.pop(nearest)) if near else one)
@@ -68,6 +71,6 @@ def _mean(one: obstacle_t, other: obstacle_t) -> obstacle_t:
 
 def _covariance(obstacle: obstacle_t) -> Floats | None:
     """Returns the covariance (2, 2) in m²; None for one that cannot be."""
-    covariance_m2 = np.array(obstacle.covariance_m2, np.float64)
-    sound = bool(np.isfinite(covariance_m2).all()) and covariance_m2[0, 0] > 0 and np.linalg.det(covariance_m2) > 0
-    return covariance_m2 if sound else None
+    (xx, xy), (yx, yy) = obstacle.covariance_m2
+    sound = plausible(xx, xy, yx, yy) and xx > 0 and xx * yy > xy * yx
+    return np.array(((xx, xy), (yx, yy))) if sound else None

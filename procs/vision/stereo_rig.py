@@ -1,11 +1,13 @@
 """Calibration of a forward pair of pinhole cameras, level and parallel; both frames lie side by side in one picture."""
 
+import cv2
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import Field
 
 from fwk import Config
 from procs.model.algebra import Floats
+from procs.vision.framing import scaled
 
 Grey = NDArray[np.uint8]
 """Height x width."""
@@ -38,12 +40,7 @@ class StereoRig(Config):
         return (np.arange(self.height_px) - (self.height_px - 1) / 2) / self.focal_px
 
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
-        """Returns the frames of the left and the right camera.
-
-        Raises:
-            ValueError: the picture does not have the size of a pair.
-        """
-        if pixels.shape != (self.height_px, 2 * self.width_px):
-            shape = " x ".join(map(str, pixels.shape))
-            raise ValueError(f"the frame is {shape}; a pair is {self.height_px} x {2 * self.width_px}, grey")
-        return pixels[:, : self.width_px], pixels[:, self.width_px :]
+        """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured."""
+        grey = cv2.cvtColor(pixels, cv2.COLOR_BGR2GRAY) if pixels.ndim == 3 else pixels
+        pair = scaled(np.asarray(grey, np.uint8), 2 * self.width_px, self.height_px)
+        return pair[:, : self.width_px], pair[:, self.width_px :]

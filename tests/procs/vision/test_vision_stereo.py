@@ -2,6 +2,7 @@
 
 import math
 
+import cv2
 import numpy as np
 import pytest
 
@@ -79,11 +80,15 @@ def test_robot_beside_or_behind_is_not_seen() -> None:
     assert seen((-2.0, 0.0), (0.3, 2.0)) == []
 
 
-def test_picture_of_another_size_is_refused() -> None:
+def test_picture_of_another_size_is_scaled() -> None:
+    frame = RENDERER.render(
+        OWN, [(OWN.x_m + 2.0 * math.cos(OWN.heading_rad), OWN.y_m + 2.0 * math.sin(OWN.heading_rad))]
+    )
     bench = Bench(StereoObs)
-    bench.show("stereo_image", np.zeros((200, 400), np.uint8))
-    with pytest.raises(ValueError, match="the frame is 200 x 400; a pair is 200 x 800, grey"):
-        bench.iterate()
+    bench.show("stereo_image", cv2.cvtColor(cv2.resize(frame, (1600, 400)), cv2.COLOR_GRAY2BGR))
+    bench.iterate()
+    (found,) = bench.port("stereo_obstacles").sent[-1].obstacles
+    assert (found.x_m, found.y_m) == pytest.approx((2.0, 0.0), abs=0.15)
 
 
 def test_fusion_weights_by_covariance_and_keeps_the_rest() -> None:
