@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 
 from procs.model.algebra import Floats
+from procs.model.frames import Indices
 from procs.model.robot import ROBOT
 from procs.vision.obstacle_finder import Obstacle
 from procs.vision.stereo_rig import Grey, StereoRig
@@ -65,7 +66,7 @@ class StereoFinder:
         near_m = np.nanmedian(np.where(upright, ahead_m, np.nan)[:, columns], axis=0)
         return [self._obstacle(columns[part], near_m[part]) for part in self._bodies(columns, near_m)]
 
-    def _bodies(self, columns: Floats, near_m: Floats) -> Iterator[slice]:
+    def _bodies(self, columns: Indices, near_m: Floats) -> Iterator[slice]:
         steps = (np.diff(columns) > _COLUMN_GAP) | (np.abs(np.diff(near_m)) > 2 * _SAME_PART * self.radius_m * 2)
         edges = [0, *(np.flatnonzero(steps) + 1).tolist(), len(columns)]
         for first, last in itertools.pairwise(edges):
@@ -73,7 +74,7 @@ class StereoFinder:
             if last - first >= 0.4 * width_px:
                 yield slice(first, last)
 
-    def _obstacle(self, columns: Floats, near_m: Floats) -> Obstacle:
+    def _obstacle(self, columns: Indices, near_m: Floats) -> Obstacle:
         rig = self.rig
         points_m = np.column_stack((near_m, -rig.columns[columns] * near_m))
         first, last = (math.atan2(points_m[end, 1], points_m[end, 0]) for end in (0, -1))

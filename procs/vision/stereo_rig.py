@@ -32,12 +32,12 @@ class StereoRig(Config):
     @property
     def columns(self) -> Floats:
         """(width_px): sideways part of each column's direction, to the right, for one metre ahead."""
-        return (np.arange(self.width_px) - (self.width_px - 1) / 2) / self.focal_px
+        return np.asarray((np.arange(self.width_px, dtype=np.float64) - (self.width_px - 1) / 2) / self.focal_px)
 
     @property
     def rows(self) -> Floats:
         """(height_px): downward part of each row's direction, for one metre ahead."""
-        return (np.arange(self.height_px) - (self.height_px - 1) / 2) / self.focal_px
+        return np.asarray((np.arange(self.height_px, dtype=np.float64) - (self.height_px - 1) / 2) / self.focal_px)
 
     def halves(self, pixels: Grey) -> tuple[Grey, Grey]:
         """Returns the frames of the left and the right camera from both side by side, in any size, grey or coloured."""

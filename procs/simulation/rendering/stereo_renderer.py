@@ -87,4 +87,4 @@ def _level(column: Indices, row: Indices) -> Floats:
     """Returns a level from 10 to 137 by the numbers of a place."""
     mixed = (column * 374761393 + row * 668265263) & 0xFFFFFFFF
     mixed = ((mixed ^ (mixed >> 13)) * 1274126177) & 0xFFFFFFFF
-    return 10.0 + ((mixed ^ (mixed >> 16)) & 127)
+    return np.asarray(((mixed ^ (mixed >> 16)) & 127) + 10, np.float64)
