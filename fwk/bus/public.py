@@ -17,7 +17,11 @@ _DATAGRAMS_AT_ONCE = 5000  # more fragments than the largest message has
 
 
 class PublicBus:
-    """Publishes and receives on one LCM bus; does not receive its own messages."""
+    """Publishes and receives on one LCM bus; does not receive its own messages.
+
+    Raises:
+        OSError: another program has the port, or the machine has no multicast.
+    """
 
     def __init__(self, url: str) -> None:
         group, port, ttl = parse_url(url)
@@ -25,9 +29,20 @@ class PublicBus:
         self._number = itertools.count()
         self._leaves_machine = ttl > 0
         self._sender = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._open(group, port, ttl)
+        except OSError:
+            self._sender.close()
+            self._receiver.close()
+            raise
+        _ignore_source(self._receiver, self._sender.getsockname()[1])
+        self._assembler = wire.Assembler()
+        self._listeners = Listeners(port, os.fstat(self._receiver.fileno()).st_ino)
+
+    def _open(self, group: str, port: int, ttl: int) -> None:
         self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, ttl)
         self._sender.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, BUFFER_BYTES)
-        self._receiver = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         self._receiver.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, BUFFER_BYTES)
         self._receiver.bind((group, port))
@@ -39,9 +54,6 @@ class PublicBus:
             self._sender.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_IF, socket.inet_aton(LOOPBACK))
             self._sender.sendto(b"", (group, port))
             self._join(group, LOOPBACK)
-        _ignore_source(self._receiver, self._sender.getsockname()[1])
-        self._assembler = wire.Assembler()
-        self._listeners = Listeners(port, os.fstat(self._receiver.fileno()).st_ino)
 
     def fileno(self) -> int:
         """Returns the descriptor of the receiving socket."""

@@ -15,6 +15,7 @@ from fwk.control.address import gateway_address, supervisor_address
 from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from fwk.model.public_url import parse_url
 
 _SIOCGIFFLAGS, _IFF_UP = 0x8913, 1
 _PORTS_NAMED = 3
@@ -43,9 +44,10 @@ def check_machine(plan: Plan) -> None:
         try:
             PublicBus(plan.public_url).close()
         except OSError as error:
+            owner = port_owner(parse_url(plan.public_url)[1]) if error.errno == errno.EADDRINUSE else ""
             raise MachineError(
-                f"the public bus {plan.public_url} cannot be opened: {error.strerror}; 'fwk doctor' says what to type, "
-                "or write 'public_url: \"\"' into the launch file"
+                f"the public bus {plan.public_url} cannot be opened: {error.strerror}{owner}; 'fwk doctor' says what "
+                "to type, or write 'public_url: \"\"' into the launch file"
             ) from error
 
 

@@ -93,6 +93,13 @@ def test_a_public_bus_that_cannot_be_opened_is_named(plan: Plan, monkeypatch: py
         check_machine(replace(plan, public_url="udpm://239.255.76.67:7667?ttl=0"))
 
 
+def test_a_public_bus_that_is_taken_names_the_program(plan: Plan, free_port: int) -> None:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("", free_port))
+        with pytest.raises(MachineError, match=rf"cannot be opened: Address already in use \(pid {os.getpid()}: .*\);"):
+            check_machine(replace(plan, bus_port=free_port + 64, public_url=f"udpm://239.255.76.67:{free_port}?ttl=0"))
+
+
 def test_too_few_open_files_are_named(plan: Plan, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(resource, "getrlimit", lambda _: (24, 24))
     with pytest.raises(MachineError, match=r"about \d+ open files in a process, 24 are allowed; .* ulimit -n 1024"):
