@@ -26,7 +26,7 @@ class Stamp:
 class Reads(Generic[T]):
     """Reader of one channel.
 
-    Its content does not change during an iteration, whatever arrives meanwhile.
+    Its content does not change during an iteration, whatever arrives in the meantime.
     Before the first message `value` is the type's zero and `has_value` is false.
     """
 

@@ -78,14 +78,14 @@ class RunSettings:
             if "." not in text.partition("=")[0]:
                 problems.add("", "", f"'{text}' is not NAME.SETTING=VALUE; values of the run as a whole cannot change")
         typed = overrides([text for text in sets if "." in text.partition("=")[0]], problems)
-        wishes = typed.at("config").value if typed.child("config") else {}
+        changes = typed.at("config").value if typed.child("config") else {}
         found = [
             made
             for component in self._plan.components
-            if (made := self._check_component(component, _layers(component.name, wishes), problems))
+            if (made := self._check_component(component, _layers(component.name, changes), problems))
         ]
         names = [component.name for component in self._plan.components]
-        for pattern in wishes:
+        for pattern in changes:
             if not any(matches(name, pattern) for name in names):
                 problems.add("", "", f"no component '{pattern}'; {nearest(pattern, names)}")
         try:
@@ -154,8 +154,8 @@ def _means(pattern: str, row: dict[str, Any]) -> bool:
     return matches(row["component"], component) and (not setting or own == setting or own.startswith(f"{setting}."))
 
 
-def _layers(name: str, wishes: dict[str, Node]) -> list[Node]:
-    return [node for pattern, node in wishes.items() if matches(name, pattern)]
+def _layers(name: str, changes: dict[str, Node]) -> list[Node]:
+    return [node for pattern, node in changes.items() if matches(name, pattern)]
 
 
 def _config_class(component: ComponentPlan) -> type[Config]:

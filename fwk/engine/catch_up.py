@@ -3,7 +3,7 @@
 import sys
 
 AWAY_TICKS = 16
-"""Writers keep messages for so many ticks; a component that took no part for longer joins anew."""
+"""Writers keep messages for so many ticks; a component that took no part for longer joins again."""
 
 
 class CatchUp:

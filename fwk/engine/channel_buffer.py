@@ -13,7 +13,7 @@ class ChannelBuffer:
         """Highest visible sequence number."""
         self.floor = 0
         """Messages up to this number were taken or are no longer wanted."""
-        self.missed: list[int] = []
+        self.lost: list[int] = []
         """Sequence numbers of messages that were visible and never came."""
         self._held: dict[int, bytes] = {}
         self._newest = 0
@@ -53,7 +53,7 @@ class ChannelBuffer:
             return [data]
         taken = [held.pop(number, b"") for number in range(floor + 1, self.mark + 1)]
         if not all(taken):
-            self.missed += [number for number, data in enumerate(taken, floor + 1) if not data]
+            self.lost += [number for number, data in enumerate(taken, floor + 1) if not data]
             taken = [data for data in taken if data]
         return taken
 

@@ -62,8 +62,8 @@ class ChannelGrants:
     def decide(self, busy: Callable[[int], bool] = lambda _: False) -> tuple[list[Fact], list[BlackboardEvent]]:
         """Decides at a boundary; returns the facts, and the blackboard events that follow from them.
 
-        A component that is `busy` with an iteration of an earlier tick, or with finalizing, is served afterwards: what
-        it writes meanwhile still counts.
+        A component that is `busy` with an iteration of an earlier tick, or with finalizing, is served
+        afterwards: its last messages still count.
         """
         self._facts: list[Fact] = []
         self._events: list[BlackboardEvent] = []

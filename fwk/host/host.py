@@ -229,7 +229,7 @@ class Host:
         self._answered = this
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
-        """Fetches until everything visible is here; returns False if the process is asked to stop meanwhile."""
+        """Fetches until everything visible is here; returns False if the process is asked to stop."""
         self._ignore_ticks(True)
         complete = yield from self.inputs.fetch(lacking, self._handle_own)
         self._ignore_ticks(False)

@@ -191,9 +191,9 @@ class Inputs:
         """Returns channel and sequence number of visible messages that never came, each once."""
         found = []
         for index, buffer in self._buffers.items():
-            if buffer.missed:
-                found += [(index, number) for number in buffer.missed]
-                buffer.missed = []
+            if buffer.lost:
+                found += [(index, number) for number in buffer.lost]
+                buffer.lost = []
         return found
 
     def _fetch_all(self, lacking: Sequence[ChannelBuffer], from_writer: bool) -> None:

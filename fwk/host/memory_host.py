@@ -101,7 +101,7 @@ class MemoryHost:
         """Delivers a message of the channel with this index; channels that no component reads are ignored."""
         port = self._ports.channel(channel)
         self._deliver(port, data)
-        if port in self._expected:  # also if a socket is open: it may be closed and opened anew
+        if port in self._expected:  # also if a socket is open: it may be closed and opened again
             self._expected[port][1].append(data)
 
     @property

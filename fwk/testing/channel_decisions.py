@@ -15,26 +15,26 @@ class ChannelDecisions:
     def __init__(self, plan: Plan, runners: Mapping[str, Runner], sent: dict[str, list[bytes]]) -> None:
         self._runners = {each.index: runners[each.name] for each in plan.components if each.opens}
         self._sent = sent
-        self._openings = ChannelGrants(plan)
+        self._grants = ChannelGrants(plan)
         self._table = ChannelTable(plan)
         self.types: dict[str, type[messages.Message]] = {}
         """Types of the opened channels, by name."""
         for component in plan.components:
-            self._openings.came(component.index, 1)
+            self._grants.came(component.index, 1)
         for runner in self._runners.values():
             runner.blackboard._first(self._table)
 
     def ask(self, tick: int, place: int, runner: Runner) -> None:
         """Takes the requests of an iteration."""
-        wishes = runner.blackboard._take()
-        if wishes:
-            self._openings.ask(tick, place, runner.name, wishes)
+        requests = runner.blackboard._take()
+        if requests:
+            self._grants.ask(tick, place, runner.name, requests)
 
     def decide(self) -> Iterator[tuple[str, str, int]]:
         """Decides between two ticks; yields component, channel, index of its first message; -1: it ceases to read."""
-        if not self._openings.asked:
+        if not self._grants.asked:
             return
-        facts, _ = self._openings.decide()
+        facts, _ = self._grants.decide()
         for fact in map(self._numbered, facts):
             events = self._table.apply([fact])
             for index, runner in self._runners.items():

@@ -44,7 +44,7 @@ def write_start(folder: Path, plan: Plan, name: str) -> None:
 
 
 def write_result(folder: Path, exit_code: int, reason: str, ticks: int, wall_s: float) -> None:
-    """Writes the result of a run; a run directory that was deleted meanwhile stays deleted."""
+    """Writes the result of a run; a run directory that was deleted during the run stays deleted."""
     result = {"exit_code": exit_code, "result": reason, "ticks": ticks, "duration_s": wall_s, "ended_us": wall_us()}
     with contextlib.suppress(OSError):
         (folder / RESULT_FILE).write_text(json.dumps(result, indent=1) + "\n")

@@ -65,5 +65,5 @@ class ClockControl:
         return lambda: self.now() if loop.tick > last or (loop.tick == last and loop.paused) else self._overtaken()
 
     def _overtaken(self) -> dict[str, Any] | None:
-        """Returns the reply if a pause issued meanwhile has taken precedence."""
+        """Returns the reply if a later pause has taken precedence."""
         return self.now() if self._run_clock.stands and self._loop.paused else None

@@ -44,7 +44,7 @@ class ProcessStarter(Protocol):
         ...
 
     def signal(self, pid: int, number: int) -> None:
-        """Signals a host process; a process that has ended meanwhile is left alone."""
+        """Signals a host process; does nothing if the process has ended."""
         ...
 
     def wake(self) -> None:

@@ -79,7 +79,7 @@ class Zygote:
         self._link.send(StartRequest(host, start, fresh_code))
 
     def signal(self, pid: int, number: int) -> None:
-        """Signals a host process; a process that has ended meanwhile is left alone."""
+        """Signals a host process; does nothing if the process has ended."""
         self._link.send(SignalRequest(pid, number))
 
     def events(self) -> list[Started | Ended]:

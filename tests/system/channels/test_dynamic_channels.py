@@ -14,7 +14,7 @@ from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, fwk, pause, replayed, write_files
 from tests.programs.control_system import Steered
-from tests.programs.opening_system import brief, market
+from tests.programs.dynamic_channels_system import brief, market
 
 pytestmark = pytest.mark.system
 

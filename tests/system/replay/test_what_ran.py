@@ -11,7 +11,7 @@ from tests.harness import commands
 from tests.harness.commands import BIN
 from tests.harness.fixtures import Launch
 from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
-from tests.programs.opening_system import market
+from tests.programs.dynamic_channels_system import market
 
 pytestmark = pytest.mark.system
 
