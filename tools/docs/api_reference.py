@@ -1,6 +1,7 @@
 """The API reference: one page a subject, each with directives that mkdocstrings turns into documentation."""
 
 from importlib import import_module
+from typing import get_args
 
 import fwk
 import fwk.testing
@@ -59,7 +60,8 @@ def _page(title: str, package: str, names: list[str]) -> str:
 
 def _body(package: str, name: str) -> str:
     """Returns a directive for mkdocstrings; for a name of another library a sentence."""
-    source = str(getattr(import_module(package), name).__module__).partition(".")[0]
-    if source != "fwk":
+    found = getattr(import_module(package), name)
+    source = str(found.__module__).partition(".")[0]
+    if source != "fwk" and not get_args(found):  # an alias of types has the module of its origin
         return f"`{name}` of the library `{source}`, exported here so that components import from `fwk` alone."
     return f"::: {package}.{name}\n    options:\n      show_root_heading: false"
