@@ -9,7 +9,7 @@ from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
 
 
 class Action(BaseModel):
-    """One deed of the crew; exactly one of the three is given."""
+    """Action of the crew; exactly one of the three is given."""
 
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
 

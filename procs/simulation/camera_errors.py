@@ -1,4 +1,4 @@
-"""How far the simulated camera is from ideal, for each preset."""
+"""Deviation of the simulated camera from the ideal, for each preset."""
 
 from pydantic import BaseModel, ConfigDict
 

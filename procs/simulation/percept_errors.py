@@ -1,4 +1,4 @@
-"""How far percepts drawn from the truth are from ideal, for each preset; fitted to those of the rendered path.
+"""Deviation from the ideal of percepts drawn from the truth, for each preset; fitted to those of the rendered path.
 
 Deviations are in pixels of the mirror's picture, so that they grow with distance as those of the detectors do. Rates of
 phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator.

@@ -38,7 +38,7 @@ class PerceptsConfig(Config):
     mirror: MirrorConfig = MirrorConfig()
     """The camera that is imitated."""
     realism: Realism = "realistic"
-    """How far the percepts are from ideal: none, friendly, realistic or harsh."""
+    """Deviation of the percepts from the ideal: none, friendly, realistic or harsh."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
     """From the exposure until the percepts are published."""
     shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)

@@ -1,4 +1,4 @@
-"""What a robot can see of the truth: bodies in the way hide what is behind them."""
+"""Visible part of the truth for a robot: bodies hide everything behind them."""
 
 import math
 

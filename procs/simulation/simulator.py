@@ -49,7 +49,7 @@ class SimulatorConfig(Config):
     physics: PhysicsSettings = PhysicsSettings()
     """Motors, mouths, kickers."""
     realism: Realism = "realistic"
-    """How far actuators and sensors are from ideal: none, friendly, realistic or harsh."""
+    """Deviation of actuators and sensors from the ideal: none, friendly, realistic or harsh."""
     errors: Changes = {}
     """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
     starts: dict[str, tuple[float, float, float]] = {}

@@ -26,7 +26,7 @@ class StereoCameraConfig(Config):
     rig: StereoRig = StereoRig()
     """Calibration of the pair, as the detector has it."""
     realism: Realism = "realistic"
-    """How far the cameras are from ideal: none, friendly, realistic or harsh."""
+    """Deviation of the cameras from the ideal: none, friendly, realistic or harsh."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
     """From the exposure until the frame is published."""
     noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)

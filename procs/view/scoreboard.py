@@ -15,7 +15,7 @@ GAME_STATE = "world/game_state"
 TRUTH = "world/ground_truth"
 MEASURES = "world/field"
 CHANNELS = (GAME_STATE, TRUTH, MEASURES)
-"""What the display sends here."""
+"""Channels whose messages the display passes to this module."""
 
 STATES = {
     game_state_t.FROZEN: "frozen",

@@ -27,7 +27,7 @@ class Encoders:
 
 
 class Inertial(NamedTuple):
-    """What an inertial measurement unit reads."""
+    """Readings of an inertial measurement unit."""
 
     heading_rad: float
     """-pi..pi, by the compass."""

@@ -26,7 +26,7 @@ class HandlingSettings(_Settings):
     reach_m: PositiveFloat = 0.03
     """Widest gap between ball and mouth at which ball handling, kicker and light barrier act."""
     half_width_m: PositiveFloat = 0.10
-    """How far beside the middle of the mouth the ball may be."""
+    """Largest distance of the ball from the middle of the mouth, sideways."""
     highest_m: PositiveFloat = 0.1
     """Height of the ball above the ground at which it is no longer in the mouth."""
     pull_m_s2: PositiveFloat = 15.0
@@ -45,7 +45,7 @@ class KickerSettings(_Settings):
 
 
 class PhysicsSettings(_Settings):
-    """What the world's motion depends on, besides field, robots and ball."""
+    """Parameters of the world's motion, besides field, robots and ball."""
 
     drive: DriveSettings = DriveSettings()
     handling: HandlingSettings = HandlingSettings()
