@@ -34,7 +34,7 @@ class CameraConfig(Config):
     pitch_deg: float = Setting(default=0.0, ge=-5.0, le=5.0)
     """Uncalibrated tilt of the mirror about the robot's y axis."""
     realism: Realism = "realistic"
-    """Deviation of the camera from the ideal: none, friendly, realistic or harsh. Settings that are not null override it."""
+    """Deviation of the camera from the ideal: none, friendly, realistic or harsh. Non-null settings override it."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
     """From the exposure until the frame is published; rendering shows the world as it was then."""
     shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)

@@ -13,7 +13,7 @@ class RadioConfig(Config):
     """Quality of the radio."""
 
     realism: Realism = "realistic"
-    """Deviation of the radio from the ideal: none, friendly, realistic or harsh. Settings that are not null override it."""
+    """Deviation of the radio from the ideal: none, friendly, realistic or harsh. Non-null settings override it."""
     loss: float | None = Field(default=None, ge=0.0, le=1.0)
     """Probability that a message does not reach a mate, independent for each mate; 1 switches the radio off."""
     delay_s: float | None = Field(default=None, ge=0.0)
