@@ -29,7 +29,7 @@ class CameraErrors(BaseModel):
 PRESETS: dict[Realism, CameraErrors] = {
     "none": CameraErrors(),
     "friendly": CameraErrors(latency_s=0.02, shake_px=0.1, shake_px_per_m_s=0.15, noise_levels=3.0),
-    "realistic": CameraErrors(latency_s=0.035, shake_px=0.2, shake_px_per_m_s=0.3, noise_levels=5.0, flicker=0.02),
+    "realistic": CameraErrors(latency_s=0.035, shake_px=0.2, shake_px_per_m_s=0.3, noise_levels=5.0),
     "harsh": CameraErrors(
         latency_s=0.07,
         shake_px=0.4,

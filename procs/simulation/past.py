@@ -57,8 +57,10 @@ def _robot(earlier: true_robot_t, later: true_robot_t, share: float, span_s: flo
         return later
     made = true_robot_t()
     made.name, made.team, made.number = later.name, later.team, later.number
-    for name in ("x_m", "y_m", "vx_m_s", "vy_m_s", "omega_rad_s"):
-        then, now = getattr(earlier, name), getattr(later, name)
-        setattr(made, name, then + share * (now - then))
+    rest = 1.0 - share
+    made.x_m, made.y_m = rest * earlier.x_m + share * later.x_m, rest * earlier.y_m + share * later.y_m
+    made.vx_m_s = rest * earlier.vx_m_s + share * later.vx_m_s
+    made.vy_m_s = rest * earlier.vy_m_s + share * later.vy_m_s
+    made.omega_rad_s = rest * earlier.omega_rad_s + share * later.omega_rad_s
     made.heading_rad = math.remainder(earlier.heading_rad + share * math.remainder(turn_rad, math.tau), math.tau)
     return made

@@ -1,0 +1,41 @@
+"""The true world a short time ago: between two messages, after a placement, before the first one."""
+
+import math
+
+import pytest
+
+from lcmtypes.soccer import ground_truth_t, true_robot_t
+from procs.simulation.past import Past
+
+
+def truth(time_us: int, x_m: float, heading_rad: float, ball_x_m: float) -> ground_truth_t:
+    made, robot = ground_truth_t(), true_robot_t()
+    made.header.time_us, made.ball_x_m, made.ball_z_m = time_us, ball_x_m, 0.2
+    robot.name, robot.team, robot.number = "cyan1", "cyan", 1
+    robot.x_m, robot.heading_rad, robot.vx_m_s = x_m, heading_rad, 2.0
+    made.robots = [robot]
+    return made
+
+
+def past(*worlds: ground_truth_t) -> Past:
+    made = Past()
+    for world in worlds:
+        made.add(world)
+    return made
+
+
+def test_between_two_messages_everything_moves_straight() -> None:
+    world = past(truth(50_000, 1.0, math.pi - 0.1, 0.0), truth(100_000, 1.1, -math.pi + 0.1, 0.4)).at(65_000)
+    robot = world.robots[0]
+    assert (robot.x_m, robot.vx_m_s, robot.team, robot.number) == (pytest.approx(1.03), 2.0, "cyan", 1)
+    assert robot.heading_rad == pytest.approx(math.pi - 0.04)
+    assert (world.ball_x_m, world.ball_z_m) == pytest.approx((0.12, 0.2))
+
+
+def test_what_was_placed_is_not_seen_on_the_way() -> None:
+    world = past(truth(50_000, -3.0, 0.0, 5.0), truth(100_000, 3.0, 0.0, -5.0)).at(65_000)
+    assert (world.robots[0].x_m, world.ball_x_m) == (3.0, -5.0)
+
+
+def test_before_the_first_message_the_world_is_as_in_it() -> None:
+    assert past(truth(50_000, 1.0, 0.0, 0.0), truth(100_000, 1.1, 0.0, 0.0)).at(10_000).robots[0].x_m == 1.0
