@@ -30,6 +30,7 @@ MODULES = {
     "log-info": "recordings.log_info",
     "runs": "recordings.runs",
     "video": "recordings.video",
+    "eval": "recordings.evaluate",
     "cam": "look.cam",
     "spy": "look.spy",
     "doctor": "check.doctor",

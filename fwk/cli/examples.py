@@ -46,6 +46,10 @@ EXAMPLES = {
     "fwk log-info": ("fwk log-info log.lcm",),
     "fwk runs list": ("fwk runs list",),
     "fwk video": ("fwk video log.lcm --out match.mp4",),
+    "fwk eval": (
+        "fwk eval soccer.yaml --seeds 1..20 --time 60",
+        "fwk eval soccer.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
+    ),
     "fwk spy": ("fwk spy",),
     "fwk doctor": ("fwk doctor",),
     "fwk completion": ('eval "$(fwk completion bash)"',),

@@ -128,6 +128,8 @@ class Plan:
     """Channels whose newest messages the scoreboard gets: those that match `CHANNELS` of its module."""
     video: str = ""
     """`module:function` that draws the top view of a recording."""
+    evaluation: str = ""
+    """`module:function` that plays the launch file and measures it; its module has `report`."""
     log: LogPlan = field(default_factory=LogPlan)
     runs: RunsPlan = field(default_factory=RunsPlan)
     record: RecordPlan = field(default_factory=RecordPlan)

@@ -165,6 +165,7 @@ class _Loading:
             "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
             "video": function_of(files, "video", self.folders, problems),
+            "evaluation": function_of(files, "evaluation", self.folders, problems),
             "log": log_of(files, problems),
             "runs": runs_of(files),
             **bus_port,

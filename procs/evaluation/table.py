@@ -1,8 +1,10 @@
 """The table of an evaluation: each measure with its interval, beside its goal."""
 
+import csv
+import io
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
@@ -125,6 +127,15 @@ def as_text(rows: Sequence[Row]) -> str:
             f"{row.name:34} {row.value:9.3f} {interval:>19} {row.samples:8d}  {row.unit:9} {row.goal}".rstrip()
         )
     return "\n".join(lines)
+
+
+def as_csv(rows: Sequence[Row]) -> str:
+    """Returns the table for spreadsheets; the first line names the columns."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, [each.name for each in fields(Row)], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows({key: "" if value != value else value for key, value in asdict(row).items()} for row in rows)
+    return text.getvalue()
 
 
 def as_json(rows: Sequence[Row]) -> str:

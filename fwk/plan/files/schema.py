@@ -123,6 +123,8 @@ class HostFile(_Entry):
     """`module:function` that makes the display's headline."""
     video: str | None = None
     """`module:function` that draws a recording."""
+    evaluation: str | None = None
+    """`module:function` that plays the launch file and measures it."""
     config: SettingsByComponent = {}
     """Settings by name pattern."""
     shared: dict[str, Any] = {}

@@ -1,0 +1,39 @@
+"""Evaluation of a match for `fwk eval`: plays a piece in memory, measures it, and reports all pieces together."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from fwk.testing import launch_plan, system_of
+from procs.evaluation.beliefs import Samples, believed
+from procs.evaluation.conduct import conducted
+from procs.evaluation.piece import piece_of
+from procs.evaluation.plots import plot
+from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, ratio, root_ratio, rows_of
+from procs.model.frames import Floats
+
+
+def measured(file: str, time_s: float, seed: int) -> dict[str, list[float] | list[list[float]]]:
+    """Plays one piece of `time_s` and returns the samples of all measures."""
+    period_s = launch_plan(file).period_us / 1e6
+    system = system_of(file, seed=seed)
+    system.tick(round(time_s / period_s))
+    piece = piece_of(system.sent, period_s)
+    return {name: samples.tolist() for name, samples in (believed(piece) | conducted(piece)).items()}
+
+
+def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
+    """Writes table.csv, table.json and measures.png into the folder; returns the table."""
+    pieces: list[Samples] = [{name: _samples(values, name) for name, values in result.items()} for result in results]
+    rows = rows_of(pieces)
+    (folder / "table.csv").write_text(as_csv(rows))
+    (folder / "table.json").write_text(as_json(rows))
+    plot(rows, folder / "measures.png")
+    return as_text(rows)
+
+
+def _samples(values: list[float], name: str) -> Floats:
+    """Returns samples as they were measured; an empty list of pairs gets its two columns back."""
+    pairs = next(each.statistic for each in MEASURES if each.name == name) in (ratio, root_ratio)
+    return np.array(values, np.float64).reshape(-1, 2) if pairs else np.array(values, np.float64)

@@ -1,0 +1,37 @@
+"""Pictures of a table: each measure with its interval."""
+
+from collections.abc import Sequence
+from itertools import groupby
+from pathlib import Path
+
+import matplotlib as mpl
+
+mpl.use("Agg")
+from matplotlib import pyplot
+
+from procs.evaluation.table import Row
+
+
+def plot(rows: Sequence[Row], file: Path) -> None:
+    """Draws the measures that have a value, a panel for each unit, as PNG."""
+    known = sorted((row for row in rows if row.value == row.value), key=lambda row: row.unit)
+    panels = [list(group) for _, group in groupby(known, key=lambda row: row.unit)]
+    if not panels:
+        return
+    figure, axes = pyplot.subplots(
+        len(panels), 1, figsize=(8, 1.2 + 0.32 * (len(known) + len(panels))), squeeze=False,
+        height_ratios=[len(panel) for panel in panels], layout="constrained",
+    )  # fmt: skip
+    for axis, panel in zip(axes[:, 0], panels, strict=True):
+        places = range(len(panel))
+        known_intervals = [
+            (row.value - row.low, row.high - row.value) if row.low == row.low else (0, 0) for row in panel
+        ]
+        errors = [[max(0.0, pair[side]) for pair in known_intervals] for side in (0, 1)]
+        axis.errorbar([row.value for row in panel], places, xerr=errors, fmt="o", capsize=3)
+        axis.set_yticks(places, [row.name for row in panel])
+        axis.set_ylim(len(panel) - 0.5, -0.5)
+        axis.set_xlabel(panel[0].unit or "ratio")
+        axis.grid(axis="x", alpha=0.4)
+    figure.savefig(file, dpi=100)
+    pyplot.close(figure)

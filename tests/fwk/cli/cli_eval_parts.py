@@ -1,0 +1,30 @@
+"""An evaluation that measures nothing but its own arguments, of a component that does nothing."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from fwk import Component
+
+
+class Idle(Component):
+    """Does nothing."""
+
+    stage = "act"
+
+    def loop(self) -> None:
+        """Ends at once."""
+
+
+def measured(file: str, time_s: float, seed: int) -> dict[str, Any]:
+    """Returns the arguments; seed 13 fails."""
+    if seed == 13:
+        raise ValueError("an unlucky seed")
+    return {"time_s": time_s, "seed": seed}
+
+
+def report(results: Sequence[dict[str, Any]], folder: Path) -> str:
+    """Returns the seeds, and writes them down."""
+    text = " ".join(str(result["seed"]) for result in results)
+    (folder / "seeds.txt").write_text(text)
+    return text

@@ -1,0 +1,26 @@
+"""The report of an evaluation: table for people, spreadsheet and program, and a picture."""
+
+import csv
+import json
+from pathlib import Path
+
+import cv2
+
+from procs.evaluation.match import measured, report
+
+SECONDS = 4.5
+
+
+def test_report_of_two_short_pieces(tmp_path: Path) -> None:
+    pieces = [json.loads(json.dumps(measured("soccer-1v1.yaml", SECONDS, seed))) for seed in (1, 2)]
+    text = report(pieces, tmp_path)
+    with (tmp_path / "table.csv").open() as file:
+        rows = {row["name"]: row for row in csv.DictReader(file)}
+    plain = {row["name"]: row for row in json.loads((tmp_path / "table.json").read_text())}
+    assert rows.keys() == plain.keys()
+    assert float(rows["pose, position"]["value"]) == plain["pose, position"]["value"] > 0.0
+    assert plain["pose, position"]["low"] <= plain["pose, position"]["value"] <= plain["pose, position"]["high"]
+    assert "pose, position" in text
+    picture = cv2.imread(str(tmp_path / "measures.png"))
+    assert picture is not None
+    assert picture.std() > 1.0
