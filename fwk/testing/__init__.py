@@ -1,7 +1,7 @@
 """Tests of components: a bench for one component, a system in memory for many or for a launch file."""
 
 from fwk.testing.bench import Bench
-from fwk.testing.expression import Expression, ExpressionError, Words, reads_messages
+from fwk.testing.expression import Expression, ExpressionError, reads_messages
 from fwk.testing.launched import launch_plan, settings_in, system_of
 from fwk.testing.memory import MemorySystem
 from fwk.testing.scenario import Expectations, Verdict, Watch, play
@@ -14,7 +14,6 @@ __all__ = [
     "MemorySystem",
     "Verdict",
     "Watch",
-    "Words",
     "launch_plan",
     "play",
     "reads_messages",

@@ -1,10 +1,10 @@
 """Words of soccer in the conditions of scenarios: `ball`, `play`, `distance(cyan2, ball)`, `x(magenta1)` ..."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
-from fwk.testing import Words, reads_messages
+from fwk.testing import reads_messages
 from lcmtypes.soccer import game_state_t
 from procs.model.field import Point
 
@@ -69,7 +69,7 @@ def _axis(axis: int) -> Callable[[Newest], Callable[[Any], float]]:
     return reads_messages(lambda newest: lambda what: _place(newest, what)[axis])
 
 
-WORDS: Words = {
+WORDS: Mapping[str, Callable[..., Any]] = {
     "ball": _ball,
     "ball_speed": _ball_speed,
     "distance": _distance,
