@@ -26,7 +26,7 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
     for name, more in (("process", ""), ("groups", GROUPS), ("single", "")):
         write_files(tmp_path, market(ports.public_url, more))
         hosting = ["--hosting", "single"] if name == "single" else []
-        run = launch("market.yaml", "--ticks", "300", "--record", f"{name}.log", *hosting)
+        run = launch("market.yaml", "--ticks", "160", "--record", f"{name}.log", *hosting)
         assert run.wait() == 0, run.text
     assert compare(tmp_path / "process.log", tmp_path / "groups.log") is None
     assert compare(tmp_path / "process.log", tmp_path / "single.log") is None
