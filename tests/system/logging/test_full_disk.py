@@ -14,8 +14,9 @@ from fwk.clock import sleep_s
 from fwk.control.yaml_edit import read
 from fwk.lcm.event_log import LogReader
 from fwk.logs.reader import read_lines
-from tests.harness.commands import BIN
-from tests.harness.runs import Launched, PortBlock, fill, fwk
+from tests.harness import commands
+from tests.harness.commands import BIN, Command
+from tests.harness.runs import TIMEOUT_S, Launched, PortBlock, fill, fwk
 from tests.programs.control_system import Steered, write_system
 
 pytestmark = pytest.mark.system
@@ -101,15 +102,17 @@ def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock,
             "--bus-port",
             str(ports.bus),
         ]
-        with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.PIPE, text=True) as setting:
-            with_mercy = number % 4 == 0
-            if not with_mercy:
-                _when_it_is_about_to_write(setting, file.parent, dice.uniform(0.0, 0.06))
-                setting.send_signal(signal.SIGKILL)
-            assert setting.stdout
-            if "kept in small.host.yaml" in setting.stdout.read():
-                acknowledged = number
-        killed += setting.returncode == -signal.SIGKILL
+        said = tmp_path / f"said-{number}.txt"
+        with open(said, "wb") as output:
+            setting = commands.start(command, tmp_path, dict(os.environ), output.fileno(), output.fileno())
+        with_mercy = number % 4 == 0
+        if not with_mercy:
+            _when_it_is_about_to_write(setting, file.parent, dice.uniform(0.0, 0.06))
+            setting.send_signal(signal.SIGKILL)
+        code = setting.wait(TIMEOUT_S)
+        if "kept in small.host.yaml" in said.read_text():
+            acknowledged = number
+        killed += code == -signal.SIGKILL
         text = file.read_text()
         assert acknowledged <= read(text)["config"]["r/counter"]["step"] <= number
         assert text.startswith("# this machine\n")
@@ -122,7 +125,7 @@ def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock,
     assert (row["value"], row["origin"]) == (12.0, "small.host.yaml:4")
 
 
-def _when_it_is_about_to_write(setting: subprocess.Popen[str], folder: Path, later_s: float) -> None:
+def _when_it_is_about_to_write(setting: "Command | subprocess.Popen[bytes]", folder: Path, later_s: float) -> None:
     """Waits until the folder is locked for writing or the process has ended, and then for a random moment."""
     while setting.poll() is None:
         if str(folder) in _open_files(setting.pid):
