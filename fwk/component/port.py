@@ -36,7 +36,7 @@ class Port:
     """Whether it is an `Each`, with a port for every namespace."""
     reply_type: type[messages.Message] | None = None
     history: int = 0
-    """How many of the newest messages a reader keeps; 0: only the newest."""
+    """Number of the newest messages that a reader keeps; 0: only the newest."""
 
     @property
     def writes(self) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from fwk.display.keys import Keyboard
 
 LOOK_S = 0.5
-"""How often a display looks up what a run that stands waits for."""
+"""Interval at which the display asks which components a waiting run waits for."""
 _PACKET_BYTES = 1 << 20
 
 

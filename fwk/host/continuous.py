@@ -20,7 +20,7 @@ REPEAT_US = 2_000
 """First wait before a done that was not taken is sent again; it doubles up to `REPEAT_LONGEST_US`."""
 REPEAT_LONGEST_US = 100_000
 TAKEN_TIMEOUT_US = US_PER_S
-"""How long a host that is stopped waits until its last iteration was taken."""
+"""Longest wait of a stopped host until its last iteration was taken."""
 _MOST = header_t.FINAL - 1  # iterations on the same marks; larger numbers have another meaning
 
 

@@ -43,7 +43,7 @@ class RunBrokenError(Exception):
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended."""
+    """End of a run."""
 
     exit_code: int
     """0: success; 1: a component failed or the run broke."""

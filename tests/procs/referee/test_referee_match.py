@@ -100,7 +100,7 @@ def test_teams_change_ends_for_the_second_half() -> None:
     assert script.score == (0, 1), "cyan defends the goal at positive x"
 
 
-def test_draw_goes_to_overtime_and_penalties_if_it_is_to_be_decided() -> None:
+def test_draw_is_decided_by_overtime_and_penalties_if_wanted() -> None:
     script = Script(half_s=5.0, half_time_s=0.5, overtime_half_s=5.0, decide=True, penalties=1)
     halves = []
     for _ in range(600):

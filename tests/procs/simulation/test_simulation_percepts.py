@@ -160,7 +160,7 @@ def test_ball_in_flight_appears_further_away() -> None:
 
 
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
-def test_that_share_of_balls_is_missed(share: float) -> None:
+def test_share_of_missed_balls_is_that_of_the_settings(share: float) -> None:
     eyes = bench(realism="none", ball_missed=share)
     seen = sum(look(eyes, truth((0.0, 0.0))).visible for _ in range(400))
     assert seen / 400 == pytest.approx(1.0 - share, abs=0.08)
@@ -174,7 +174,7 @@ def test_phantoms_come_at_their_rate() -> None:
     assert robots / 60 == pytest.approx(2.0, abs=0.6)
 
 
-def test_robot_that_is_not_on_the_field_sees_nothing_and_says_so_once() -> None:
+def test_robot_off_the_field_sees_nothing_and_reports_it_once() -> None:
     eyes = Bench(Percepts, name="cyan7/percepts")
     for _ in range(3):
         eyes.port("ground_truth").put(truth((0.0, 0.0)))
