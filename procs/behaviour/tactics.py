@@ -55,6 +55,7 @@ class Tactics:
         self._held_from: Point | None = None
         self._free_s = 0.0
         self._taking = False  # the ball in the mouth is that of the own set piece
+        self._penalty = False  # that set piece is a penalty
         self._barred_s = 0.0
 
     @property
@@ -73,6 +74,7 @@ class Tactics:
         self._barred_s = self._still_barred_s(view, game, holds_ball) - duration_s
         if not game.free_play:
             self._taking = game.whose is Whose.OURS and job.role == ATTACKER
+            self._penalty = game.state is State.PENALTY
         elif not holds_ball:
             self._taking = False
         self._last = self._order(view, game, job, holds_ball)
@@ -133,6 +135,8 @@ class Tactics:
         pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
         carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
         impatient = self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
+        if self._taking and self._penalty:
+            return self._shot(view, room_m=0.0) or self._clear(view)
         if self._taking and view.mates:
             return self._pass_on(view, back_m=math.inf) or self._clear(view)
         if self._taking:
