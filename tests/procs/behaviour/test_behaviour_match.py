@@ -56,7 +56,7 @@ def test_lone_robot_scores_on_an_empty_goal_after_kick_off() -> None:
 
 
 def test_two_alone_both_score() -> None:
-    states, _ = play(match(["cyan1", "magenta1"], 1, NOISE), 40.0)
+    states, _ = play(match(["cyan1", "magenta1"], 1, NOISE), 60.0)
     assert states[-1].score_cyan > 0
     assert states[-1].score_magenta > 0
 
