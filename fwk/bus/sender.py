@@ -61,8 +61,12 @@ class Sender:
         self._send(channel, data, (LOOPBACK, port))
 
     def _send(self, channel: bytes, data: bytes, address: Address) -> None:
+        number = next(self._number) & 0xFFFFFFFF
         try:
-            for datagram in wire.datagrams(next(self._number) & 0xFFFFFFFF, channel, data):
+            if len(data) < wire.SURELY_SHORT:
+                self.socket.sendto(wire.in_one(number, channel, data), address)
+                return
+            for datagram in wire.datagrams(number, channel, data):
                 self.socket.sendto(datagram, address)
         except (OSError, OverflowError):  # readers fetch the whole message, as in `_put`; or the port does not exist
             self.refused += 1

@@ -34,12 +34,12 @@ class Waiting:
 
     def wait(self, timeout_us: int) -> list[int]:
         """Returns the readable descriptors as soon as there are any; none after `timeout_us`, at most an hour."""
-        if not 0 < timeout_us < _FINE_US or not self._select_works:
-            return [descriptor for descriptor, _ in self._ready.poll(max(0, min(timeout_us, _LONGEST_US)) / 1e6)]
-        # epoll counts in milliseconds and rounds up
-        if not select.select((self._ready,), (), (), timeout_us / 1e6)[0]:
-            return []
-        return [descriptor for descriptor, _ in self._ready.poll(0)]
+        if 0 < timeout_us < _FINE_US and self._select_works:  # epoll counts in milliseconds and rounds up
+            if not select.select((self._ready,), (), (), timeout_us / 1e6)[0]:
+                return []
+            timeout_us = 0
+        found = self._ready.poll(max(0, min(timeout_us, _LONGEST_US)) / 1e6)
+        return [found[0][0]] if len(found) == 1 else [descriptor for descriptor, _ in found]
 
     def close(self) -> None:
         """Closes the descriptor for waiting."""

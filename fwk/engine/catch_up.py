@@ -22,6 +22,12 @@ class CatchUp:
         """Returns whether an iteration of this tick sees the newest messages only."""
         return tick > self._last
 
+    def takes_part(self, tick: int) -> bool:
+        """Notes an iteration of this tick; returns whether it sees the newest messages only."""
+        applies = tick > self._last
+        self._last = tick + self._away_ticks
+        return applies
+
     def took_part(self, tick: int) -> None:
         """Notes an iteration."""
         self._last = tick + self._away_ticks

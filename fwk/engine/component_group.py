@@ -203,7 +203,7 @@ class ComponentGroup:
                 self._failures.put(name, f"loop, tick {tick.tick}", error)
                 raise
             end_us = self._now_us()
-            self.metrics[name].ran(end_us - start_us)
+            self.metrics[name].times.add(end_us - start_us)
             start_us = end_us
             next_us = max(next_us, runner.time_source.next_us)
         if self._marker:

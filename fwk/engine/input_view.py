@@ -43,7 +43,7 @@ class InputView:
     def take(self, tick: int) -> Mapping[str, list[bytes]]:
         """Returns what an iteration of this tick sees, by channel, each oldest first; empty channels are left out."""
         seen, self._waiting = self._waiting, {}
-        if self._catch_up.applies(tick):
+        if self._catch_up.takes_part(tick):
             seen = {channel: messages[-1:] for channel, messages in seen.items()}
         else:
             for channel in self._joined & seen.keys():
@@ -51,5 +51,4 @@ class InputView:
         if self._joined:
             seen = {channel: messages for channel, messages in seen.items() if messages}
             self._joined = set()
-        self._catch_up.took_part(tick)
         return seen

@@ -25,10 +25,6 @@ class ComponentMetrics:
     def __post_init__(self) -> None:
         self._since_us = self.now_us()
 
-    def ran(self, duration_us: int) -> None:
-        """Counts an iteration."""
-        self.times.add(duration_us)
-
     def message(self) -> component_state_t:
         """Returns state and figures as the host reports them."""
         made = component_state_t()

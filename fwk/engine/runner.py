@@ -97,7 +97,7 @@ class Runner:
             if port.history:
                 longest = {each: max(port.history, self._histories.get(each, 0)) for each in channels[port.attribute]}
                 self._histories |= longest
-        self._refreshed: list[Reads[Any]] = []  # readers with new messages in the last iteration
+        self._refreshed: dict[str, Reads[Any]] = {}  # readers with new messages in the last iteration, by channel
         self.component.name = name
         self._provided = [kind() for kind in declaration.asks.values()]
         for attribute, made in zip(declaration.asks, self._provided, strict=True):
@@ -159,11 +159,13 @@ class Runner:
         clock.tick = stamp.tick = tick
         clock.now_us = stamp.time_us = time_us
         clock.stage, stamp.stage = stage_name, stage
-        for reader in self._refreshed:
-            reader._freeze(NOTHING)
-        self._refreshed = [self.readers[channel] for channel in fresh]
-        for reader, arrived in zip(self._refreshed, fresh.values(), strict=True):
+        before, self._refreshed = self._refreshed, {}
+        for channel, arrived in fresh.items():
+            reader = self._refreshed[channel] = self.readers[channel]
             reader._freeze(arrived)
+        for channel, reader in before.items():
+            if self._refreshed.get(channel) is not reader:
+                reader._freeze(NOTHING)
         self.time_source._next_us = -1
         try:
             for begin in self._begin:

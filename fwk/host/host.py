@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from fwk.bus import sync
 from fwk.bus.network import Network, Steps
 from fwk.bus.receiver import Complaints, Receiver
-from fwk.bus.sender import Sender
+from fwk.bus.sender import NEVER_US, Sender
 from fwk.clock import US_PER_S, Clock
 from fwk.component.log import Logger
 from fwk.engine.assignment import Assignment
@@ -21,7 +21,7 @@ from fwk.host.outputs import Outputs
 from fwk.host.shutdown import LOCKSTEP_TIMEOUT_US, TIMEOUT_US, Shutdown
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
-from fwk.model.requests import clear_requests, lost_message
+from fwk.model.requests import clear_requests, has_requests, lost_message
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, protocol_t, tick_t
 
 READY_REPORT_US = 100_000
@@ -145,7 +145,8 @@ class Host:
                     tick = self._receive_tick(receiver)
                     if tick:
                         yield from self._answer(tick, stage)
-            self._sender.send_due()
+            if self._sender.due_us < NEVER_US:
+                self._sender.send_due()
             if self._now_us() >= self._report_us:
                 self._report()
 
@@ -238,7 +239,8 @@ class Host:
     def _finish(self, names: Sequence[str], ran: Ran) -> None:
         """Sends what these components wrote, and the done with their requests and the messages that were lost."""
         done = self._message
-        clear_requests(done)
+        if has_requests(done):
+            clear_requests(done)
         self.group.put_requests(names, done)
         if self.inputs.lost:
             done.lost = [lost_message(channel, sequence) for channel, sequence in self.inputs.new_losses()]

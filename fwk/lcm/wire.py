@@ -14,6 +14,8 @@ _UNFINISHED_MAX = 64  # fragmented messages under way at the same time
 _UNFINISHED_BYTES_MAX = 2 * _MESSAGE_MAX  # bytes of all of them; the oldest are dropped first
 
 DATAGRAM_MAX = 65_535
+SURELY_SHORT = 65_000
+"""A message with less data goes in one datagram, whatever its channel is called."""
 
 
 def datagrams(number: int, channel: bytes, data: bytes) -> list[bytes]:

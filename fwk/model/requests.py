@@ -26,8 +26,6 @@ _CHANNEL_KIND_NUMBERS = {kind: number for number, kind in _CHANNEL_KINDS.items()
 
 def clear_requests(done: done_t) -> None:
     """Empties the lists of requests and losses of a done that is sent again with other content."""
-    if not has_requests(done):
-        return
     done.main_loop, done.plugins, done.channels, done.lost, done.lost_frames = [], [], [], [], []
 
 

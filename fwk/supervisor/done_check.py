@@ -1,7 +1,7 @@
 """Checks the content of a done before it counts."""
 
 from fwk.lcm.messages import MessageError
-from fwk.model.requests import has_requests, mistake_in
+from fwk.model.requests import mistake_in
 from fwk.supervisor.core import Core
 from lcmtypes.core import done_t, recorded_t
 
@@ -24,14 +24,18 @@ class DoneCheck:
         ]
         self._outside = {channel.index for channel in plan.channels if channel.writer < 0}
 
-    def check(self, done: done_t) -> None:
+    def check(self, done: done_t, asks: bool) -> None:
         """Checks the done of a host.
+
+        Args:
+            done: the done.
+            asks: whether it has requests or losses.
 
         Raises:
             MessageError: the done names channels, components or stages that its host does not have.
         """
         mistake = self._foreign_mark(done, self._may_write[done.host])
-        if not mistake and not (has_requests(done) or done.kind not in _KINDS):
+        if not mistake and not asks and done.kind in _KINDS:
             return
         mistake = mistake or mistake_in(done, *self._sizes)
         if not mistake:

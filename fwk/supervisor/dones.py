@@ -101,7 +101,8 @@ class Dones:
 
     def _take(self, host: HostProcess, done: done_t) -> None:
         """Makes the messages of a done visible with the next stage."""
-        self._check.check(done)
+        asks = has_requests(done)
+        self._check.check(done, asks)
         self._note_answer(host, done)
         if host.changes:
             host.drop_told_changes()
@@ -110,7 +111,7 @@ class Dones:
             self._tick_log.mark(channel, sequence)
         if done.next_time_us >= 0:
             self._core.clock.source(done.next_time_us)
-        if has_requests(done):
+        if asks:
             self._record_losses(done)
             self._collect(done)
         self._tick_log.event(_event_of(done))

@@ -50,7 +50,7 @@ def test_foreign_sender_with_endless_kinds_fills_no_memory() -> None:
 def test_figures_sum_up_iterations() -> None:
     figures = ComponentMetrics("r/base", iter((100, 175)).__next__, state="running")
     for duration_us in (10, 30, 20):
-        figures.ran(duration_us)
+        figures.times.add(duration_us)
     message = figures.message()
     assert (message.name, message.state, message.iterations) == ("r/base", "running", 3)
     assert (message.busy_us, message.worst_us) == (60, 30)
