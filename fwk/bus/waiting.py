@@ -22,6 +22,7 @@ class Waiting:
 
     def __init__(self) -> None:
         self._ready = select.epoll()
+        self._poll = self._ready.poll
         self._select_works = self._ready.fileno() < _SELECT_MAX
 
     def add(self, source: Source) -> None:
@@ -34,12 +35,19 @@ class Waiting:
 
     def wait(self, timeout_us: int) -> list[int]:
         """Returns the readable descriptors as soon as there are any; none after `timeout_us`, at most an hour."""
-        if 0 < timeout_us < _FINE_US and self._select_works:  # epoll counts in milliseconds and rounds up
-            if not select.select((self._ready,), (), (), timeout_us / 1e6)[0]:
-                return []
-            timeout_us = 0
-        found = self._ready.poll(max(0, min(timeout_us, _LONGEST_US)) / 1e6)
+        if timeout_us >= _FINE_US:
+            found = self._poll(timeout_us / 1e6 if timeout_us < _LONGEST_US else _LONGEST_US / 1e6)
+        elif timeout_us > 0 and not self._readable_within(timeout_us):
+            return []
+        else:
+            found = self._poll(0)
         return [found[0][0]] if len(found) == 1 else [descriptor for descriptor, _ in found]
+
+    def _readable_within(self, timeout_us: int) -> bool:
+        """Waits to the microsecond, where the system can: epoll counts in milliseconds and rounds up."""
+        if self._select_works:
+            return bool(select.select((self._ready,), (), (), timeout_us / 1e6)[0])
+        return bool(self._poll(timeout_us / 1e6))
 
     def close(self) -> None:
         """Closes the descriptor for waiting."""

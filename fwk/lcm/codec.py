@@ -138,25 +138,35 @@ class _EncoderSource(_Source):
         return cast(Encoder, self._compiled("encode"))
 
     def _fields(self, members: list[Member], owner: str) -> None:
+        before, run = _split_at_run(members)
+        rest = members[len(before) + len(run) :]
         counts: dict[str, str] = {}
+        self._set_counts([*before, *rest], owner, counts)
+        self._write(before, owner, counts)
+        if run:
+            self._run(run, owner)
+            self._fields(rest, owner)
+
+    def _run(self, members: list[Member], owner: str) -> None:
+        self._flush_numbers()
+        self._flush_chunks()
+        self._line(f"if {' or '.join(f'len({owner}.{name})' for name, _, dimensions in members if dimensions)}:")
+        self._indent += 1
+        counts: dict[str, str] = {}
+        self._set_counts(members, owner, counts)
+        self._write(members, owner, counts)
+        self._flush_numbers()
+        self._flush_chunks()
+        self._indent -= 1
+        own = [f"{owner}.{name}" for name, _, dimensions in members if not dimensions]
+        self._line("else:")
+        self._line(f"    {' = '.join(own)} = 0")
+        self._line(f"    made.append({self._constant('zeros', bytes(_COUNT_BYTES * len(own)))})")
+
+    def _set_counts(self, members: list[Member], owner: str, counts: dict[str, str]) -> None:
         for name, _, dimensions in members:
             if dimensions and isinstance(dimensions[0], str):
                 self._count(f"{owner}.{name}", f"{owner}.{dimensions[0]}", counts)
-        before, run = _split_at_run(members)
-        self._write(before, owner, counts)
-        if run:
-            self._flush_numbers()
-            self._flush_chunks()
-            lengths = [counts[f"{owner}.{name}"] for name, _, dimensions in run if not dimensions]
-            self._line(f"if {' or '.join(lengths)}:")
-            self._indent += 1
-            self._write(run, owner, counts)
-            self._flush_numbers()
-            self._flush_chunks()
-            self._indent -= 1
-            self._line("else:")
-            self._line(f"    made.append({self._constant('zeros', bytes(_COUNT_BYTES * len(lengths)))})")
-            self._fields(members[len(before) + len(run) :], owner)
 
     def _write(self, members: list[Member], owner: str, counts: dict[str, str]) -> None:
         for name, kind, dimensions in members:
@@ -374,22 +384,20 @@ class _DecoderSource(_Source):
 def _split_at_run(members: list[Member]) -> tuple[list[Member], list[Member]]:
     """Returns the members before the first run of lists that often are empty together, and the run.
 
-    It has two lists or more, each right behind its count; the first list of all is not part of it.
+    It has two counts or more, each right before all lists that it counts; the first count of all is not part of it.
     """
-    counts = [
-        index
-        for index, (name, kind, dimensions) in enumerate(members)
-        if kind == "int32_t"
-        and not dimensions
-        and [shape for _, _, shape in members[index + 1 : index + 2]] == [[name]]
-    ]
-    for index in counts[1:]:
-        end = index
-        while end in counts:
-            name, end = members[end][0], end + 1
-            while end < len(members) and members[end][2] == [name]:
-                end += 1
-        if sum(index <= count < end for count in counts) > 1:
+    ends = {}  # by place of a count: the place after its lists
+    for index, (name, kind, dimensions) in enumerate(members):
+        lists = [place for place, (_, _, shape) in enumerate(members) if name in shape]
+        one_dimension = all(members[place][2] == [name] for place in lists)
+        end = index + 1 + len(lists)
+        if kind == "int32_t" and not dimensions and lists == list(range(index + 1, end)) and lists and one_dimension:
+            ends[index] = end
+    for index in list(ends)[1:]:
+        end, groups = index, 0
+        while end in ends:
+            end, groups = ends[end], groups + 1
+        if groups > 1:
             return members[:index], members[index:end]
     return members, []
 

@@ -45,9 +45,18 @@ def busy_within(made: Listeners, seconds: float) -> str:
     return ""
 
 
+def idle_within(made: Listeners, seconds: float) -> bool:
+    for _ in range(round(seconds / 0.01)):
+        if not made.busy():
+            return True
+        sleep_s(0.01)
+    return False
+
+
 def test_a_listener_is_busy_while_it_works() -> None:
     with listening() as (program, port):
         made = Listeners(port)
+        assert idle_within(made, 5.0)  # it has yet to begin its wait
         assert busy_within(made, 0.2) == ""
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             sender.sendto(b"work", ("127.0.0.1", port))

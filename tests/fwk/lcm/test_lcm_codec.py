@@ -29,6 +29,7 @@ struct varied_t {
 struct lists_t {
   int32_t a; int32_t i[a]; int32_t b; byte y[b]; int32_t c; boolean t[c]; double d[c]; int32_t e; string s[e];
   int32_t f; inner_t inner[f]; int64_t last; int32_t g; int8_t k[g]; int32_t h; inner_t m[h];
+  int32_t o; int32_t p[o]; int32_t q; int32_t u[q]; int32_t w[o]; int32_t x; int8_t z[x];
 }
 struct deep_t { int32_t n; varied_t varied[n]; fixed_t fixed; string end; }
 struct rare_t { int32_t n; int32_t m; double d[n][m]; }
