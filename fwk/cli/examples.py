@@ -4,11 +4,11 @@ from typing import Any
 
 EXAMPLES = {
     "fwk-launch": (
-        "fwk-launch soccer.yaml --ticks 1200 --speed max --seed 7",
-        "fwk-launch soccer.yaml --run red --detach",
-        "fwk-launch soccer.yaml --set cyan1/omni_ball.deviation_px=2 --without 'magenta*'",
+        "fwk-launch robots.yaml --ticks 1200 --speed max --seed 7",
+        "fwk-launch robots.yaml --run red --detach",
+        "fwk-launch robots.yaml --set cyan1/omni_ball.deviation_px=2 --without 'magenta*'",
     ),
-    "fwk check": ("fwk check soccer.yaml", "fwk check soccer.yaml --settings --set cyan1/omni_ball.deviation_px=2"),
+    "fwk check": ("fwk check robots.yaml", "fwk check robots.yaml --settings --set cyan1/omni_ball.deviation_px=2"),
     "fwk ps": ("fwk ps --json",),
     "fwk status": ("fwk status", "fwk status 'cyan1/*' --run red", "fwk status cyan1/world_model"),
     "fwk top": ("fwk top", "fwk top --once --since start"),
@@ -29,7 +29,7 @@ EXAMPLES = {
     "fwk config set": ("fwk config set cyan1/omni_ball.deviation_px=2",),
     "fwk bb list": ("fwk bb list 'cyan1/*'",),
     "fwk bb show": ("fwk bb show cyan1/world_model", "fwk bb show cyan1/world_model --json"),
-    "fwk bb watch": ("fwk bb watch world/game_state",),
+    "fwk bb watch": ("fwk bb watch cyan1/odometry",),
     "fwk log": (
         "fwk log -f --level warning",
         "fwk log --last 20 --component 'cyan1/*'",
@@ -45,10 +45,10 @@ EXAMPLES = {
     "fwk compare": ("fwk compare before.lcm after.lcm",),
     "fwk log-info": ("fwk log-info log.lcm",),
     "fwk runs list": ("fwk runs list",),
-    "fwk video": ("fwk video log.lcm --out match.mp4",),
+    "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (
-        "fwk eval soccer.yaml --seeds 1..20 --time 60",
-        "fwk eval soccer.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
+        "fwk eval robots.yaml --seeds 1..20 --time 60",
+        "fwk eval robots.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
     ),
     "fwk spy": ("fwk spy",),
     "fwk doctor": ("fwk doctor",),

@@ -5,7 +5,8 @@ from fwk.model.requests import mistake_in
 from fwk.supervisor.core import Core
 from lcmtypes.core import done_t, recorded_t
 
-_SEQUENCE_END = 1 << 62
+MESSAGES_MAX = 1_000_000
+"""Most messages of a channel in one iteration; readers list those that they lack."""
 _KINDS = (done_t.STAGE, done_t.ITERATION, done_t.FINAL)
 
 
@@ -17,6 +18,7 @@ class DoneCheck:
         dynamic = range(len(plan.channels), len(plan.channels) + plan.spare_channels)
         self._sizes = len(plan.components), dynamic.stop, len(plan.stages)
         self._hosts = core.hosts
+        self._newest = core.ledger.latest
         self._components = [set(host.components) for host in plan.hosts]
         self._may_write = [
             {channel.index for channel in plan.channels if channel.writer in host.components} | set(dynamic)
@@ -59,7 +61,8 @@ class DoneCheck:
     def _foreign_mark(self, message: done_t | recorded_t, may_write: set[int]) -> str:
         if not may_write.issuperset(message.channel):
             return f"a mark of channel {min(set(message.channel) - may_write)}, which it does not write"
-        for sequence in message.sequence:
-            if not 0 <= sequence < _SEQUENCE_END:
-                return "a mark that is not a sequence number"
+        for channel, sequence in zip(message.channel, message.sequence, strict=True):
+            newest = self._newest(channel)
+            if not 0 <= sequence <= newest + MESSAGES_MAX:
+                return f"mark {sequence} of channel {channel}, whose newest message is {newest}"
         return ""

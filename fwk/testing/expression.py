@@ -1,4 +1,4 @@
-"""Conditions over the messages of a run: `world.game_state.score_cyan >= 1 and distance(cyan2, ball) < 0.5`."""
+"""Conditions over the messages of a run: `robot.odometry.x_m >= 1 and abs(robot.odometry.y_m) < 0.5`."""
 
 import ast
 from collections.abc import Callable, Mapping
@@ -34,7 +34,7 @@ class ExpressionError(ValueError):
 
 
 class Namespace:
-    """Newest messages of a namespace: `world.game_state` is the newest message of the channel `world/game_state`."""
+    """Newest messages of a namespace: `robot.odometry` is the newest message of the channel `robot/odometry`."""
 
     def __init__(self, name: str, newest: Callable[[str], Any]) -> None:
         self._name, self._newest = name, newest

@@ -76,7 +76,7 @@ class Base(Component):
     def _add(self, state: wheel_state_t) -> None:
         first, second, third = state.measured_m_s
         if not all(abs(speed) <= _PLAUSIBLE * self.config.robot.wheel_limit_m_s for speed in state.measured_m_s):
-            self.log.warning(f"wheels say {first}, {second}, {third} m/s, which cannot be; ignored")
+            self.log.warning(f"wheel speeds {first}, {second}, {third} m/s are impossible; ignored")
             return
         passed_s = (state.header.time_us - self._measured_us) / US_PER_S
         self._measured_us = state.header.time_us

@@ -14,6 +14,8 @@ _SET_PIECES = {
     game_state_t.FREE_KICK: "FREEKICK",
     game_state_t.GOAL_KICK: "GOALKICK",
 }
+_GOALS_MAX = 99
+"""A RefBox counts no further."""
 _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECOND_HALF_OVERTIME"}
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
@@ -51,7 +53,7 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
     commands = []
     for team in TEAMS.values():
         more = getattr(now, f"score_{team}") - getattr(before, f"score_{team}")
-        commands += [Command("GOAL" if more > 0 else "SUBGOAL", team)] * abs(more)
+        commands += [Command("GOAL" if more > 0 else "SUBGOAL", team)] * min(abs(more), _GOALS_MAX)
     return commands
 
 

@@ -181,6 +181,16 @@ def test_an_impossible_mark_is_refused_and_takes_no_memory(log: Path) -> None:
         replay(log)
 
 
+def test_an_impossible_message_is_refused_and_takes_no_memory(log: Path) -> None:
+    entries = [(each.channel, each.data) for each in LogReader(log)]
+    place = next(place for place, (channel, _) in enumerate(entries) if channel == "r/imu")
+    data = bytearray(entries[place][1])
+    data[16:24] = (1 << 60).to_bytes(8, "big")  # the sequence number in the header
+    entries[place] = ("r/imu", bytes(data))
+    with pytest.raises(RecordingError, match=r"r/imu cannot have message 1\d{18} in tick 1; .* --to-tick 0"):
+        replay(write(log, entries))
+
+
 def test_a_component_failing_in_replay_is_named_with_its_place(log: Path) -> None:
     entries = [(each.channel, each.data) for each in LogReader(log)]
     cut = [(channel, data[:50] if channel == "r/imu" else data) for channel, data in entries]

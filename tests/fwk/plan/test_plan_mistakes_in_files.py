@@ -236,8 +236,8 @@ def test_keys_and_values(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.host.yaml:1: no key 'components'; there is clock, config, hosts, log, loop_time_s, loop_time_warnings, "
-        "outside, period_s, public_url, record, runs, scoreboard, ...",
+        "it.host.yaml:1: no key 'components'; there is clock, config, evaluation, hosts, log, loop_time_s, "
+        "loop_time_warnings, outside, period_s, public_url, record, runs, ...",
         """
         components: {it/a: {use: plan_parts:Odometer}}
         --- it.host.yaml

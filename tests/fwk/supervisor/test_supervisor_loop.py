@@ -145,6 +145,21 @@ def test_broken_done_is_refused_counted_and_named() -> None:
     run.play_ticks(3)
 
 
+def test_mark_far_beyond_the_newest_message_is_refused() -> None:
+    def far(done: done_t) -> None:
+        if done.host == RIGHT:
+            done.sequence = [1 << 60]
+
+    run = pair()
+    run.alters = far
+    run.play(lambda: run.supervisor.loop.barrier.repeated > 2)
+    refused = [text for text in run.texts if "refused" in text]
+    assert len(refused) == 1
+    assert f"done of r/right with mark {1 << 60} of channel 1, whose newest message is 1; refused" in refused[0]
+    run.alters = lambda _: None
+    run.play_ticks(3)
+
+
 def asks_for_the_main_loop(done: done_t) -> None:
     done.main_loop = [main_loop_request(LEFT, [THINK])]
 
