@@ -44,6 +44,8 @@ HANDED_AT_ONCE = 32
 """Messages that a sink gets before the public bus has its turn again."""
 PATIENCE_US = 2_000_000
 """Longest wall time that the public bus waits for a busy listener."""
+FINISH_US = 3_000_000
+"""Wall time after the end of the run in which the public bus gets what is left at the pace of its listeners."""
 REAL_TIME_PATIENCE_US = 100_000
 """The same in real time, in which programs outside need the newest messages in time."""
 IDLE_US = 100_000
@@ -165,9 +167,11 @@ class Gateway:
         self._pass_on(self._status, status_t)
         for sink in self.sinks:
             sink.close()
-        while self.publisher.waiting:
-            yield self.publisher.due_us
+        end_us = self._network.now_us() + FINISH_US
+        while self.publisher.waiting and self._network.now_us() < end_us:
+            yield min(self.publisher.due_us, end_us)
             self.publisher.send_due()
+        self.publisher.send_all()
         self._inputs.close()
         for receiver in (self._records, self._lines, self._status, self._own):
             receiver.socket.close()

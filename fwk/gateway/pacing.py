@@ -102,6 +102,10 @@ class PacedPublisher:
         self.overrun = busy or self.overrun
         self._send_group(max(self._group, excess))
 
+    def send_all(self) -> None:
+        """Sends whatever waits, whether or not listeners keep up."""
+        self._send_group(self._size)
+
     def _send_group(self, left: int) -> None:
         while self._queue and left > 0:
             datagram = self._queue.popleft()

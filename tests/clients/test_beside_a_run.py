@@ -1,7 +1,8 @@
 """Programs with LCM's default settings hear every message of a run that makes hundreds visible at once."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -24,11 +25,15 @@ components:
 TICKS = 60
 MESSAGES = 200 * TICKS
 SPEEDS = ("1", "max")
+ATTEMPTS = 3
 SUBSCRIBER = Path(__file__).parent / "subscriber.py"
 
 
-def burst(folder: Path, ports: PortBlock, speed: str) -> None:
-    """Runs to its end a component that writes 200 messages in each tick."""
+def burst(folder: Path, ports: PortBlock, speed: str) -> bool:
+    """Runs to its end a component that writes 200 messages in each tick; returns whether the listener kept up.
+
+    A listener that gets no processor for seconds may lack messages, and the run says so.
+    """
     write_files(folder, {**sources("burst.py"), "burst.yaml": LAUNCH.format(url=ports.public_url)})
     options = ("burst.yaml", "--ticks", str(TICKS), "--speed", speed, "--record", "log.lcm")
     run = Launched(folder, ports, options, {})
@@ -36,7 +41,15 @@ def burst(folder: Path, ports: PortBlock, speed: str) -> None:
         assert run.wait() == 0, run.text
     finally:
         run.end()
-    assert "does not keep up" not in run.text
+    return "does not keep up" not in run.text
+
+
+def attempts(folder: Path) -> Iterator[Path]:
+    """Yields a folder for each attempt; a machine on which no listener keeps up fails the test."""
+    for attempt in range(ATTEMPTS):
+        (folder / str(attempt)).mkdir()
+        yield folder / str(attempt)
+    pytest.fail(f"the listener did not keep up in {ATTEMPTS} runs")
 
 
 def default_bus(ports: PortBlock) -> Bus:
@@ -46,21 +59,27 @@ def default_bus(ports: PortBlock) -> Bus:
 
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_lcm_logger_hears_every_message(tmp_path: Path, ports: PortBlock, speed: str) -> None:
-    with default_bus(ports).logger(tmp_path / "heard"):
-        burst(tmp_path, ports, speed)
-    recorded, heard = (_notes(tmp_path / name) for name in ("log.lcm", "heard"))
+    for folder in attempts(tmp_path):
+        with default_bus(ports).logger(folder / "heard"):
+            kept_up = burst(folder, ports, speed)
+        if kept_up:
+            break
+    recorded, heard = (_notes(folder / name) for name in ("log.lcm", "heard"))
     assert len(recorded) == MESSAGES
     assert heard == recorded
 
 
 @pytest.mark.parametrize("speed", SPEEDS)
 def test_python_subscriber_hears_every_message(tmp_path: Path, ports: PortBlock, speed: str) -> None:
-    bus, answer = default_bus(ports), tmp_path / "answer"
-    texts: list[str] = []
-    with process([sys.executable, str(SUBSCRIBER), bus.url, str(answer)]):
-        bus.publish_until(answer.exists)
-        burst(tmp_path, ports, speed)
-        bus.publish_until(lambda: _newest(answer, texts).startswith("end "), b"end")
+    bus = default_bus(ports)
+    for folder in attempts(tmp_path):
+        answer, texts = folder / "answer", [""]
+        with process([sys.executable, str(SUBSCRIBER), bus.url, str(answer)]):
+            bus.publish_until(answer.exists)
+            kept_up = burst(folder, ports, speed)
+            bus.publish_until(partial(_heard_end, answer, texts), b"end")
+        if kept_up:
+            break
     assert texts[-1] == f"end {MESSAGES}"
 
 
@@ -68,9 +87,15 @@ def test_python_subscriber_hears_every_message(tmp_path: Path, ports: PortBlock,
 def test_lcm_spy_hears_every_message(tmp_path: Path, needs: Callable[..., None], ports: PortBlock, speed: str) -> None:
     needs("java", "javac", "jar", "Xvfb")
     bus = default_bus(ports)
-    with screen() as display, lcm_spy(bus, display, tmp_path) as seen:
-        burst(tmp_path, ports, speed)
-        wait_until(lambda: count(read_table(seen)) == str(MESSAGES), "lcm-spy has not counted every message")
+    for folder in attempts(tmp_path):
+        with screen() as display, lcm_spy(bus, display, folder) as seen:
+            if burst(folder, ports, speed):
+                wait_until(partial(_counted_all, seen), "lcm-spy lacks messages")
+                break
+
+
+def _counted_all(seen: Path) -> bool:
+    return count(read_table(seen)) == str(MESSAGES)
 
 
 def count(table: Table) -> str:
@@ -82,6 +107,6 @@ def _notes(log: Path) -> list[bytes]:
     return [event.data for event in LogReader(log) if event.channel == "a/note"]
 
 
-def _newest(file: Path, texts: list[str]) -> str:
+def _heard_end(file: Path, texts: list[str]) -> bool:
     texts.append(file.read_text())
-    return texts[-1]
+    return texts[-1].startswith("end ")

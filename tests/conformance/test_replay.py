@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from fwk import Component
-from fwk.recording.replay.recording import Recording
+from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from procs.vision.calibration import MirrorConfig
 from tests.conformance.discovery import LAUNCH, discovered, label, usage
@@ -22,8 +22,13 @@ ALONE = """
 include: {file}
 name: alone
 components:
-  cyan1/component: {{use: "{module}:{name}"}}
+  cyan1/component: {{use: "{module}:{name}", config: {config}}}
 """
+CONFIG = {"scenarios.crew": "{actions: [{place_ball: {x_m: 1.0, y_m: 0.5}}]}"}
+"""Settings of components that write nothing by default."""
+STILL = '  cyan1/still: {use: "procs.scenarios.dummy:Dummy"}\n'
+IN_AN_EMPTY_FIELD = {"scenarios.dummy": "", "scenarios.perfect_world": STILL}
+"""Components that write the same as others of a usual robot, and what they need besides."""
 Recorded = Callable[[str, str], Path]
 
 
@@ -57,9 +62,16 @@ def test_a_component_replays_alone(
     if used:
         log, name = recorded(used[0], ""), used[1].name
     else:  # no launch file contains it: add it to a system of one robot
-        text = ALONE.format(file=LAUNCH / "one-robot.yaml", module=component.__module__, name=component.__name__)
-        log, name = recorded("alone.yaml", text), "cyan1/component"
+        which = label(component)
+        file = LAUNCH / ("msl-field.yaml" if which in IN_AN_EMPTY_FIELD else "one-robot.yaml")
+        config, module, kind = CONFIG.get(which, "{}"), component.__module__, component.__name__
+        text = ALONE.format(file=file, module=module, name=kind, config=config)
+        log, name = recorded("alone.yaml", text + IN_AN_EMPTY_FIELD.get(which, "")), "cyan1/component"
     monkeypatch.chdir(log.parent)
+    if component.reaches_outside:
+        with pytest.raises(RecordingError, match="it reaches outside"):
+            Replay(Recording(log), [name])
+        return
     replay = Replay(Recording(log), [name])
     replay.run()
     assert [str(each) for each in replay.differences] == []

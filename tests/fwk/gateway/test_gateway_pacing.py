@@ -87,6 +87,15 @@ def test_a_listener_that_stays_busy_is_overrun_and_named() -> None:
     assert paced.publisher.overrun == "lcm-logger"
 
 
+def test_the_rest_leaves_at_once_at_the_end() -> None:
+    paced = Paced()
+    paced.tick(100)
+    paced.busy = "lcm-logger"
+    paced.publisher.send_all()
+    assert len(paced.sent) == 100
+    assert paced.publisher.waiting == 0
+
+
 def test_everything_leaves_at_once_if_no_program_listens() -> None:
     paced = Paced()
     paced.busy = None
