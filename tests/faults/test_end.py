@@ -63,6 +63,7 @@ def test_repeated_ctrl_c_ends_the_run_cleanly(launch: Launch, traced: Path, afte
     run = launch(*RUN)
     run.until_ticks("f/player", 5)
     after.note(run)
-    while run.process.poll() is None:
-        run.signal(signal.SIGINT)
+    with contextlib.suppress(ProcessLookupError):  # it may end between the look and the signal
+        while run.process.poll() is None:
+            run.signal(signal.SIGINT)
     after.check(run)
