@@ -4,13 +4,18 @@ import math
 
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.path import Disc, find_way
-from procs.model.field import Field, Point
+from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import ahead, bearing_rad, between, clamp
 from procs.referee.restarts import State
 
 _OWN_SET_PIECE_M = 2.3
 _THEIR_SET_PIECE_M = 3.3
 _DROPPED_BALL_M = 1.3
+_AREA_M = 0.35
+"""Robots without the ball keep that distance from the penalty areas."""
+_APART_M = 1.0
+"""Least distance of two robots at a set piece."""
+_TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
@@ -44,6 +49,15 @@ def first_opponent_place(game: Game, field: Field) -> Point:
     return allowed(ahead(game.spot, bearing_rad(game.spot, field.goal_centre(-1.0)), _keep_off_m(game)), game, field)
 
 
+def helper_place(place: Point, game: Game, field: Field) -> Point:
+    """Returns the place of a robot that is not the nearest of its team: one near `place` that the rules allow."""
+    place = allowed(place, game, field)
+    if game.whose is not Whose.THEIRS:
+        return place
+    first = first_opponent_place(game, field)
+    return place if math.dist(place, first) >= _APART_M else _around(place, game, field, first)
+
+
 def allowed(place: Point, game: Game, field: Field) -> Point:
     """Returns the place, or one near it that the rules of the set piece allow."""
     if game.free_play:
@@ -54,6 +68,8 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
         if not field.in_field(*ahead(game.spot, way_rad, distance_m)):
             way_rad = bearing_rad(game.spot, Point(-0.3 * field.half_length_m, 0.0))
         place = ahead(game.spot, way_rad, distance_m)
+    if game.state is not State.PENALTY and _in_area(place, field):
+        place = _around(place, game, field)
     if game.state is State.KICK_OFF and place.x_m > -_HALFWAY_M:
         aside_m = math.sqrt(max(0.0, distance_m**2 - _HALFWAY_M**2))
         y_m = math.copysign(max(abs(place.y_m), aside_m), place.y_m)
@@ -70,6 +86,21 @@ def next_step(own: Point, place: Point, game: Game) -> Point:
         return ahead(game.spot, bearing_rad(game.spot, own), circle.radius_m + 0.1)
     way = find_way(own, place, [circle])
     return place if way.length_m <= math.dist(own, place) else ahead(own, way.direction_rad, min(way.length_m, _STEP_M))
+
+
+def _in_area(place: Point, field: Field) -> bool:
+    return any(field.in_penalty_area(*place, side, _AREA_M) for side in SIDES)
+
+
+def _around(place: Point, game: Game, field: Field, taken: Point | None = None) -> Point:
+    """Returns the nearest place at the same distance from the ball that is outside the areas and apart from `taken`."""
+    distance_m, way_rad = math.dist(game.spot, place), bearing_rad(game.spot, place)
+    for turn_rad in _TURNS_RAD:
+        other = ahead(game.spot, way_rad + turn_rad, distance_m)
+        apart = taken is None or math.dist(other, taken) >= _APART_M
+        if apart and field.in_field(*other) and not _in_area(other, field):
+            return other
+    return place
 
 
 def _keep_off_m(game: Game) -> float:

@@ -114,7 +114,7 @@ class Tactics:
 
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
         if job.role != ATTACKER:
-            place = formation.allowed(job.place, game, self.field)
+            place = formation.helper_place(job.place, game, self.field)
             return self._stand(view, formation.next_step(view.own.place, place, game), "take position")
         if game.whose is not Whose.OURS:
             place = formation.first_opponent_place(game, self.field)

@@ -130,3 +130,14 @@ def test_defenders_stand_between_ball_and_penalty_area() -> None:
         _, stopper, sweeper, _ = formation.places(where, ours=False, flank=1.0, field=FIELD)
         assert not FIELD.in_penalty_area(*stopper, -1.0)
         assert not FIELD.in_penalty_area(*sweeper, -1.0)
+
+
+@pytest.mark.parametrize("spot", [Point(-7.4, -0.7), Point(-7.4, 3.0), Point(-8.5, 5.0)])
+def test_set_piece_near_the_goal_sends_no_player_into_an_area(spot: Point) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=spot)
+    first = formation.first_opponent_place(game, FIELD)
+    helpers = [formation.helper_place(post, game, FIELD) for post in formation.places(spot, False, 1.0, FIELD)]
+    for place in [first, *helpers]:
+        assert not FIELD.in_penalty_area(*place, -1.0, 0.25), place
+        assert math.dist(place, spot) >= 3.0
+    assert all(math.dist(place, first) >= 0.99 for place in helpers)
