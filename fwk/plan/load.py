@@ -1,6 +1,7 @@
 """Loads a launch file: from its name and command-line options to a checked plan, or to all its mistakes."""
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -8,6 +9,7 @@ from fwk.clock import US_PER_S
 from fwk.model.errors import Problems
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
+from fwk.model.public_url import UrlError, parse_url
 from fwk.model.sections import RecordPlan
 from fwk.model.selection import chosen, groups_of
 from fwk.plan.cameras import check_cameras
@@ -177,6 +179,13 @@ class _Loading:
             highest = plan.bus_port - (end - _PORTS_END)
             text = f"the run would need the ports {plan.bus_port} to {end - 1}; use --bus-port {highest} or less"
             self.problems.add("--bus-port", "", text)
+        with suppress(UrlError):  # reported already
+            port = parse_url(plan.public_url)[1] if plan.public_url else 0
+            if plan.bus_port <= port < end:
+                text = (
+                    f"port {port} is one of the run's own ports {plan.bus_port} to {end - 1}; use one outside of them"
+                )
+                self.problems.add("public_url", "", text)
 
 
 def _opens(component: Resolved) -> bool:

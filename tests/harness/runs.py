@@ -19,12 +19,12 @@ from tests.harness.command_server import MARK
 from tests.harness.commands import BIN
 
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
-_BLOCK = 128
+_BLOCK = 192
 _BASES = range(21_120, 32_000, _BLOCK)  # first lock block of ports
 
 
 class PortBlock:
-    """Ports that no other test on this machine uses at the same time: consecutive blocks of 128 ports.
+    """Ports that no other test on this machine uses at the same time: consecutive blocks of 192 ports.
 
     The lock of a block is a name in the network namespace, which is also the scope of ports; it ends with its
     process.

@@ -153,6 +153,11 @@ def test_channels(folder: Path, broken: Broken) -> None:
         "components: {a/one: {use: plan_parts:Odometer}}",
         {"bus_port": 65530},
     ),
+    Broken(
+        "public_url: port 20010 is one of the run's own ports 20000 to 20037; use one outside of them",
+        "{public_url: 'udpm://239.255.76.67:20010?ttl=0', components: {a/one: {use: plan_parts:Odometer}}}",
+        {"bus_port": 20000},
+    ),
 )
 def test_processes_and_parts(folder: Path, broken: Broken) -> None:
     assert said(broken, folder) == expected(broken)
