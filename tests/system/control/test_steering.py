@@ -90,7 +90,7 @@ def test_reload_changes_the_code_of_one_component_only(run: Steered) -> None:
 
 def test_reloaded_code_that_fails_is_reported_and_repaired(run: Steered) -> None:
     file = run.launched.folder / "small.py"
-    file.write_text(PARTS.replace('"""Counts up."""', "1 / 0"))
+    file.write_text(PARTS.replace('"""Counts its iterations."""', "1 / 0"))
     said = run.fwk("reload", "r/counter", code=1)
     assert "r/counter failed" in said
     assert "ZeroDivisionError" in said
