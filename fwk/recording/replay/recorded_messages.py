@@ -22,7 +22,7 @@ class RecordedMessages:
     def __init__(self, path: Path, lost: dict[str, set[int]]) -> None:
         self._path = path
         self._lost = lost
-        self._marks: dict[str, int] = {}  # newest marks by channel
+        self._marks: dict[int, int] = {}
         self._hidden: dict[tuple[str, int, int], list[bytes]] = {}  # by channel, tick and step
 
     def add(self, tick: RecordedTick, names: Mapping[int, str]) -> None:
@@ -37,7 +37,7 @@ class RecordedMessages:
             here.setdefault(channel, []).extend(map(sequence_of, data))
         for index, mark in zip(tick.record.channel, tick.record.sequence, strict=True):
             channel = names[index]
-            before, self._marks[channel] = self._marks.get(channel, 0), mark
+            before, self._marks[index] = self._marks.get(index, 0), mark
             if mark - before > MESSAGES_MAX:
                 raise RecordingError(
                     f"{self._path}: damaged: {channel} cannot have {mark - before} messages in tick "
@@ -47,11 +47,15 @@ class RecordedMessages:
                 lost = {*range(before + 1, mark + 1)} - {*here.get(channel, ())}
                 self._lost.setdefault(channel, set()).update(lost)
         for channel, numbers in here.items():
-            if max(numbers) > self._marks.get(channel, 0) + MESSAGES_MAX:
+            if max(numbers) > MESSAGES_MAX and max(numbers) > self._newest(channel, names) + MESSAGES_MAX:
                 raise RecordingError(
                     f"{self._path}: damaged: {channel} cannot have message {max(numbers)} in tick {tick.record.tick}; "
                     f"replay the ticks before it with --to-tick {tick.record.tick - 1}"
                 )
+
+    def _newest(self, channel: str, names: Mapping[int, str]) -> int:
+        """Returns the newest mark of a channel, which may have had several indices."""
+        return max((mark for index, mark in self._marks.items() if names.get(index) == channel), default=0)
 
     def take(self, channel: str, tick: int, step: int) -> list[bytes]:
         """Returns the messages of a done on a channel, oldest first.
