@@ -1,5 +1,6 @@
 """Programs with LCM's default settings hear every message of a run that makes hundreds visible at once."""
 
+import contextlib
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -89,7 +90,9 @@ def test_lcm_spy_hears_every_message(tmp_path: Path, needs: Callable[..., None],
     bus = default_bus(ports)
     for folder in attempts(tmp_path):
         with screen() as display, lcm_spy(bus, display, folder) as seen:
-            if burst(folder, ports, speed):
+            burst(folder, ports, speed)
+            # A collection of Java's garbage may last longer than its socket has room; that shows nowhere.
+            with contextlib.suppress(AssertionError):
                 wait_until(partial(_counted_all, seen), "lcm-spy lacks messages")
                 break
 
