@@ -31,6 +31,14 @@ class SupervisorConnection(Protocol):
         """
         ...
 
+    def send(self, packet: bytes, /) -> int:
+        """Sends a packet to the supervisor.
+
+        Raises:
+            OSError: the supervisor has died, or takes no packets.
+        """
+        ...
+
 
 class Outsiders(Protocol):
     """Programs outside, on the public bus."""

@@ -2,6 +2,7 @@
 
 import struct
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -44,10 +45,14 @@ HANDED_AT_ONCE = 32
 """Messages that a sink gets before the public bus has its turn again."""
 PATIENCE_US = 2_000_000
 """Longest wall time that the public bus waits for a busy listener."""
-FINISH_US = 3_000_000
-"""Wall time after the end of the run in which the public bus gets what is left at the pace of its listeners."""
 REAL_TIME_PATIENCE_US = 100_000
 """The same in real time, in which programs outside need the newest messages in time."""
+FINISH_US = 20_000_000
+"""Longest wall time after the end of the run in which the public bus gets what is left at its listeners' pace."""
+FINISHING = b"fwk/finishing"
+"""Packet that tells the supervisor that this work goes on."""
+FINISHING_US = 500_000
+"""Wall time between two such packets."""
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost a report."""
 SECOND_REQUEST_US = 5_000
@@ -156,6 +161,9 @@ class Gateway:
     def _send_due(self) -> None:
         """Sends delayed data: fragments, messages for the public bus, a request for missing records."""
         self._sender.send_due()
+        self._publish_due()
+
+    def _publish_due(self) -> None:
         self.publisher.send_due()
         if self.publisher.overrun != self._overrun:
             self._overrun = self.publisher.overrun
@@ -165,16 +173,29 @@ class Gateway:
         """Writes the remaining data and closes everything."""
         self._pass_on(self._lines, log_t)
         self._pass_on(self._status, status_t)
+        yield from self._publish_rest()
         for sink in self.sinks:
             sink.close()
-        end_us = self._network.now_us() + FINISH_US
-        while self.publisher.waiting and self._network.now_us() < end_us:
-            yield min(self.publisher.due_us, end_us)
-            self.publisher.send_due()
-        self.publisher.send_all()
         self._inputs.close()
         for receiver in (self._records, self._lines, self._status, self._own):
             receiver.socket.close()
+
+    def _publish_rest(self) -> Steps[None]:
+        """Sends what waits for the public bus, at the pace of its listeners, as long as the supervisor lets it."""
+        for descriptor in (*self._handlers, self._records.fileno()):
+            self._network.unwatch(descriptor)
+        now_us = report_us = self._network.now_us()
+        end_us = now_us + FINISH_US
+        while self.publisher.waiting:
+            if now_us >= report_us:
+                report_us = now_us + FINISHING_US
+                with suppress(OSError):  # the supervisor has died
+                    self._control.send(FINISHING)
+            yield self.publisher.due_us
+            now_us = self._network.now_us()
+            if now_us >= end_us:
+                self.publisher.send_all()
+            self._publish_due()
 
     def _receive_records(self) -> Steps[None]:
         for channel, data in self._records.messages(sync.RECORD, sync.ANNOUNCE):

@@ -103,7 +103,8 @@ class PacedPublisher:
         self._send_group(max(self._group, excess))
 
     def send_all(self) -> None:
-        """Sends whatever waits, whether or not listeners keep up."""
+        """Sends whatever waits; listeners may lack some of it."""
+        self.overrun = self._busy_listener() or self.overrun or "a listener"
         self._send_group(self._size)
 
     def _send_group(self, left: int) -> None:

@@ -9,6 +9,7 @@ from functools import partial
 from fwk.component.images import Ring
 from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
+from fwk.gateway.gateway import FINISHING
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, name_process, run_forked, wait_for_end
 from fwk.launcher.gateway_process import DELETED, run_gateway
 from fwk.launcher.reservations import Reservations
@@ -96,6 +97,7 @@ class HelperProcesses:
             if self._gateway and isinstance(error, TimeoutError):
                 when = f"{_PATIENCE_S:g} s after the end"
                 self.gave_up = f"the gateway was not done {when}; killed: the recording may lack its end"
+        newest.pop(FINISHING.decode(), None)
         self.deleted = newest.pop(DELETED.decode(), b"").decode()
         self.lost = int(newest.pop(sinks.LOST, 0))
         if self._gateway:

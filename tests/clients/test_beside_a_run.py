@@ -1,6 +1,5 @@
 """Programs with LCM's default settings hear every message of a run that makes hundreds visible at once."""
 
-import contextlib
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -64,7 +63,7 @@ def test_lcm_logger_hears_every_message(tmp_path: Path, ports: PortBlock, speed:
         with default_bus(ports).logger(folder / "heard"):
             kept_up = burst(folder, ports, speed)
         recorded, heard = (_notes(folder / name) for name in ("log.lcm", "heard"))
-        if kept_up and heard == recorded:
+        if kept_up:
             break
     assert len(recorded) == MESSAGES
     assert heard == recorded
@@ -90,9 +89,7 @@ def test_lcm_spy_hears_every_message(tmp_path: Path, needs: Callable[..., None],
     bus = default_bus(ports)
     for folder in attempts(tmp_path):
         with screen() as display, lcm_spy(bus, display, folder) as seen:
-            burst(folder, ports, speed)
-            # A collection of Java's garbage may last longer than its socket has room; that shows nowhere.
-            with contextlib.suppress(AssertionError):
+            if burst(folder, ports, speed):
                 wait_until(partial(_counted_all, seen), "lcm-spy lacks messages")
                 break
 

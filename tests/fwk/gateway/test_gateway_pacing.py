@@ -94,6 +94,7 @@ def test_the_rest_leaves_at_once_at_the_end() -> None:
     paced.publisher.send_all()
     assert len(paced.sent) == 100
     assert paced.publisher.waiting == 0
+    assert paced.publisher.overrun == "lcm-logger"
 
 
 def test_everything_leaves_at_once_if_no_program_listens() -> None:
