@@ -2,9 +2,9 @@
 
 import contextlib
 import os
-from collections.abc import Iterator
 from pathlib import Path
 
+from fwk.bus.udp_sockets import owners, process_name, sockets_on
 from fwk.clock import US_PER_S, monotonic_us
 
 LOOK_US = US_PER_S
@@ -15,7 +15,6 @@ THREADS_MAX = 8
 """Number of threads up to which all threads of a program are watched; of a larger one, those that ran lately."""
 QUEUE_LOOK_US = 10_000
 """Wall time between two checks of the sockets; the gateway's messages of that time fit into a small socket."""
-_SOCKETS = Path("/proc/net/udp")
 _STATE_BYTES = 128
 
 
@@ -33,13 +32,13 @@ class Listeners:
 
     def __init__(self, port: int, own: int = 0) -> None:
         self._own = str(own)
-        self._port = f":{port:04X}"
+        self._port = port
         self._look_us = 0
         self._queue_look_us = 0
         self._held_up = ""  # name of a listener with datagrams in its socket
         self._inodes: set[str] = set()
-        self._processes: dict[str, str] = {}  # by inode of their sockets
-        self._threads: dict[str, list[int]] = {}  # by process: open files with the states of its threads
+        self._processes: dict[str, int] = {}  # by inode of their sockets
+        self._threads: dict[int, list[int]] = {}  # by process: open files with the states of its threads
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last check
 
     def busy(self) -> str | None:
@@ -70,10 +69,10 @@ class Listeners:
 
     def _look(self) -> None:
         """Finds the listening processes, if they have changed, and their threads."""
-        inodes = {inode for inode, _ in self._sockets()}
+        inodes = {socket.inode for socket in sockets_on(self._port)} - {self._own}
         if inodes != self._inodes:
             self._inodes = inodes
-            self._processes = _processes_with(inodes)
+            self._processes = {inode: process for inode, process in owners(inodes) if process != os.getpid()}
             processes = list(dict.fromkeys(self._processes.values()))
         else:
             processes = list(self._threads)
@@ -89,44 +88,21 @@ class Listeners:
                 for thread in threads:
                     self._threads[process].append(os.open(f"{thread}/stat", os.O_RDONLY | os.O_CLOEXEC))
 
-    def _sockets(self) -> Iterator[tuple[str, bool]]:
-        """Yields the inode of each socket on the port, and whether datagrams wait in it."""
-        with contextlib.suppress(OSError):
-            for line in _SOCKETS.read_text().splitlines():
-                if self._port in line:
-                    columns = line.split()
-                    if columns[1].endswith(self._port) and columns[9] != self._own:
-                        yield columns[9], not columns[4].endswith(":00000000")
-
     def _with_datagrams(self) -> str:
-        for inode, waiting in self._sockets():
-            if waiting and inode in self._processes:
-                return _name_of(self._processes[inode])
+        for socket in sockets_on(self._port):
+            if socket.waiting and socket.inode in self._processes:
+                return _name_of(self._processes[socket.inode])
         return ""
 
-    def _forget(self, process: str) -> None:
+    def _forget(self, process: int) -> None:
         for file in self._threads.pop(process):
             os.close(file)
-
-
-def _processes_with(inodes: set[str]) -> dict[str, str]:
-    """Returns the other processes of this user that have one of these sockets, by inode."""
-    found: dict[str, str] = {}
-    sockets = {f"socket:[{inode}]": inode for inode in inodes}
-    for process in filter(str.isdigit, os.listdir("/proc") if sockets else ()):
-        with contextlib.suppress(OSError):
-            if int(process) != os.getpid():
-                for number in os.listdir(f"/proc/{process}/fd"):
-                    if inode := sockets.get(os.readlink(f"/proc/{process}/fd/{number}")):
-                        found[inode] = process
-    return found
 
 
 def _can_run(thread: int) -> bool:
     return os.pread(thread, _STATE_BYTES, 0).rpartition(b")")[2][1:2] == b"R"
 
 
-def _name_of(process: str) -> str:
-    with contextlib.suppress(OSError):
-        return f"{Path(f'/proc/{process}/comm').read_text().strip()} (process {process})"
-    return f"process {process}"
+def _name_of(process: int) -> str:
+    name = process_name(process)
+    return f"{name} (process {process})" if name else f"process {process}"

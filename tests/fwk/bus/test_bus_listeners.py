@@ -75,7 +75,7 @@ def test_a_listener_that_comes_later_is_found(monkeypatch: pytest.MonkeyPatch) -
     with listening() as (program, port):
         made = Listeners(port + 1 if port < 65535 else port - 1)
         made.busy()
-        made._port = f":{port:04X}"
+        made._port = port
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             sender.sendto(b"work", ("127.0.0.1", port))
         assert program.stdout
