@@ -69,10 +69,6 @@ class Signal(Source):
             raise BlockingIOError
         return b""
 
-    def send(self, packet: bytes, /) -> int:
-        """Drops a packet to the supervisor, which does not exist at this end."""
-        return len(packet)
-
 
 class SimulatedSocket(Source):
     """A non-blocking UDP socket of a simulated process."""

@@ -140,6 +140,14 @@ class _Public(Signal):
         return ""
 
 
+class _SupervisorConnection(Signal):
+    """The gateway's end of the connection that the supervisor closes."""
+
+    def send(self, packet: bytes, /) -> int:
+        """Drops a packet: only the launcher of a real run waits for it."""
+        return len(packet)
+
+
 class _GatewayEnd(Signal):
     """Informs the supervisor about the end of the gateway."""
 
@@ -185,7 +193,7 @@ class System:
         self._public = _Public(self._ether)
         self._server: _Server | None = None
         self._recorder: sinks.Recorder | None = None
-        self._closed = Signal(self._ether)  # the supervisor's connection to the gateway
+        self._closed = _SupervisorConnection(self._ether)  # the supervisor's connection to the gateway
         self._supervisor_process = Process("supervisor", self.world, self._ether, self._on_supervisor_end)
         self._gateway_process = Process("gateway", self.world, self._ether, self._on_gateway_end)
 

@@ -1,5 +1,6 @@
 """The gateway at the end of a run: what still waits for the public bus, while the supervisor waits for the gateway."""
 
+import itertools
 import socket
 from collections.abc import Iterator
 
@@ -21,7 +22,7 @@ class QuickNetwork(UdpNetwork):
 
     time_us = 0
 
-    def now_us(self) -> int:  # type: ignore[override]
+    def now_us(self) -> int:
         return self.time_us
 
     def run(self, steps: Steps[T]) -> T:
@@ -111,7 +112,7 @@ def test_the_supervisor_hears_of_the_work_all_the_time(ending: Ending) -> None:
     ending.end(5 * LEAST)
     assert ending.sent[-1] > 3 * BUSY_US
     times = [ending.sent[0], *ending.reports, ending.sent[-1]]
-    assert max(after - before for before, after in zip(times, times[1:], strict=False)) < 2 * FINISHING_US
+    assert max(after - before for before, after in itertools.pairwise(times)) < 2 * FINISHING_US
 
 
 def test_a_rest_sent_too_fast_at_the_end_is_reported(ending: Ending) -> None:
