@@ -12,6 +12,7 @@ from fwk.cli.examples import add_examples
 from fwk.cli.version import version
 
 MODULES = {
+    "new": "project.new",
     "check": "check.check",
     "ps": "look.ps",
     "status": "look.status",

@@ -8,6 +8,13 @@ EXAMPLES = {
         "fwk-launch robots.yaml --run red --detach",
         "fwk-launch robots.yaml --set cyan1/omni_ball.deviation_px=2 --without 'magenta*'",
     ),
+    "fwk new project": ("fwk new project garden",),
+    "fwk new component": ("fwk new component tracker", "fwk new component gripper --kind driver --launch robots.yaml"),
+    "fwk new interface": (
+        "fwk new interface garden.moisture percent:double",
+        "fwk new interface garden.scan n:int32_t 'ranges_m:float[n]'",
+    ),
+    "fwk new launch": ("fwk new launch trial", "fwk new launch trial tracker sensor --namespace red"),
     "fwk check": ("fwk check robots.yaml", "fwk check robots.yaml --settings --set cyan1/omni_ball.deviation_px=2"),
     "fwk ps": ("fwk ps --json",),
     "fwk status": ("fwk status", "fwk status 'cyan1/*' --run red", "fwk status cyan1/world_model"),

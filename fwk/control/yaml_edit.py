@@ -13,6 +13,7 @@ from fwk.plan.files.source import read_value
 
 _COMMA = re.compile(r"\s*,\s*")
 _PLAIN_KEY = re.compile(r"[A-Za-z_][\w./-]*", re.ASCII)
+_PLAIN_TEXT = re.compile(r"[A-Za-z_][\w./:-]*\w", re.ASCII)
 
 
 class EditError(Exception):
@@ -176,4 +177,6 @@ def flow(value: Any) -> str:
         return "[" + ", ".join(map(flow, value)) + "]"
     if isinstance(value, float) and not math.isfinite(value):
         return {math.inf: ".inf", -math.inf: "-.inf"}.get(value, ".nan")
+    if isinstance(value, str) and _PLAIN_TEXT.fullmatch(value) and yaml.safe_load(value) == value:
+        return value
     return json.dumps(value, ensure_ascii=False)

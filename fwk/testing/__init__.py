@@ -1,5 +1,6 @@
 """Tests of components: a bench for one component, a system in memory for many or for a launch file."""
 
+from fwk.lcm.type_registry import use_types_of
 from fwk.testing.bench import Bench
 from fwk.testing.expression import Expression, ExpressionError, reads_messages
 from fwk.testing.launched import launch_plan, settings_in, system_of
@@ -19,4 +20,5 @@ __all__ = [
     "reads_messages",
     "settings_in",
     "system_of",
+    "use_types_of",
 ]

@@ -1,0 +1,1 @@
+"""Commands that make projects and edit their components."""
