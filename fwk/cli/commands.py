@@ -26,6 +26,7 @@ MODULES = {
     "note": "steer.note",
     "send": "steer.send",
     "call": "steer.call",
+    "play": "recordings.play",
     "replay": "recordings.replay",
     "compare": "recordings.compare",
     "log-info": "recordings.log_info",

@@ -44,6 +44,11 @@ EXAMPLES = {
     ),
     "fwk note": ("fwk note 'the ball was taken away'",),
     "fwk send": ("fwk send rosy/motor_command vx_m_s=0.2 enabled=true",),
+    "fwk play": (
+        "fwk play log.lcm --speed 0.5",
+        "fwk play log.lcm --from 12.5s --to 'ball was taken' --loop --channels 'cyan1/*'",
+        "fwk play heard.lcm --remap cyan1/pose=cyan2/pose --plugin my_plugins:Noise",
+    ),
     "fwk replay": (
         "fwk replay log.lcm --verify",
         "fwk replay log.lcm --only 'cyan1/*' --from-tick 100",

@@ -147,6 +147,8 @@ class LogReader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.skipped_bytes = 0
+        self.position = 0
+        """Where the newest event of the newest iteration ends, in bytes from the beginning of the file."""
         try:
             if not stat.S_ISREG(os.stat(path).st_mode):
                 raise LogError(f"{path}: not an ordinary file")
@@ -156,14 +158,18 @@ class LogReader:
             raise LogError(f"{path}: cannot read: {error.strerror}") from error
 
     def __iter__(self) -> Iterator[Event]:
+        return self.events_from(0)
+
+    def events_from(self, position: int) -> Iterator[Event]:
+        """Yields the events from a byte of the file on, such as a former `position`."""
         self.skipped_bytes = 0
         with open(self.path, "rb") as file:
             window = _Window(file.fileno())
-            position = 0
             while position < window.file_bytes:
                 found = self._event(window, position)
                 if found:
                     event, position = found
+                    self.position = position
                     yield event
                 else:
                     following = window.find_sync(position + 1)

@@ -1,0 +1,1 @@
+"""Play: gives a log back to the public bus."""
