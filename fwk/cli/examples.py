@@ -55,7 +55,7 @@ EXAMPLES = {
         "fwk replay log.lcm --debug cyan1/world_model --from-tick 500",
     ),
     "fwk compare": ("fwk compare before.lcm after.lcm",),
-    "fwk log-info": ("fwk log-info log.lcm",),
+    "fwk log-info": ("fwk log-info log.lcm", "fwk log-info log.lcm --check --json"),
     "fwk runs list": ("fwk runs list",),
     "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (

@@ -92,6 +92,9 @@ class LogWriter:
         else:
             self._write(data, events)
 
+    def written(self, data: bytearray) -> None:
+        """Is called with each piece of whole events that has reached the file; for subclasses."""
+
     def close(self) -> None:
         """Writes the rest and closes the file; further calls have no effect."""
         if not self._file.closed:
@@ -115,6 +118,7 @@ class LogWriter:
             self._drop(error, events)
             return
         self._good_bytes += len(data)
+        self.written(data)
         if self._full:
             self._full = False
             self._report(f"{self.path}: the disk has room again; {self.dropped} messages are missing in the recording")

@@ -26,7 +26,7 @@ class StampedLog(LogReader):
                 skipped = self.skipped_bytes
                 stamps.clear()
             if event.channel == STAMP:
-                stamp = _stamp(event.data)
+                stamp = stamp_in(event.data)
                 if stamp:
                     stamps[stamp.channel] = stamp.header
             elif header := stamps.pop(event.channel, None):
@@ -37,7 +37,7 @@ class StampedLog(LogReader):
             yield event
 
 
-def _stamp(data: bytes) -> stamp_t | None:
+def stamp_in(data: bytes) -> stamp_t | None:
     """Returns the stamp of an event; None if it is damaged."""
     try:
         stamp: stamp_t = _decode(data)

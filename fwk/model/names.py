@@ -7,6 +7,9 @@ RESERVED = "fwk/"
 LINES = "fwk/lines"
 """Channel of log lines for components with the aspect `LogLines`."""
 
+NOTE = "note"
+"""Source file of the log lines that `fwk note` writes: the bookmarks of a recording."""
+
 _NAME = re.compile(r"[A-Za-z_][\w-]*(/[A-Za-z_][\w-]*)*", re.ASCII)
 _PATTERN = re.compile(r"(?=.*\*)[\w*-]+(/[\w*-]+)*/[A-Za-z_][\w-]*", re.ASCII)
 

@@ -8,9 +8,9 @@ from typing import Protocol
 
 from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
-from fwk.lcm.event_log import LogWriter
 from fwk.model.plan import Plan
 from fwk.model.plan_document import document_of
+from fwk.recording.indexed_log import IndexedLogWriter
 from lcmtypes.core import plan_t, protocol_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
@@ -20,7 +20,7 @@ class Recorder:
     """Writes the LCM log with logical time as time stamps, so that equal runs give equal logs."""
 
     def __init__(self, plan: Plan, path: Path, report: Callable[[str], None]) -> None:
-        self._writer = LogWriter(path, report)
+        self._writer = IndexedLogWriter(path, report)
         first = plan_t()
         first.version = protocol_t.VERSION
         first.json = json.dumps(document_of(plan))

@@ -32,6 +32,10 @@ from lcmtypes.core import frame_t, protocol_t, settings_change_t, tick_record_t
 
 PLAN = "fwk/plan"
 """Channel of the plan."""
+RECORD = "fwk/record"
+"""Channel of the tick records."""
+EXCERPT = "fwk/excerpt"
+"""Channel of the message that says that a log is a part of a recording."""
 BROKEN = (ValueError, struct.error, LookupError, TypeError, AttributeError, RecursionError)
 """Exceptions of reading data that are damaged."""
 _FRAME_WITHOUT_CAPTURE = fingerprint(core_v1.frame_t)

@@ -10,28 +10,40 @@ import typer
 from fwk.cli.arguments import folder
 from fwk.cli.output import say, say_table
 from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.progress import progress_of
+from fwk.clock import US_PER_S
 from fwk.display.table import Column, Table
 from fwk.lcm.type_registry import use_types_of
-from fwk.recording.log_info import ChannelInfo, LogInfo
+from fwk.recording.log_contents import ChannelInfo, LogInfo
 from fwk.recording.log_info import log_info as read_info
 
 
 def log_info(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="log or run directory")],
+    check: Annotated[
+        bool, typer.Option("--check", help="read every message and compare the check sums; exit 1 at damage")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="for programs")] = False,
     types: Annotated[
         Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
 ) -> None:
-    """Shows channels, types, counts, rates, ticks, gaps and damage of a log."""
+    """Shows channels, types, counts, rates, ticks, gaps, bookmarks and damage of a log.
+
+    A log with an index beside it (`log.lcm.index`, which a run writes at its end) opens at once, whatever its size.
+    """
     with failing(2):
         use_types_of(types)
-        info = read_info(find_log(file))
+        log = find_log(file)
+        with progress_of("reading", log) as progress:
+            info = read_info(log, check, progress)
     if as_json:
         typer.echo(json.dumps(_plain(info), indent=2))
-        return
-    say(*_summary(info))
-    say_table(_table(info))
+    else:
+        say(*_summary(info))
+        say_table(_table(info))
+    if check and (info.damaged_bytes or info.changed):
+        raise typer.Exit(1)
 
 
 def _plain(info: LogInfo) -> dict[str, Any]:
@@ -40,7 +52,8 @@ def _plain(info: LogInfo) -> dict[str, Any]:
         for name, made in info.channels.items()
     }
     derived = {"file": str(info.file), "duration_s": info.duration_s, "ticks": info.ticks}
-    return {**asdict(info), **derived, "channels": channels}
+    named = {"notes": [note._asdict() for note in info.notes], "changed": [part._asdict() for part in info.changed]}
+    return {**asdict(info), **derived, **named, "channels": channels}
 
 
 def _summary(info: LogInfo) -> list[str]:
@@ -51,6 +64,8 @@ def _summary(info: LogInfo) -> list[str]:
         made.append(f"{info.dropped} events were dropped by the program that wrote the log")
     if info.damaged_bytes:
         made.append(f"{info.damaged_bytes} damaged bytes skipped")
+    made += [f"damaged: {part}" for part in info.changed]
+    made += [f"note, tick {note.tick}, {note.time_us / US_PER_S:.3f} s: {note.text}" for note in info.notes]
     return made
 
 

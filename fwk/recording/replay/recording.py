@@ -30,10 +30,18 @@ from fwk.model.tick_events import (
     events_of,
 )
 from fwk.recording.pictures import FRAME, RecordedPicture, picture_of
-from fwk.recording.versions import BROKEN, PLAN, message_of_today, read_plan, read_record, record_type
-from lcmtypes.core import settings_change_t, tick_record_t
+from fwk.recording.versions import (
+    BROKEN,
+    EXCERPT,
+    PLAN,
+    RECORD,
+    message_of_today,
+    read_plan,
+    read_record,
+    record_type,
+)
+from lcmtypes.core import excerpt_t, settings_change_t, tick_record_t
 
-RECORD = "fwk/record"
 _OF_A_HOST = (StageDone, IterationDone, FinalDone, HostStarted, HostLost, HostLate, HostStopped, MessageLost)
 
 
@@ -83,6 +91,11 @@ class Recording:
             if event.number != number:
                 raise RecordingError(self._gap(event.number - number, tick))
             event = self._of_today(event)
+            if event.channel == EXCERPT:
+                text = excerpt_t.decode(event.data).text
+                raise RecordingError(
+                    f"{self.path}: cannot be replayed: it is a part of a recording ({text}); replay the whole"
+                )
             if event.data[:8] != types.get(event.channel, event.data[:8]):
                 raise RecordingError(self._other_type(event, types[event.channel]))
             if event.channel == RECORD:

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from fwk.clock import US_PER_S
+from fwk.component.log import LEVELS
 from fwk.control import requests
 from fwk.control.requests import RequestError
 from fwk.control.server import Answer, Connection, Server
 from fwk.control.settings import NewSettings, RunSettings
+from fwk.model.names import NOTE
 from fwk.supervisor.boundary import SettingsChanged, SettingsRequest
 from fwk.supervisor.control.clock_control import ClockControl
 from fwk.supervisor.control.view import component_view, period_us, times_view
@@ -139,7 +141,7 @@ class Control:
         return {"settings": rows}
 
     def _note(self, request: requests.Note, _connection: Connection) -> Reply:
-        (self._core.log.warning if request.level == "warning" else self._core.log.info)(request.text)
+        self._core.log.write(LEVELS[request.level], request.text, NOTE, 0)
         return {"tick": self._loop.tick}
 
     def _run(self) -> dict[str, Any]:

@@ -12,7 +12,8 @@ from fwk.cli.recordings.log_info import log_info as command
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
 from fwk.lcm.messages import type_named
 from fwk.lcm.type_registry import use_types_of
-from fwk.recording.log_info import ChannelInfo, log_info
+from fwk.recording.log_contents import ChannelInfo
+from fwk.recording.log_info import log_info
 from tests.fwk.recording.recording_made import entries, entry, odometry, write
 
 
