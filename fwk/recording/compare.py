@@ -75,13 +75,18 @@ class Comparison:
             if reader.skipped_bytes and reader.skipped_bytes == reader.path.stat().st_size:
                 raise LogError(f"{reader.path}: not an LCM log: no event in {reader.skipped_bytes} bytes")
         found = [difference for name, channel in self._channels.items() if (difference := channel.end(name))]
-        self.difference = min(found, key=lambda difference: difference.key) if found else None
-        if self.difference:
-            self.difference = replace(self.difference, names=_names(a, b))
-        elif not self.messages:
+        found.sort(key=lambda difference: difference.key)
+        self.differences = [replace(difference, names=_names(a, b)) for difference in found]
+        """The first difference of each channel, by tick."""
+        if not found and not self.messages:
             where = "no common sequence numbers" if common else f"no messages outside '{FRAMEWORK}'"
             raise LogError(f"{a}, {b}: nothing to compare: {where}")
         self.channels = len(self._channels)
+
+    @property
+    def difference(self) -> Difference | None:
+        """The first difference; None: the logs are equal."""
+        return self.differences[0] if self.differences else None
 
     def _take(self, side: int, event: Event, other_ended: bool) -> None:
         name, data = event.channel, event.data

@@ -14,6 +14,7 @@ from fwk.lcm.type_registry import use_types_of
 from fwk.model.plan import Plan
 from fwk.plan.what_ran import different_modules, other_kernel
 from fwk.recording.compare import Comparison, plan_in
+from fwk.recording.differing import differing, lines_of
 
 EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
 
@@ -29,34 +30,39 @@ def compare(
     ] = Path(),
     as_json: Json = False,
 ) -> None:
-    """Compares two logs on every channel outside fwk/ and names the first difference.
+    """Compares two logs on every channel outside fwk/; names the first difference and all components that differ.
 
     Exit codes: 0 the same messages; 1 different; 2 a file cannot be used.
     """
     with failing(UNUSABLE):
         use_types_of(types)
         logs = find_log(a), find_log(b)
-        notes = list(_different_conditions((str(a), str(b)), logs))
+        plans = plan_in(logs[0]), plan_in(logs[1])
+        notes = list(_different_conditions((str(a), str(b)), plans))
         for text in notes:
             typer.echo(text, err=True)
         result = Comparison(*logs, common)
+        rows = differing(result.differences, plans[0] or plans[1])
     if as_json:
         difference = str(result.difference) if result.difference else None
         counts = {"messages": result.messages, "channels": result.channels, "damaged_bytes": list(result.skipped_bytes)}
-        typer.echo(json.dumps({"equal": difference is None, "difference": difference, **counts, "notes": notes}))
+        components = [row.plain() for row in rows]
+        answer = {"equal": difference is None, "difference": difference, "components": components, **counts}
+        typer.echo(json.dumps({**answer, "notes": notes}))
         raise typer.Exit(DIFFERENT if difference else EQUAL)
     for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
         if skipped:
             typer.echo(f"{path}: {skipped} damaged bytes skipped", err=True)
     if result.difference:
         typer.echo(f"different: {result.difference}")
+        for line in lines_of(rows):
+            typer.echo(line)
         raise typer.Exit(DIFFERENT)
     typer.echo(f"equal: {result.messages} messages on {result.channels} channels")
 
 
-def _different_conditions(names: tuple[str, str], logs: tuple[Path, Path]) -> Iterator[str]:
+def _different_conditions(names: tuple[str, str], plans: tuple[Plan | None, Plan | None]) -> Iterator[str]:
     """Yields the different conditions of the two runs: the BLAS kernel and the content of modules."""
-    plans = plan_in(logs[0]), plan_in(logs[1])
     if plans[0] is None or plans[1] is None:
         return
     if text := other_kernel(names, (plans[0].blas_kernel, plans[1].blas_kernel)):

@@ -18,6 +18,7 @@ from fwk.model.errors import hint
 from fwk.model.plan import Plan
 from fwk.plan.what_ran import blas_kernel, changed_modules, other_kernel
 from fwk.recording.difference import Difference
+from fwk.recording.differing import Differing, differing, lines_of
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 
@@ -68,11 +69,18 @@ def replay(
     if not found:
         typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")
         return
-    first = min(found, key=lambda difference: difference.key)
+    rows = _differing(done, found)
     typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
-    named = replace(first, names=("the recording", "the replay"))
-    typer.echo(f"  {_component(done, first)}: {named}")
+    typer.echo(f"  {rows[0].component}: {rows[0].first}")
+    for line in lines_of(rows):
+        typer.echo(line)
     raise typer.Exit(DIFFERENT)
+
+
+def _differing(done: Replay, found: list[Difference]) -> list[Differing]:
+    """Returns the components that write something else than in the run."""
+    named = [replace(difference, names=("the recording", "the replay")) for difference in found]
+    return differing(named, done.recording.plan)
 
 
 def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, object]:
@@ -80,11 +88,10 @@ def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, obj
     about = {"iterations": done.iterations, "left_out": done.left_out, "lost": lost, "verified": verify}
     if not verify:
         return about
-    first = min(found, key=lambda difference: difference.key) if found else None
-    named = replace(first, names=("the recording", "the replay")) if first else None
-    where = {"component": _component(done, first), "channel": first.channel, "tick": first.tick} if first else {}
+    rows = [row.plain() for row in _differing(done, found)]
+    first = {"component": rows[0]["component"], **rows[0]["first"]} if rows else None
     counts = {"equal": not found, "compared": done.compared, "differences": len(found)}
-    return {**about, **counts, "first": {**where, "text": str(named)} if first else None}
+    return {**about, **counts, "first": first, "components": rows}
 
 
 def _replay(
@@ -133,10 +140,3 @@ def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None
     if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:
         typer.echo(f"left in tick {reached}")
         raise typer.Exit(0)
-
-
-def _component(done: Replay, difference: Difference) -> str:
-    """Returns the writer of the message; for a dynamic channel, its header names the writer."""
-    plan = done.recording.plan
-    declared = [plan.components[item.writer].name for item in plan.channels if item.name == difference.channel]
-    return declared[0] if declared else difference.writer.partition("#")[0]

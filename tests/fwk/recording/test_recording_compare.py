@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from fwk.lcm.event_log import LogError
 from fwk.recording.compare import Comparison, compare
+from fwk.recording.differing import differing
 from fwk.recording.log_info import log_info
 from tests.fwk.recording.recording_made import Entry, entries, entry, odometry, world_model, write
 
@@ -33,6 +34,15 @@ def test_interleaving_and_event_times_do_not_matter(tmp_path: Path) -> None:
     mixed = [(channel, data, 7) for channel, data, _ in sorted(entries(), key=lambda made: made[0])]
     assert text_of(tmp_path, entries(), mixed) == "None"
     assert text_of(tmp_path, mixed, entries()) == "None"
+
+
+def test_every_channel_that_differs_is_named_once(tmp_path: Path) -> None:
+    b = entries()
+    for channel, tick in (("cyan2/odometry", 7), ("cyan2/odometry", 9), ("cyan1/odometry", 8)):
+        b[at(b, channel, tick)] = entry(channel, odometry(30, 1), tick)
+    result = Comparison(write(tmp_path / "A", entries()), write(tmp_path / "B", b))
+    assert [(each.channel, each.tick) for each in result.differences] == [("cyan2/odometry", 7), ("cyan1/odometry", 8)]
+    assert [row.component for row in differing(result.differences, None)] == ["cyan2/base", "cyan1/base"]
 
 
 def test_the_frameworks_own_channels_do_not_count(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Real components fed with the recording of any run write the same messages, byte for byte."""
 
+import json
 import random
 import re
 import signal
@@ -13,7 +14,7 @@ from tests.harness.components import source
 from tests.harness.fate import Fate
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import PortBlock, replayed, write_files
+from tests.harness.runs import PortBlock, fwk, replayed, write_files
 from tests.harness.terminals import Terminal
 from tests.programs.control_system import Steered
 from tests.programs.together import FILE, together
@@ -90,6 +91,25 @@ def test_replay_names_the_first_difference_of_a_changed_class(
     replayed(recorded, "--to-tick", "16")
     replayed(recorded, "--only", "c/player", "--only", "e/player")
     assert "different: 4 of " in replayed(recorded, "--only", "d/*", "--from-tick", "27", code=1)
+
+
+def test_verify_names_every_component_that_differs(recorded: Path) -> None:
+    file = recorded / "player.py"
+    since = "{'d': 9, 'c': 12}.get(self.name[0], 99)"
+    changed = f"        note.iterations += time.time() > 0 and self.clock.tick >= {since}\n"
+    text = file.read_text().replace("        self.note.write()", f"{changed}        self.note.write()", 1)
+    file.write_text(text.replace("import os\n", "import os\nimport time\n", 1))
+    said = replayed(recorded, code=1)
+    assert (
+        "2 components differ, in this order:\n  d/player: d/note, from tick 9 on\n  c/player: c/note, from tick 12 on"
+        in said
+    )
+    assert re.search(r"d/player may differ from run to run:\n  \S+player.py:\d+: reads the machine's clock\n", said), (
+        said
+    )
+    answer, _ = json.JSONDecoder().raw_decode(fwk(recorded, "replay", "log.lcm", "--verify", "--json", code=1))
+    rows = [(row["component"], row["first"]["tick"], row["differences"]) for row in answer["components"]]
+    assert rows == [("d/player", 9, 22), ("c/player", 12, 19)]
 
 
 def test_a_replay_stops_in_the_debugger_and_goes_on_exactly(recorded: Path) -> None:
