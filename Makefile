@@ -42,7 +42,7 @@ test: lint  ## Everything that has to hold before a commit
 	$(BIN)/pytest $(PARALLEL)
 
 test-fast: types  ## The tests of parts, and of the whole what breaks first
-	$(BIN)/pytest $(PARALLEL) -m '(not system or core) and not slow'
+	$(BIN)/pytest $(PARALLEL) --hypothesis-profile=fast -m '(not system or core) and not slow'
 
 # SEED shows one history step by step; HISTORIES, SECONDS, FIRST and PROCESSES choose how many, which, and how parallel.
 SIMULATE = PYTHONPATH=.:tests/simulation/messages $(BIN)/python -m tests.simulation

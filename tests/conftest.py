@@ -16,6 +16,7 @@ from hypothesis import settings  # noqa: E402
 from tests.harness.runs import PortBlock  # noqa: E402
 
 settings.register_profile("suite", derandomize=True, deadline=None, max_examples=100)
+settings.register_profile("fast", derandomize=True, deadline=None, max_examples=20)
 settings.register_profile("long", deadline=None, max_examples=5000)
 settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long searches for new ones
 

@@ -30,6 +30,10 @@ class ChannelBuffer:
             if held is None or _age(held) < _age(data):
                 self._held[sequence] = data
 
+    def forget(self, sequence: int) -> None:
+        """Drops a message that has arrived and was not taken yet, as if it had never come."""
+        self._held.pop(sequence, None)
+
     def collect(self) -> bool:
         """Returns whether all messages up to the mark are here."""
         wanted = self.mark - self.floor

@@ -143,7 +143,12 @@ class MemoryHost:
         return made
 
     def lose(self, channel: int, sequence: int) -> None:
-        """Keeps a message from this host, which then fetches it in vain."""
+        """Keeps a message from this host, which then fetches it in vain.
+
+        The host may have it already: a search for another message empties the sockets.
+        """
+        if channel in self.host.inputs:
+            self.host.inputs.buffer(channel).forget(sequence)
         port = self._ports.channel(channel)
         self._missing.add((port, sequence))
         self._losing.add(port)

@@ -74,12 +74,14 @@ OPTIONS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("option", OPTIONS)
 def test_every_option_of_fwk_launch_is_answered(tiny: Path, option: str) -> None:
     for text in HOSTILE_TEXT:
         check(fwk_launch, "tiny.yaml", option, text)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", ["", "a/tiny.", "a/tiny.gain=", "a/tiny.names=", "a/tiny.names.0=", "*/tiny.gain="])
 def test_every_part_of_set_is_answered(tiny: Path, path: str) -> None:
     for text in HOSTILE_TEXT:
@@ -116,6 +118,7 @@ def places(command: Any) -> Iterator[tuple[str, ...]]:
             yield (*needed, option.opts[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_argument_of_every_command_is_answered(tiny: Path, ports: PortBlock, command: str) -> None:
     made = COMMANDS[command]

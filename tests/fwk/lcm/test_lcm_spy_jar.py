@@ -21,6 +21,7 @@ def folder(path: Path, package: str, member: str = "double x_m") -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_the_jar_is_built_once_for_each_content(tmp_path: Path, needs: Needs, monkeypatch: pytest.MonkeyPatch) -> None:
     needs("javac", "jar")
     types, cache = folder(tmp_path / "types", "first"), tmp_path / "cache"
@@ -65,6 +66,7 @@ def test_missing_programs_display_and_types_are_named(tmp_path: Path, monkeypatc
         spy.start(tmp_path / "jar", "udpm://")
 
 
+@pytest.mark.slow
 def test_the_command_prints_a_class_path_with_every_type(
     tmp_path: Path, needs: Needs, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -136,6 +136,7 @@ def test_a_comment_in_latin_1_is_refused_with_its_line(folder: Path) -> None:
         generate(folder)
 
 
+@pytest.mark.slow
 def test_components_with_own_types_pass_strict_mypy(folder: Path) -> None:
     write(folder, "tracking")
     generate(folder)

@@ -55,6 +55,7 @@ def test_lone_robot_scores_on_an_empty_goal_after_kick_off() -> None:
         assert states[-1].score_cyan == 1, f"seed {seed}"
 
 
+@pytest.mark.slow
 def test_two_alone_both_score() -> None:
     states, _ = play(match(["cyan1", "magenta1"], 1, NOISE), 60.0)
     assert states[-1].score_cyan > 0
@@ -95,6 +96,7 @@ def test_keeper_saves_shots_that_it_can_reach() -> None:
         assert states[-1].score_magenta == 0, f"shot at {y_m} m"
 
 
+@pytest.mark.slow
 def test_same_seed_gives_the_same_match_byte_by_byte() -> None:
     robots = team("cyan", 2) + team("magenta", 2)
     first, second = (match(robots, 5, NOISE) for _ in range(2))

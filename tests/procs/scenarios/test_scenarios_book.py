@@ -11,6 +11,7 @@ from procs.scenarios.scenario import BOOK, ScenarioError, read, run
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
 def test_scenario(path: Path) -> None:
     verdict = run(path)
