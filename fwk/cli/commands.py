@@ -13,6 +13,8 @@ from fwk.cli.version import version
 
 MODULES = {
     "new": "project.new",
+    "add": "project.add",
+    "remove": "project.remove",
     "check": "check.check",
     "ps": "look.ps",
     "status": "look.status",

@@ -1,0 +1,55 @@
+"""`fwk remove reads|writes|serves|calls|setting COMPONENT NAME...`: removes ports or settings of a component."""
+
+import typer
+
+from fwk.cli.project.changing import DryRun
+from fwk.cli.project.edit import ComponentWord, Names, remove_each
+from fwk.cli.run_options import Json
+
+remove = typer.Typer(no_args_is_help=True)
+
+
+@remove.callback()
+def group() -> None:
+    """Removes ports and settings from the class of a component, with imports that nothing else uses.
+
+    Prints the difference, and the places in the file that still use what was removed.
+    """
+
+
+@remove.command("reads")
+def reads(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
+    """Removes readers of channels."""
+    _remove("reads", component, names, dry_run, as_json)
+
+
+@remove.command("writes")
+def writes(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
+    """Removes writers of channels."""
+    _remove("writes", component, names, dry_run, as_json)
+
+
+@remove.command("serves")
+def serves(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
+    """Removes services that the component offers."""
+    _remove("serves", component, names, dry_run, as_json)
+
+
+@remove.command("calls")
+def calls(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
+    """Removes services that the component uses."""
+    _remove("calls", component, names, dry_run, as_json)
+
+
+@remove.command("setting")
+def setting(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
+    """Removes settings with their docstrings."""
+    from fwk.scaffold.settings import remove_setting
+
+    remove_each(component, names, dry_run, as_json, remove_setting)
+
+
+def _remove(kind: str, component: str, names: list[str], dry_run: bool, as_json: bool) -> None:
+    from fwk.scaffold.ports import remove_port
+
+    remove_each(component, names, dry_run, as_json, lambda source, name: remove_port(source, kind, name))
