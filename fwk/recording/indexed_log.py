@@ -1,6 +1,7 @@
 """Writes logs together with their index."""
 
 import zlib
+from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
@@ -8,11 +9,14 @@ from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import LogWriter
 from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import stamp_in
-from fwk.recording.log_contents import ChannelInfo, LogInfo, Note, note_in, type_names, whole_header
+from fwk.recording.log_contents import LOG_LINES, ChannelInfo, LogInfo, Note, note_in, type_names, whole_header
 from fwk.recording.log_index import BLOCK_BYTES, Block, LogIndex, index_path
 from fwk.recording.ticks import tick_of
 from fwk.recording.versions import RECORD
 from lcmtypes.core import header_t
+
+_Messages = list[tuple[bytes, int]]
+"""Messages of a channel with their time stamps in us."""
 
 
 class IndexedLogWriter(LogWriter):
@@ -25,9 +29,11 @@ class IndexedLogWriter(LogWriter):
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         super().__init__(path, report)
         index_path(path).unlink(missing_ok=True)
-        self._channels: dict[str, _Counted] = {}
+        self._appended: defaultdict[str, _Messages] = defaultdict(list)  # since the last flush
+        self._channels: defaultdict[str, _Counted] = defaultdict(_Counted)
+        self._stamps: dict[str, list[header_t]] = {}
         self._notes: list[Note] = []
-        self._stamp = self._record = b""
+        self._record = b""
         self._time_us = 0
         self._blocks: list[Block] = []
         self._begin = self._end = self._crc32 = 0  # of the block that grows
@@ -38,27 +44,22 @@ class IndexedLogWriter(LogWriter):
         Raises:
             ValueError: the channel's name is empty or too long, or the message larger than any LCM message.
         """
-        counted = self._channels.get(channel)
-        if counted is None:
-            counted = self._channels[channel] = _Counted(data, self._stamp, time_us)
-        counted.messages += 1
-        counted.bytes += len(data)
-        counted.last, counted.last_stamp = data, self._stamp
-        if time_us > counted.last_us:
-            counted.last_us = time_us
-        elif time_us < counted.first_us:
-            counted.first_us = time_us
-        if data[:8] != counted.mark:
-            counted.mark = data[:8]
-            counted.kinds.setdefault(counted.mark, data)
-        self._time_us, self._stamp = time_us, b""
-        if channel == RECORD:
-            self._record = data
-        elif channel == STAMP:
-            self._stamp = data
-        elif note := note_in(channel, data):
-            self._notes.append(note)
+        self._appended[channel].append((data, time_us))
         super().append(channel, data, time_us)
+
+    def flush(self) -> None:
+        """Passes all appended events to the operating system."""
+        for channel, messages in self._appended.items():
+            self._channels[channel].add(messages)
+            self._time_us = max(self._time_us, messages[-1][1])
+            if channel == RECORD:
+                self._record = messages[-1][0]
+            elif channel == STAMP:
+                self._take_stamps(messages)
+            elif channel == LOG_LINES:
+                self._notes += filter(None, (note_in(channel, data) for data, _ in messages))
+        self._appended.clear()
+        super().flush()
 
     def written(self, data: bytearray) -> None:
         """Adds a piece of the file to the check sums."""
@@ -79,6 +80,12 @@ class IndexedLogWriter(LogWriter):
         found = self.path.stat()
         LogIndex(self._info(found.st_size), found.st_mtime_ns, self._blocks).write()
 
+    def _take_stamps(self, messages: _Messages) -> None:
+        """Keeps the first and the newest stamp of each channel."""
+        for data, _ in messages:
+            if stamp := stamp_in(data):
+                self._stamps[stamp.channel] = [*self._stamps.get(stamp.channel, ())[:1], stamp.header]
+
     def _end_block(self) -> None:
         tick = tick_of(RECORD, self._record) or 0
         self._blocks.append(Block(self._end, self._crc32, tick, self._time_us))
@@ -90,49 +97,41 @@ class IndexedLogWriter(LogWriter):
         info.first_us = min(each.first_us for each in counted)
         info.last_us = max(each.last_us for each in counted)
         info.dropped = self.events - info.events
-        info.channels = {name: self._channels[name].info() for name in sorted(self._channels)}
+        info.channels = {name: self._channels[name].info(self._stamps.get(name)) for name in sorted(self._channels)}
         return info
 
 
 class _Counted:
     """Figures of a channel."""
 
-    __slots__ = (
-        "bytes",
-        "first",
-        "first_stamp",
-        "first_us",
-        "kinds",
-        "last",
-        "last_stamp",
-        "last_us",
-        "mark",
-        "messages",
-    )
+    def __init__(self) -> None:
+        self.messages = self.bytes = self.first_us = self.last_us = 0
+        self._first = self._last = b""
+        self._kinds: dict[bytes, bytes] = {}  # fingerprint to a message with it
 
-    def __init__(self, data: bytes, stamp: bytes, time_us: int) -> None:
-        self.messages = self.bytes = 0
-        self.first = self.last = data
-        self.first_stamp = self.last_stamp = stamp
-        self.first_us = self.last_us = time_us
-        self.mark = data[:8]
-        self.kinds = {self.mark: data}  # fingerprint to the first message with it
+    def add(self, messages: _Messages) -> None:
+        """Counts messages."""
+        contents, times = zip(*messages, strict=True)
+        if not self.messages:
+            self._first, self.first_us, self.last_us = contents[0], times[0], times[0]
+        self._last = contents[-1]
+        self.messages += len(contents)
+        self.bytes += sum(map(len, contents))
+        self.first_us, self.last_us = min(self.first_us, *times), max(self.last_us, *times)
+        self._kinds = {data[:8]: data for data in contents} | self._kinds
 
-    def info(self) -> ChannelInfo:
-        types = [type_names(data) for data in self.kinds.values()]
+    def info(self, stamps: list[header_t] | None) -> ChannelInfo:
+        """Returns the figures; `stamps` has the headers of messages whose type has none, of the first and the last."""
+        types = [type_names(data) for data in self._kinds.values()]
         made = ChannelInfo(
             types, messages=self.messages, bytes=self.bytes, first_us=self.first_us, last_us=self.last_us
         )
-        heads = _header(self.first, self.first_stamp), _header(self.last, self.last_stamp)
-        if heads[0] and heads[1]:
-            made.writers = list(dict.fromkeys(head.writer for head in heads if head))
-            made.first_tick, made.last_tick = heads[0].tick, heads[1].tick
-            lacking = heads[1].sequence - heads[0].sequence + 1 - self.messages
+        first: Header | header_t | None
+        last: Header | header_t | None
+        first, last = (stamps[0], stamps[-1]) if stamps else (whole_header(self._first), whole_header(self._last))
+        if first and last:
+            made.writers = list(dict.fromkeys((first.writer, last.writer)))
+            made.first_tick, made.last_tick = first.tick, last.tick
+            lacking = last.sequence - first.sequence + 1 - self.messages
             made.lost, made.repeated = max(0, lacking), max(0, -lacking)
         return made
-
-
-def _header(data: bytes, stamp: bytes) -> Header | header_t | None:
-    """Returns the header of a message, or of the stamp before it."""
-    found = stamp_in(stamp) if stamp else None
-    return found.header if found else whole_header(data)

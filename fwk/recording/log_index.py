@@ -29,7 +29,7 @@ class Block(NamedTuple):
     tick: int
     """Newest tick whose record the log holds up to the end of the block; 0: none."""
     time_us: int
-    """Time stamp of the newest event of the block."""
+    """Latest time stamp up to the end of the block."""
 
 
 @dataclass
