@@ -66,6 +66,17 @@ EXAMPLES = {
     ),
     "fwk compare": ("fwk compare before.lcm after.lcm",),
     "fwk log-info": ("fwk log-info log.lcm", "fwk log-info log.lcm --check --json"),
+    "fwk cut": (
+        "fwk cut log.lcm --from 12.5s --to 20s --out goal.lcm",
+        "fwk cut log.lcm --from 'ball taken away' --channels 'cyan1/*' --out part.lcm",
+    ),
+    "fwk filter": (
+        "fwk filter log.lcm --channels 'cyan1/*' --out cyan1.lcm",
+        "fwk filter log.lcm --exclude '*/image' --out small.lcm",
+        "fwk filter log.lcm --type 'robot.*' --out robots.lcm",
+    ),
+    "fwk merge": ("fwk merge log.lcm heard.lcm --align --out both.lcm",),
+    "fwk repair": ("fwk repair log.lcm --out whole.lcm",),
     "fwk runs list": ("fwk runs list",),
     "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (

@@ -16,7 +16,7 @@ def layers() -> list[list[str]]:
 
 
 def test_the_table_has_the_layers_in_order() -> None:
-    rows = re.findall(r"^\| ([a-z]+) \|", PAGE.read_text().partition("| layer | responsibility |")[2], re.M)
+    rows = re.findall(r"^\| ([a-z_]+) \|", PAGE.read_text().partition("| layer | responsibility |")[2], re.M)
     assert rows == [package for level in layers() for package in level]
 
 

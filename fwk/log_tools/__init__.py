@@ -1,0 +1,1 @@
+"""Tools that make new logs of existing ones."""

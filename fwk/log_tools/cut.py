@@ -1,0 +1,127 @@
+"""Takes a part of a log: an interval of ticks or times, channels, types."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from fwk.lcm.envelope import STAMP
+from fwk.lcm.event_log import Event, LogError, LogReader
+from fwk.lcm.stamped_log import stamp_in
+from fwk.log_tools.new_file import new_log
+from fwk.log_tools.selection import Selection
+from fwk.recording.play.timeline import MomentError, Timeline
+from fwk.recording.versions import EXCERPT, PLAN
+from lcmtypes.core import excerpt_t
+
+Progress = Callable[[int], None]
+"""Takes the number of bytes read so far."""
+EVENTS_PER_CALL = 1000
+
+
+@dataclass
+class Cut:
+    """What was done."""
+
+    log: Path
+    out: Path
+    events: int = 0
+    """Events in the new log."""
+    left_out: int = 0
+    """Events of the interval that were not selected."""
+    damaged_bytes: int = 0
+    """Bytes of the interval that hold no whole event."""
+    replayable: bool = False
+    """Whether `fwk replay` can run components on the new log: it is the beginning of a recording, with all channels."""
+
+
+def cut(
+    log: Path,
+    out: Path,
+    selection: Selection,
+    begin: str = "",
+    end: str = "",
+    replace: bool = False,
+    progress: Progress = lambda _: None,
+) -> Cut:
+    """Writes a part of a log to a new log.
+
+    Args:
+        log: the log.
+        out: the new log; its folder is created.
+        selection: channels and types.
+        begin: first moment: a tick (`1200`), a time (`12.5s`) or the text of a bookmark; empty: the beginning.
+        end: last moment; its tick is in the new log; empty: the end.
+        replace: replaces an existing file.
+        progress: takes the number of bytes read so far.
+
+    Raises:
+        LogError: the log cannot be read, the new one cannot be written, or there is nothing to write.
+    """
+    first, last, is_recording = _interval(log, begin, end)
+    reader, done = LogReader(log), Cut(log, out)
+    done.replayable = is_recording and not first and selection.is_all
+    with new_log(out, replace) as made:
+        if is_recording:
+            plan = next(iter(LogReader(log)))
+            if selection.takes(plan):
+                made.append(plan.channel, plan.data, plan.time_us)
+                if not done.replayable:
+                    made.append(EXCERPT, excerpt(_text(log, selection, begin, end)), plan.time_us)
+        for stamp, event in paired(_between(reader, first, last, progress)):
+            if is_recording and event.channel == PLAN:
+                continue
+            if not selection.takes(event):
+                done.left_out += 1
+                continue
+            if stamp and selection.takes_stamps:
+                made.append(stamp.channel, stamp.data, stamp.time_us)
+            made.append(event.channel, event.data, event.time_us)
+        selection.check(str(log))
+        done.events, done.damaged_bytes = made.events, reader.skipped_bytes
+    return done
+
+
+def excerpt(text: str) -> bytes:
+    """Returns the message that says that a log is a part of a recording."""
+    made = excerpt_t()
+    made.text = text
+    return bytes(made.encode())
+
+
+def paired(events: Iterator[Event]) -> Iterator[tuple[Event | None, Event]]:
+    """Yields each message with its stamp, or None if it has none; a stamp without a message is left out."""
+    stamps: dict[str, Event] = {}
+    for event in events:
+        if event.channel == STAMP and (stamp := stamp_in(event.data)):
+            stamps[stamp.channel] = event
+            continue
+        yield stamps.pop(event.channel, None), event
+
+
+def _interval(log: Path, begin: str, end: str) -> tuple[int, int | None, bool]:
+    """Returns the first position, the position behind the last event, and whether the log is a recording."""
+    timeline = Timeline(log)
+    try:
+        first = timeline.find(begin) if begin else timeline.begin
+        last = timeline.find(end) if end else None
+    except MomentError as error:
+        raise LogError(str(error)) from error
+    if last and last.position < first.position:
+        raise LogError(f"{log}: '{end}' is before '{begin}'; exchange --from and --to")
+    after = timeline.after(last.position) if last else None
+    return first.position, after.position if after else None, timeline.is_recording
+
+
+def _between(reader: LogReader, first: int, last: int | None, progress: Progress) -> Iterator[Event]:
+    for number, event in enumerate(reader.events_from(first)):
+        if last is not None and reader.position > last:
+            return
+        if not number % EVENTS_PER_CALL:
+            progress(reader.position)
+        yield event
+
+
+def _text(log: Path, selection: Selection, begin: str, end: str) -> str:
+    moments = [f"from {begin}"] if begin else []
+    moments += [f"to {end}"] if end else []
+    return ", ".join([log.name, *moments, *selection.texts])
