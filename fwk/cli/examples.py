@@ -63,6 +63,7 @@ EXAMPLES = {
         "fwk replay log.lcm --verify",
         "fwk replay log.lcm --only 'cyan1/*' --from-tick 100",
         "fwk replay log.lcm --debug cyan1/world_model --from-tick 500",
+        "fwk replay log.lcm --to-tick 1200 --then-live --set cyan1/agent.boldness=0.9 --record bold.lcm",
     ),
     "fwk compare": ("fwk compare before.lcm after.lcm",),
     "fwk log-info": ("fwk log-info log.lcm", "fwk log-info log.lcm --check --json"),

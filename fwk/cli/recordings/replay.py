@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from fwk.cli.arguments import new_file
+from fwk.cli.recordings.branch import BranchRequest, go_on_live
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
@@ -36,18 +38,43 @@ def replay(
     debug: Annotated[
         str | None, typer.Option(metavar="NAME", help="under pdb, from this component's next iteration on")
     ] = None,
+    then_live: Annotated[
+        bool, typer.Option("--then-live", help="go on live after --to-tick, as a run with a recording of its own")
+    ] = False,
+    until_tick: Annotated[
+        int | None,
+        typer.Option(min=1, metavar="N", help="with --then-live: last live tick; default: the last recorded"),
+    ] = None,
+    sets: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="PATH=VALUE", help="with --then-live: a setting after --to-tick; repeatable"),
+    ] = None,
+    classes: Annotated[
+        list[str] | None,
+        typer.Option("--with", metavar="NAME=MODULE:CLASS", help="with --then-live: another class; repeatable"),
+    ] = None,
+    record: Annotated[
+        Path | None,
+        typer.Option(
+            parser=new_file, metavar="FILE", help="with --then-live: the new log; default: in a run directory"
+        ),
+    ] = None,
     as_json: Json = False,
 ) -> None:
-    """Feeds recorded inputs to real components at the recorded iterations.
+    """Feeds recorded inputs to real components at the recorded iterations; --then-live goes on from there.
 
     Drivers of devices are left out, and so are components that see a device's frames, unless these are recorded too.
 
-    Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one; 2 the recording cannot be
-    replayed.
+    Exit codes: 0 equal, or nothing compared; 1 an output differs from the recorded one, or a component fails after
+    the branch; 2 the recording cannot be replayed.
     """
     with failing(UNUSABLE):
         log = find_log(run)
+        asked = _branch(then_live, to_tick, until_tick, sets, classes, record, bool(only or debug or verify))
         try:
+            if asked:
+                go_on_live(_opened(log), asked, as_json)
+                return
             done, notes = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
         except RecordingError as error:
             typer.echo(f"error: {error}", err=True)
@@ -94,12 +121,40 @@ def _plain(done: Replay, found: list[Difference], verify: bool) -> dict[str, obj
     return {**about, **counts, "first": first, "components": rows}
 
 
+def _opened(log: Path) -> Recording:
+    recording = Recording(log)
+    use_folders(recording.plan.folders)
+    return recording
+
+
+def _branch(
+    then_live: bool,
+    to_tick: int | None,
+    until_tick: int | None,
+    sets: list[str] | None,
+    classes: list[str] | None,
+    record: Path | None,
+    others: bool,
+) -> BranchRequest | None:
+    """Returns the branch that the options ask for; None: an ordinary replay."""
+    if not then_live:
+        if until_tick or sets or classes or record:
+            raise typer.BadParameter("--until-tick, --set, --with and --record belong to --then-live")
+        return None
+    if to_tick is None:
+        raise typer.BadParameter("--then-live needs --to-tick N, the last recorded tick that counts")
+    if others:
+        raise typer.BadParameter(
+            "--then-live runs all components without a debugger; leave out --only, --debug, --verify"
+        )
+    return BranchRequest(to_tick, until_tick, sets or (), classes or (), record)
+
+
 def _replay(
     log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None
 ) -> tuple[Replay, list[str]]:
     """Replays a log; returns the replay, and its differences to the conditions of the run."""
-    recording = Recording(log)
-    use_folders(recording.plan.folders)
+    recording = _opened(log)
     made = Replay(recording, only)
     notes = list(_not_as_in_the_run(recording.plan))
     for text in notes:

@@ -1,7 +1,7 @@
 """One incarnation of a replayed component: its host, its unanswered ticks, and its view of frames."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from fwk.component.images import Ring
@@ -11,9 +11,10 @@ from fwk.engine.component_group import Written
 from fwk.engine.visibility import Visibility
 from fwk.host.memory_host import MemoryHost
 from fwk.lcm.messages import decode
+from fwk.model.channel_table import ChannelTable, facts_in, text_of
 from fwk.model.plan import ComponentPlan, HostPlan, Plan
 from fwk.recording.replay.frames import FrameSource, FrameView
-from lcmtypes.core import frame_t, tick_t
+from lcmtypes.core import channels_change_t, done_t, frame_t, tick_t
 
 Newest = Mapping[int, bytes]
 """The newest visible message of each channel, by index."""
@@ -47,6 +48,8 @@ class Life:
         self._channels = {channel.name: channel.index for channel in plan.channels}
         self._told: deque[tick_t] = deque()  # ticks that a continuous component has not iterated on
         self._catch_up = CatchUp(start.incarnation)
+        self.done: done_t | None = None
+        """The newest done: what the component requested, and the next logical time."""
         self.host = MemoryHost(
             Assignment(plan, component.index, 0, start, rings, frames=self._views, further_stages=further_stages),
             ledger,
@@ -94,7 +97,7 @@ class Life:
         """Runs the component's iteration of a tick, if it takes part in the stage; returns what it wrote."""
         if stage in self.plan.stages:
             self._catch_up.took_part(tick.tick)
-        return self.host.tick(tick, stage)[0]
+        return self._taken(*self.host.tick(tick, stage))
 
     def tell(self, tick: tick_t) -> None:
         """Gives a continuous component the marks of a tick."""
@@ -104,11 +107,15 @@ class Life:
         """Runs the next iteration of a continuous component, on the marks of a tick; returns what it wrote."""
         while self._told and self._told[0].tick <= tick:
             self.host.tell(self._told.popleft())
-        return self.host.iterate()[0]
+        return self._taken(*self.host.iterate())
 
     def finalize(self) -> Written:
         """Finalizes the component; returns what it wrote."""
-        return self.host.finalize()[0]
+        return self._taken(*self.host.finalize())
+
+    def _taken(self, written: Written, done: done_t) -> Written:
+        self.done = done
+        return written
 
 
 @dataclass(frozen=True)
@@ -125,3 +132,12 @@ def one_component_a_host(plan: Plan) -> Plan:
     components = tuple(replace(component, host=component.index) for component in plan.components)
     hosts = tuple(HostPlan(each.index, each.name, (each.index,)) for each in components)
     return replace(plan, components=components, hosts=hosts)
+
+
+def blackboard_at(plan: Plan, changes: Iterable[channels_change_t], newest: int) -> str:
+    """Returns the dynamic channels as they were after the change of number `newest`, as facts in JSON."""
+    table = ChannelTable(plan)
+    for change in changes:
+        if change.number <= newest:
+            table.apply(facts_in(change))
+    return text_of(table.snapshot())

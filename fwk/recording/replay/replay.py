@@ -12,9 +12,8 @@ from fwk.engine.assignment import Start
 from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
 from fwk.engine.visibility import Visibility
-from fwk.lcm.envelope import fingerprint
-from fwk.lcm.messages import MessageError, sequence_of, type_named
-from fwk.model.channel_table import ChannelTable, facts_in, text_of
+from fwk.lcm.messages import sequence_of
+from fwk.model.channel_table import ChannelTable, facts_in
 from fwk.model.plain_values import value_of
 from fwk.model.plan import NOBODY, ComponentPlan
 from fwk.model.tick_events import (
@@ -38,11 +37,11 @@ from fwk.recording.difference import Difference
 from fwk.recording.replay.comparison import OutputComparison
 from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
-from fwk.recording.replay.life import Life, Owed, one_component_a_host
+from fwk.recording.replay.life import Life, Owed, blackboard_at, one_component_a_host
 from fwk.recording.replay.recorded_messages import RecordedMessages
 from fwk.recording.replay.recording import RecordedTick, Recording, RecordingError
-from fwk.recording.replay.selection import choose, reaches_outside, unrepeatable
-from lcmtypes.core import channels_change_t, header_t, settings_change_t, tick_record_t
+from fwk.recording.replay.selection import choose, first_bytes, reaches_outside, unrepeatable
+from lcmtypes.core import channels_change_t, header_t, settings_change_t
 
 Made = list[tuple[Life, Written]]
 """Messages of the incarnations of a host in one step of a tick."""
@@ -93,6 +92,9 @@ class Replay:
         self._leaving: dict[int, list[Life]] = {}  # incarnations that were asked to stop and have not finalized yet
         self._owed: dict[StageDone, list[Owed]] = {}
         self._holder = NOBODY  # component that has the main loop
+        self._now = self._time_us = 0  # the running tick and its logical time
+        self._stage = self._step = -1  # of the running tick
+        self._changes: dict[int, channels_change_t] = {}  # of channels that the tick begins with, by number
         self._settings: dict[int, list[settings_change_t]] = {}  # by component
         self._decided: list[channels_change_t] = []
         self._newest: dict[int, bytes] = {}
@@ -115,62 +117,63 @@ class Replay:
 
     def run(self, to_tick: int | None = None, begins: Callable[[int], None] = lambda _: None) -> None:
         """Replays all ticks, or until `to_tick`; calls `begins(tick)` before each."""
-        for tick in self.recording.ticks(to_tick, self._types()):
+        for tick in self.recording.ticks(to_tick, first_bytes(self.recording, self._chosen)):
             begins(tick.record.tick)
             self._tick(tick)
         for component in self._plan.components:
             if component.name in self._guard.refused and component.index in self._chosen:  # one of its threads did
                 self._leave_out(component, self._guard.refused[component.name])
 
-    def _types(self) -> dict[str, bytes]:
-        """Returns the first bytes of messages, by channel, of all channels that the chosen components read or write."""
-        concerned = [each for each in self._plan.channels if not self._chosen.isdisjoint((each.writer, *each.readers))]
-        try:
-            return {channel.name: fingerprint(type_named(channel.type_name)) for channel in concerned}
-        except MessageError as error:
-            text = f"{self.recording.path}: {error}; the run directory keeps the types of the run"
-            raise RecordingError(text) from error
-
     def _tick(self, tick: RecordedTick) -> None:
         for picture in tick.frames:
             if picture.camera in self._recorded:
                 self._recorded[picture.camera].add(picture)
-        record, stage, step = tick.record, -1, -1
-        changes = {change.number: change for change in record.channels}
-        for change in changes.values():
-            self._names |= {fact.channel.index: fact.channel.name for fact in facts_in(change) if fact.channel}
+        record = tick.record
+        self._begin_tick(record.tick, record.time_us, record.channels)
         self._messages.add(tick, self._names)
         for settings in record.settings:
             self._set(settings, record.tick)
         for event in tick.events:
-            if isinstance(event, StageBegun):
-                stage, step = event
-                self._reveal()
-            elif isinstance(event, TickTold):
-                self._reveal()
-                self._tell(record)
-            elif isinstance(event, OutsideTaken):
-                self._take_in()
-            elif isinstance(event, ChannelsChanged):
-                self._decide(changes[event.change])
-            elif isinstance(event, StageDone):
-                if event not in self._owed:
-                    self._owe(event, stage, record.time_us)
-                self._compare(event.host, event.tick, event.step, self._iterate(event))
-            elif isinstance(event, IterationDone):
-                self._compare(*event, self._iterate_on(*event))
-            elif isinstance(event, FinalDone):
-                self._compare(event.host, event.tick, header_t.FINAL, self._finalize(event.host))
-            elif isinstance(event, HostLate):
-                for life in self._lives.get(event.host, []):
-                    life.hold_newest_frames(self._newest)
-                self._owe(StageDone(event.host, record.tick, step), stage, record.time_us)
-            else:
-                self._take_event(event)
+            self._take_event(event)
         for index, mark in zip(record.channel, record.sequence, strict=True):
             self._ledger.publish(index, mark)  # includes messages that the recording lost
 
+    def _begin_tick(self, tick: int, time_us: int, channels: Sequence[channels_change_t]) -> None:
+        self._now, self._time_us, self._stage, self._step = tick, time_us, -1, -1
+        self._changes = {change.number: change for change in channels}
+        for change in channels:
+            self._names |= {fact.channel.index: fact.channel.name for fact in facts_in(change) if fact.channel}
+
     def _take_event(self, event: TickEvent) -> None:
+        """Carries out a decision of the main loop."""
+        if isinstance(event, StageBegun):
+            self._stage, self._step = event
+            self._reveal()
+        elif isinstance(event, TickTold):
+            self._reveal()
+            self._tell()
+        elif isinstance(event, OutsideTaken):
+            self._take_in()
+        elif isinstance(event, ChannelsChanged):
+            self._decide(self._changes[event.change])
+        elif isinstance(event, StageDone):
+            if event not in self._owed:
+                self._owe(event)
+            self._compare(event.host, event.tick, event.step, self._iterate(event))
+        elif isinstance(event, IterationDone):
+            self._compare(*event, self._iterate_on(*event))
+        elif isinstance(event, FinalDone):
+            self._compare(event.host, event.tick, header_t.FINAL, self._finalize(event.host))
+        elif isinstance(event, HostLate):
+            for life in self._lives.get(event.host, []):
+                life.hold_newest_frames(self._newest)
+            self._owe(StageDone(event.host, self._now, self._step))
+        elif isinstance(event, MainLoopGiven):
+            self._holder = event.component
+        else:
+            self._take_change(event)
+
+    def _take_change(self, event: TickEvent) -> None:
         """Handles an event that changes the participants, or the missing messages."""
         if isinstance(event, HostStarted):
             self._start(event.host, event.incarnation, event.change)
@@ -180,8 +183,6 @@ class Replay:
                 life.hold_last_frames()
         elif isinstance(event, HostLost):
             self._end(event.host)
-        elif isinstance(event, MainLoopGiven):
-            self._holder = event.component
         elif isinstance(event, MessageLost):
             for life in self._living(event.host):
                 life.host.lose(event.channel, event.sequence)
@@ -244,7 +245,7 @@ class Replay:
             incarnation,
             self._ledger.sequences(component.index),
             {component.name: json.dumps(value_of(changed[-1].values))} if changed else {},
-            self._snapshot(newest_change) if component.opens else "[]",
+            blackboard_at(self._run_plan, self._decided, newest_change) if component.opens else "[]",
             newest_change,
         )
         with self._failing(component, "its start"):
@@ -265,14 +266,6 @@ class Replay:
         for channel, data in self._newest.items():
             life.see(channel, data)
 
-    def _snapshot(self, newest_change: int) -> str:
-        """Returns the blackboard as it was after a change."""
-        table = ChannelTable(self._run_plan)
-        for change in self._decided:
-            if change.number <= newest_change:
-                table.apply(facts_in(change))
-        return text_of(table.snapshot())
-
     def _end(self, host: int) -> None:
         """Ends the lives of a host and drops its unanswered ticks."""
         for life in self._living(host):
@@ -281,15 +274,15 @@ class Replay:
         self._leaving.pop(host, None)
         self._owed = {done: owed for done, owed in self._owed.items() if done.host != host}
 
-    def _owe(self, done: StageDone, stage: int, time_us: int) -> None:
+    def _owe(self, done: StageDone) -> None:
         """Sends a tick with the present marks to a host.
 
         Its components run when its done comes: a late host may die during its iteration, or leave without it.
         """
         self._owed[done] = [
-            Owed(life, life.host.compose(done.tick, done.step, time_us, self._holder), stage)
+            Owed(life, life.host.compose(done.tick, done.step, self._time_us, self._holder), self._stage)
             for life in self._lives.get(done.host, [])
-            if life.hears(done.tick, stage)
+            if life.hears(done.tick, self._stage)
         ]
 
     def _iterate(self, done: StageDone) -> Made:
@@ -302,12 +295,12 @@ class Replay:
                 self.iterations += owed.stage in owed.life.plan.stages
         return made
 
-    def _tell(self, record: tick_record_t) -> None:
+    def _tell(self) -> None:
         """Gives the continuous components the marks of a tick."""
         for lives in self._lives.values():
             for life in lives:
                 if life.plan.rate_hz is not None:
-                    life.tell(life.host.compose(record.tick, 0, record.time_us, self._holder))
+                    life.tell(life.host.compose(self._now, 0, self._time_us, self._holder))
 
     def _iterate_on(self, host: int, tick: int, number: int) -> Made:
         """Runs an iteration of a continuous component on the marks of a tick, perhaps one of long ago."""
@@ -348,10 +341,14 @@ class Replay:
             if isinstance(cause, RecordingError):  # a frame is not in the recording
                 raise cause from error
             trace = "".join(traceback.format_exception(cause)).rstrip()
-            raise RecordingError(
-                f"{self.recording.path}: {component.name} fails in {moment}, unlike in the run: the recording is "
-                f"damaged, or the component was changed or depends on something else\n{trace}"
-            ) from cause
+            raise RecordingError(f"{self._failure(component, moment)}\n{trace}") from cause
+
+    def _failure(self, component: ComponentPlan, moment: str) -> str:
+        """Returns the message that a component failed."""
+        return (
+            f"{self.recording.path}: {component.name} fails in {moment}, unlike in the run: the recording is "
+            "damaged, or the component was changed or depends on something else"
+        )
 
     def _leave_out(self, component: ComponentPlan, reason: str) -> None:
         """Ends a component that a replay must not run; its recorded messages replace it."""

@@ -1,6 +1,6 @@
 """Selects the components of a replay: those asked for and their cameras, if they can be run again."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from importlib import import_module
@@ -9,6 +9,8 @@ from typing import Any
 from pydantic import ValidationError
 
 from fwk.component.declaration import Declaration, declaration
+from fwk.lcm.envelope import fingerprint
+from fwk.lcm.messages import MessageError, type_named
 from fwk.model.plan import ComponentPlan
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.recording.replay.recording import Recording, RecordingError
@@ -55,6 +57,21 @@ def reaches_outside(component: ComponentPlan) -> bool | None:
     """Returns what the class of a component declares about reaching devices and other programs."""
     found: bool | None = _declaration(component).component.reaches_outside
     return found
+
+
+def first_bytes(recording: Recording, chosen: Container[int]) -> dict[str, bytes]:
+    """Returns the first bytes of messages, by channel, of all channels that the chosen components read or write.
+
+    Raises:
+        RecordingError: a type is not known.
+    """
+    concerned = [
+        each for each in recording.plan.channels if any(map(chosen.__contains__, (each.writer, *each.readers)))
+    ]
+    try:
+        return {channel.name: fingerprint(type_named(channel.type_name)) for channel in concerned}
+    except MessageError as error:
+        raise RecordingError(f"{recording.path}: {error}; the run directory keeps the types of the run") from error
 
 
 class _Choosing:
