@@ -4,9 +4,10 @@ import os
 import sys
 import threading
 import weakref
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, NoReturn
 
 from fwk.recording.replay.descriptors import Descriptors, is_device, is_harmless
 
@@ -23,6 +24,8 @@ _PROGRAMS = (
 _SIGNALS = ("os.kill", "os.killpg")
 _NETWORK = ("socket.connect", "socket.bind", "socket.sendto", "socket.sendmsg")
 _MACHINE = ("/sys/", "/proc/")
+_ATTEMPTS_MAX = 10
+"""Number of equal attempts in one iteration after which a component counts as one that never stops trying."""
 _LOOKUPS = ("ctypes.util", "platform")
 """Modules of Python that start programs to examine the machine, for libraries that are being imported."""
 
@@ -45,6 +48,7 @@ class Guard:
         self._thread = 0  # thread of the replay
         self._threads: weakref.WeakKeyDictionary[threading.Thread, str] = weakref.WeakKeyDictionary()
         """Every thread besides that of the replay, with the component that started it; empty: none that is watched."""
+        self._attempts: Counter[str] = Counter()  # of the component that is being executed
         self._elsewhere = False  # a watched component started a thread
         self._installed = False
         self._descriptors = Descriptors()
@@ -63,6 +67,7 @@ class Guard:
         self._descriptors.note()
         self._note_threads("")
         self._watched, self._thread = component, threading.get_ident()
+        self._attempts.clear()
         try:
             yield
         finally:
@@ -90,8 +95,22 @@ class Guard:
             return
         self.refused[component] = tried
         if own:
+            self._attempts[tried] += 1
+            if self._attempts[tried] > _ATTEMPTS_MAX:
+                _end_replay(component, tried)
             raise ReachesOutsideError(tried)
         raise SystemExit  # ends the thread without a traceback; the component is left out with its next iteration
+
+
+def _end_replay(component: str, tried: str) -> NoReturn:
+    """Ends the process: code that catches everything and tries again cannot be left in another way."""
+    sys.stdout.flush()
+    sys.stderr.write(
+        f"error: {component}: {tried}, which would reach the real world, and tries again whenever the replay refuses "
+        "that; declare 'reaches_outside' in its class, or replay other components with --only\n"
+    )
+    sys.stderr.flush()
+    os._exit(2)
 
 
 def _attempt(event: str, arguments: tuple[Any, ...]) -> str:

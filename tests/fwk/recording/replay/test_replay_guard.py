@@ -7,6 +7,7 @@ import struct
 import subprocess
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -169,3 +170,17 @@ def test_module_that_opens_a_device_is_not_imported(tmp_path: Path, monkeypatch:
     replay = HandMadeLog(tmp_path / "log.lcm", replace(plan, components=(component,))).replayed()
     assert (tmp_path / "imported").is_dir()
     assert replay.left_out == {"r/wheels": f"opening_wheels cannot be imported in a replay: it opens {DEVICE}"}
+
+
+def test_replay_ends_if_a_component_never_stops_trying(capfd: pytest.CaptureFixture[str]) -> None:
+    child = os.fork()
+    if child == 0:
+        with Guard().watching("r/stubborn"):
+            while True:
+                with suppress(BaseException):
+                    os.open(DEVICE, os.O_RDWR | os.O_NOCTTY)
+    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 2
+    assert capfd.readouterr().err == (
+        f"error: r/stubborn: it opens {DEVICE}, which would reach the real world, and tries again whenever the replay "
+        "refuses that; declare 'reaches_outside' in its class, or replay other components with --only\n"
+    )
