@@ -1,5 +1,6 @@
 """`fwk video LOG -o FILE.mp4`: draws a recording into a video."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -9,7 +10,8 @@ from fwk.cli.arguments import folder, video_file
 from fwk.cli.output import BAD_INPUT, INTERRUPTED
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
-from fwk.cli.run.rendering import render
+from fwk.cli.run.rendering import render, report
+from fwk.cli.run_options import Json
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.video import VideoError, drawing
 
@@ -23,6 +25,7 @@ def video(
     types: Annotated[
         Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
+    as_json: Json = False,
 ) -> None:
     """Draws a recording into an mp4 video, as H.264 or VP9 where available, else as MPEG-4 part 2.
 
@@ -32,13 +35,17 @@ def video(
         use_folders([str(types)])
         file = find_log(log)
         try:
-            lines = render(file, out, drawing(draw or _drawing_of_run(file)))
+            made = render(file, out, drawing(draw or _drawing_of_run(file)))
         except VideoError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(1) from error
         except KeyboardInterrupt as interrupt:
             raise typer.Exit(INTERRUPTED) from interrupt
-    for line in lines:
+    if as_json:
+        about = {"file": str(out), "pictures": made.pictures, "codec": made.codec}
+        typer.echo(json.dumps(about))
+        return
+    for line in report(out, made):
         typer.echo(line)
 
 

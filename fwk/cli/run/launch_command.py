@@ -217,12 +217,12 @@ def _check_video(plan: Plan, video: Path | None) -> None:
 
 
 def _draw(plan: Plan, record: Path, video: Path) -> None:
-    from fwk.cli.run.rendering import render  # imports OpenCV, only with --video
+    from fwk.cli.run.rendering import render, report  # imports OpenCV, only with --video
     from fwk.recording.video import VideoError, drawing
 
     try:
         video.parent.mkdir(parents=True, exist_ok=True)
-        first, *others = render(record, video, drawing(plan.video))
+        first, *others = report(video, render(record, video, drawing(plan.video)))
     except (VideoError, LogError, OSError) as error:
         typer.echo(f"no video: {error}", err=True)
         raise typer.Exit(RUN_BROKEN) from error

@@ -31,8 +31,8 @@ class Progress:
             print("\x1b[K", end="", file=sys.stderr)
 
 
-def render(log: Path, out: Path, draw: Draw) -> list[str]:
-    """Draws a recording; returns the lines of the report.
+def render(log: Path, out: Path, draw: Draw) -> Rendered:
+    """Draws a recording into a file.
 
     Raises:
         KeyboardInterrupt: interrupted; a line on stderr says how many pictures the video holds.
@@ -40,12 +40,16 @@ def render(log: Path, out: Path, draw: Draw) -> list[str]:
     """
     progress = Progress()
     try:
-        made: Rendered = render_video(log, out, draw, progress)
+        return render_video(log, out, draw, progress)
     except KeyboardInterrupt:
         progress.end()
         print(f"{out}: interrupted, {progress.pictures} pictures are in it", file=sys.stderr)
         raise
     finally:
         progress.end()
+
+
+def report(out: Path, made: Rendered) -> list[str]:
+    """Returns the lines that describe a video."""
     note = advice(made.codec)
     return [f"{out}, {made.pictures} pictures, {made.codec}", *([note] if note else [])]

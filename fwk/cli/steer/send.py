@@ -1,12 +1,13 @@
 """`fwk send CHANNEL FIELD=VALUE...`: writes a message into a run from outside."""
 
+import json
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from fwk.bus.public import PublicBus
-from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, asking
+from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
 from fwk.control import client
 from fwk.control.requests import refuse_deep_nesting
 from fwk.lcm import messages
@@ -28,6 +29,7 @@ def send(
         ),
     ] = None,
     chosen: RunChoice = None,
+    as_json: Json = False,
 ) -> None:
     """Publishes one message on the public bus of a run, on a channel that programs outside may write.
 
@@ -57,7 +59,8 @@ def send(
     bus = PublicBus(about["public_url"])
     bus.publish(channel, data)
     bus.close()
-    typer.echo(f"{channel}: {len(data)} bytes sent")
+    sent = {"channel": channel, "type": row["type"], "bytes": len(data)}
+    typer.echo(json.dumps(sent) if as_json else f"{channel}: {len(data)} bytes sent")
 
 
 def made(type_name: str, fields: list[str]) -> Any:

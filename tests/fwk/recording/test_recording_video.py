@@ -114,7 +114,8 @@ def test_the_command_uses_the_drawing_of_the_recorded_run(tmp_path: Path) -> Non
     drawn = run(app, [str(tmp_path), "-o", str(out)])
     assert drawn.exit_code == 0
     assert drawn.stdout.startswith(f"{out}, 3 pictures, ")
-    assert run(app, [str(log), "-o", str(out), "--draw", f"{__name__}:grey"]).exit_code == 0
+    told = json.loads(run(app, [str(log), "-o", str(out), "--draw", f"{__name__}:grey", "--json"]).stdout)
+    assert (told["file"], told["pictures"]) == (str(out), 3)
     assert run(app, [str(log), "-o", "out.avi"]).exit_code == 2
     assert run(app, [str(tmp_path / "none"), "-o", str(out)]).exit_code == 2
 
