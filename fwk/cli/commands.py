@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, MutableMapping
 from importlib import import_module
+from keyword import iskeyword
 from typing import Annotated, Any
 
 import typer
@@ -35,6 +36,7 @@ MODULES = {
     **dict.fromkeys(("cut", "filter"), "recordings.cut"),
     "merge": "recordings.merge",
     "repair": "recordings.repair",
+    **dict.fromkeys(("export", "import"), "recordings.export"),
     "runs": "recordings.runs",
     "video": "recordings.video",
     "eval": "recordings.evaluate",
@@ -44,7 +46,7 @@ MODULES = {
     "completion": "complete.completion",
 }
 """Command, as typed and in the order of the help, to its module in `fwk.cli`. The function or typer application there
-has the command's name: `log-info` is `log_info`.
+has the command's name: `log-info` is `log_info`, `import` is `import_`.
 """
 
 
@@ -81,7 +83,7 @@ class _Group(TyperGroup):
 
 
 def _command(name: str) -> Any:
-    word = name.replace("-", "_")
+    word = f"{name}_" if iskeyword(name) else name.replace("-", "_")
     made = getattr(import_module(f"fwk.cli.{MODULES[name]}"), word)
     if not isinstance(made, typer.Typer):
         function, made = made, typer.Typer(add_completion=False)

@@ -78,6 +78,12 @@ EXAMPLES = {
     ),
     "fwk merge": ("fwk merge log.lcm heard.lcm --align --out both.lcm",),
     "fwk repair": ("fwk repair log.lcm --out whole.lcm",),
+    "fwk export": (
+        "fwk export log.lcm --out log.mcap",
+        "fwk export log.lcm --to csv --out tables --channels 'cyan1/*'",
+        "fwk export log.lcm --to jsonl --type 'robot.*' --out robots.jsonl",
+    ),
+    "fwk import": ("fwk import log.mcap --out log.lcm",),
     "fwk runs list": ("fwk runs list",),
     "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (

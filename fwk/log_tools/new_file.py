@@ -1,6 +1,7 @@
 """New files that appear under their names only when they are complete."""
 
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -13,12 +14,16 @@ from fwk.recording.log_index import index_path
 
 @contextmanager
 def new_file(path: Path, replace: bool) -> Iterator[Path]:
-    """Gives a temporary name beside `path` to write to, and renames the file at the end; an error leaves no file.
+    """Gives a temporary name beside `path` to write to, and renames it at the end; an error leaves nothing there.
+
+    A folder can be written as well. A folder with files in it is never replaced.
 
     Raises:
         LogError: the file exists and `replace` is false, or it cannot be written.
     """
-    if path.exists() and not replace:
+    if path.is_dir() and any(path.iterdir()):
+        raise LogError(f"{path}: a folder with files in it; choose another name, or remove it")
+    if path.exists() and not path.is_dir() and not replace:
         raise LogError(f"{path}: exists already; choose another name, or replace it with --force")
     part = path.with_name(f".{path.name}.part")
     try:
@@ -28,6 +33,8 @@ def new_file(path: Path, replace: bool) -> Iterator[Path]:
     except OSError as error:
         raise LogError(f"{path}: cannot be written: {error.strerror or error}") from error
     finally:
+        if part.is_dir():
+            shutil.rmtree(part)
         part.unlink(missing_ok=True)
 
 

@@ -8,12 +8,11 @@ from fwk.lcm.event_log import LogReader
 from fwk.model.names import NOTE
 from fwk.model.plan_document import document_of
 from fwk.testing.plans import plan_of
-from lcmtypes.core import log_t, plan_t, protocol_t, stamp_t, tick_record_t
-from lcmtypes.robot import motor_command_t
+from lcmtypes.core import histogram_t, log_t, plan_t, protocol_t, stamp_t, tick_record_t
 from tests.fwk.recording.recording_made import PERIOD_US, Entry, entry, odometry, world_model, write
 
-PLAIN = "arm/motors"
-"""Channel of a type without the header, as far as the log tells."""
+PLAIN = "arm/times"
+"""Channel of a type without the header."""
 
 
 def recording(path: Path, ticks: int = 10, noted: int = 4) -> Path:
@@ -42,7 +41,7 @@ def tick_of_recording(tick: int) -> list[Entry]:
         entry("cyan1/odometry", odometry(tick, 1), tick),
         entry("cyan1/world_model", world_model(tick, 1), tick),
         (STAMP, stamp.encode(), tick * PERIOD_US),
-        (PLAIN, motor_command_t().encode(), tick * PERIOD_US),
+        (PLAIN, histogram_t().encode(), tick * PERIOD_US),
     ]
 
 

@@ -1,0 +1,226 @@
+"""Messages as Foxglove's well-known types: images, transforms, poses, markers, log lines.
+
+Every message with a position gets a view, by the names of its members: `x_m` and `y_m`, perhaps `z_m`, `heading_rad`,
+`radius_m` and `name`. The comment of a member in its .lcm file names its frame of reference.
+"""
+
+import math
+from collections.abc import Iterator
+from functools import cache
+from typing import Any, NamedTuple
+
+from foxglove.messages import (
+    ArrowPrimitive,
+    Color,
+    CompressedImage,
+    CylinderPrimitive,
+    FrameTransform,
+    FrameTransforms,
+    Log,
+    LogLevel,
+    Pose,
+    PoseInFrame,
+    Quaternion,
+    RawImage,
+    SceneEntity,
+    SceneEntityDeletion,
+    SceneEntityDeletionType,
+    SceneUpdate,
+    SpherePrimitive,
+    TextPrimitive,
+    Timestamp,
+    Vector3,
+)
+
+from fwk.clock import US_PER_S
+from fwk.lcm.messages import Message, current_name, type_name, type_named
+from fwk.log_tools.frames import WORLD, comment_frame, full_frame
+from fwk.log_tools.plain import members_of
+from lcmtypes.core import log_t
+
+PREFIX = "view/"
+"""Beginning of the topics with views: `view/cyan1/pose` for the channel `cyan1/pose`."""
+_LEVELS = {
+    log_t.DEBUG: LogLevel.Debug,
+    log_t.INFO: LogLevel.Info,
+    log_t.WARNING: LogLevel.Warning,
+    log_t.ERROR: LogLevel.Error,
+}
+_ENCODINGS = {1: "mono8", 3: "bgr8"}
+_ABSENT = ("known", "visible", "localized")
+"""Members that say, when false, that the position of their struct means nothing."""
+_HEIGHT_M = 0.05
+_SIZE_M = 0.2
+_COLOUR = Color(r=0.2, g=0.6, b=1.0, a=0.8)
+
+
+class View(NamedTuple):
+    """A message for Foxglove."""
+
+    topic: str
+    content: Any
+
+
+class _Place(NamedTuple):
+    """A position in a message."""
+
+    path: str
+    frame: str
+    struct: Any
+
+
+def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
+    """Yields the views of a message; times are logical."""
+    stamp = Timestamp(time_us // US_PER_S, time_us % US_PER_S * 1000)
+    kind = current_name(type_name(type(message)))
+    if kind == "core.picture_t":
+        yield View(f"{PREFIX}{message.camera}", _image(message, stamp))
+    elif kind == "core.transforms_t":
+        yield View(PREFIX + channel, _transforms(message))
+    elif kind == "core.log_t":
+        level = _LEVELS.get(message.level, LogLevel.Unknown)
+        text = {"message": message.text, "name": message.component, "file": message.file}
+        yield View(PREFIX + channel, Log(timestamp=stamp, level=level, line=max(0, message.line), **text))
+    elif not kind.startswith("core"):
+        yield from _positions(channel, message, stamp)
+
+
+def _positions(channel: str, message: Any, stamp: Timestamp) -> Iterator[View]:
+    if not _may_have_position(type_name(type(message))):
+        return
+    found = [place for place in _places(message) if _is_there(place.struct)]
+    own = next((place for place in found if not place.path and hasattr(place.struct, "heading_rad")), None)
+    if own:
+        frame, pose = full_frame(own.frame, channel), _pose(own.struct)
+        yield View(PREFIX + channel, PoseInFrame(timestamp=stamp, frame_id=frame, pose=pose))
+        if channel.rpartition("/")[2] == "pose":
+            yield View(f"{PREFIX}{channel}/frame", _robot(channel, frame, own.struct, stamp))
+    frames: dict[str, list[_Place]] = {}
+    for place in found:
+        frames.setdefault(full_frame(place.frame, channel), []).append(place)
+    entities = [_entity(frame, channel, stamp, places) for frame, places in frames.items()]
+    removed = SceneEntityDeletion(timestamp=stamp, type=SceneEntityDeletionType.All)  # of the message before
+    yield View(f"{PREFIX}{channel}/scene", SceneUpdate(deletions=[removed], entities=entities))
+
+
+def _places(message: Any, path: str = "", outer: str = WORLD) -> Iterator[_Place]:
+    """Yields the structs with a position in a message, each with its frame."""
+    kind = type_name(type(message))
+    frame = comment_frame(kind, "x_m") or outer
+    if _has_position(kind):
+        yield _Place(path, frame, message)
+    for name, member, dimensions in members_of(type(message)):
+        if "." not in member or member == "core.header_t" or len(dimensions) > 1:
+            continue
+        value, inner = getattr(message, name), comment_frame(kind, name) or frame
+        for number, each in enumerate(value if dimensions else (value,)):
+            yield from _places(each, f"{path}{name}{number if dimensions else ''} ", inner)
+
+
+@cache
+def _may_have_position(kind: str) -> bool:
+    """Returns whether a type, or a type nested in it, has a position."""
+    inner = [member for _, member, dimensions in members_of(type_named(kind)) if "." in member and len(dimensions) <= 1]
+    return _has_position(kind) or any(map(_may_have_position, inner))
+
+
+@cache
+def _has_position(kind: str) -> bool:
+    message_type: type[Message] = type_named(kind)
+    return {"x_m", "y_m"} <= {name for name, _, dimensions in members_of(message_type) if not dimensions}
+
+
+def _is_there(struct: Any) -> bool:
+    finite = math.isfinite(struct.x_m) and math.isfinite(struct.y_m)
+    return finite and all(getattr(struct, name, True) for name in _ABSENT)
+
+
+def _entity(frame: str, channel: str, stamp: Timestamp, places: list[_Place]) -> SceneEntity:
+    """Returns the markers of a message in one frame."""
+    arrows, cylinders, spheres, texts = [], [], [], []
+    for place in places:
+        struct, pose = place.struct, _pose(place.struct)
+        if hasattr(struct, "heading_rad"):
+            arrows.append(
+                ArrowPrimitive(
+                    pose=pose,
+                    shaft_length=0.3,
+                    shaft_diameter=0.1,
+                    head_length=0.15,
+                    head_diameter=0.2,
+                    color=_COLOUR,
+                )
+            )
+        elif hasattr(struct, "radius_m"):
+            size = Vector3(x=2 * struct.radius_m, y=2 * struct.radius_m, z=_HEIGHT_M)
+            cylinders.append(CylinderPrimitive(pose=pose, size=size, bottom_scale=1, top_scale=1, color=_COLOUR))
+        else:
+            size = Vector3(x=_SIZE_M, y=_SIZE_M, z=_SIZE_M)
+            spheres.append(SpherePrimitive(pose=pose, size=size, color=_COLOUR))
+        label = str(getattr(struct, "name", "") or place.path.strip())
+        if label:
+            texts.append(TextPrimitive(pose=pose, billboard=True, font_size=0.2, color=_COLOUR, text=label))
+    return SceneEntity(
+        timestamp=stamp,
+        frame_id=frame,
+        id=f"{channel} in {frame}",
+        arrows=arrows,
+        cylinders=cylinders,
+        spheres=spheres,
+        texts=texts,
+    )
+
+
+def _pose(struct: Any) -> Pose:
+    return Pose(position=_position(struct), orientation=_orientation(struct))
+
+
+def _position(struct: Any) -> Vector3:
+    return Vector3(x=struct.x_m, y=struct.y_m, z=getattr(struct, "z_m", 0.0))
+
+
+def _orientation(struct: Any) -> Quaternion:
+    half = getattr(struct, "heading_rad", 0.0) / 2
+    return Quaternion(x=0, y=0, z=math.sin(half), w=math.cos(half))
+
+
+def _robot(channel: str, frame: str, struct: Any, stamp: Timestamp) -> FrameTransforms:
+    """Returns the transform of a robot's frame, which its channel `pose` gives."""
+    child = full_frame("robot", channel)
+    made = FrameTransform(
+        timestamp=stamp,
+        parent_frame_id=frame,
+        child_frame_id=child,
+        translation=_position(struct),
+        rotation=_orientation(struct),
+    )
+    return FrameTransforms(transforms=[made])
+
+
+def _transforms(message: Any) -> FrameTransforms:
+    made = [
+        FrameTransform(
+            timestamp=Timestamp(each.time_us // US_PER_S, each.time_us % US_PER_S * 1000),
+            parent_frame_id=each.parent,
+            child_frame_id=each.child,
+            translation=Vector3(x=each.x_m, y=each.y_m, z=each.z_m),
+            rotation=Quaternion(x=each.qx, y=each.qy, z=each.qz, w=each.qw),
+        )
+        for each in message.transforms
+    ]
+    return FrameTransforms(transforms=made)
+
+
+def _image(picture: Any, stamp: Timestamp) -> CompressedImage | RawImage:
+    data = bytes(picture.data)
+    if picture.format != "raw":
+        return CompressedImage(timestamp=stamp, frame_id=picture.camera, data=data, format=picture.format)
+    return RawImage(
+        timestamp=stamp,
+        frame_id=picture.camera,
+        width=picture.width_px,
+        height=picture.height_px,
+        encoding=_ENCODINGS.get(picture.channels, f"8UC{picture.channels}"),
+        step=picture.width_px * picture.channels,
+        data=data,
+    )
