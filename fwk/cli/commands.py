@@ -37,6 +37,7 @@ MODULES = {
     "merge": "recordings.merge",
     "repair": "recordings.repair",
     **dict.fromkeys(("export", "import"), "recordings.export"),
+    "plot": "recordings.plot",
     "runs": "recordings.runs",
     "video": "recordings.video",
     "eval": "recordings.evaluate",

@@ -84,6 +84,10 @@ EXAMPLES = {
         "fwk export log.lcm --to jsonl --type 'robot.*' --out robots.jsonl",
     ),
     "fwk import": ("fwk import log.mcap --out log.lcm",),
+    "fwk plot": (
+        "fwk plot cyan1/odometry.x_m cyan1/odometry.vx_m_s --from log.lcm --out drive.png",
+        "fwk plot 'cyan*/world_model.ball.x_m' --from log.lcm --out ball.svg",
+    ),
     "fwk runs list": ("fwk runs list",),
     "fwk video": ("fwk video log.lcm --out run.mp4",),
     "fwk eval": (
