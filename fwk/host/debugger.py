@@ -59,8 +59,8 @@ def debug(
     """
     if request.debugpy_port:
         return _debugpy(request, serve)
-    file, line = _first_line_of_loop(request.component)
-    debugger = _Pdb(nosigint=True)
+    file, line = first_line_of_loop(request.component)
+    debugger = QuietPdb(nosigint=True)
     debugger.begin_at(file, line, lambda component: component.name == request.component.name and ready())
     signal.signal(signal.SIGINT, lambda _number, frame: debugger.set_trace(frame))
     print(f"fwk: {request.component.name} under pdb; it stops at the beginning of loop()", flush=True)
@@ -77,7 +77,7 @@ def debug(
     return 0
 
 
-class _Pdb(pdb.Pdb):
+class QuietPdb(pdb.Pdb):
     """pdb that stops at breakpoints only, never in the code of the framework before them."""
 
     def begin_at(self, file: str, line: int, wanted: Callable[[Any], bool]) -> None:
@@ -126,7 +126,8 @@ def _debugpy(request: DebugRequest, serve: Callable[[], None]) -> int:
     return 0
 
 
-def _first_line_of_loop(component: ComponentPlan) -> tuple[str, int]:
+def first_line_of_loop(component: ComponentPlan) -> tuple[str, int]:
+    """Returns file and number of the first line of a component's `loop()`."""
     loop = getattr(import_module(component.module), component.class_name).loop
     code = loop.__code__
     file = inspect.getsourcefile(loop) or code.co_filename

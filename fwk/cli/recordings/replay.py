@@ -1,8 +1,9 @@
 """`fwk replay`: feeds recorded inputs to real components and compares their outputs."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -14,8 +15,6 @@ from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
 from fwk.engine.failures import ComponentFailedError
-from fwk.host.debugger import LEFT, DebugRequest
-from fwk.host.debugger import debug as debug_process
 from fwk.model.errors import hint
 from fwk.model.plan import Plan
 from fwk.plan.what_ran import blas_kernel, changed_modules, other_kernel
@@ -23,6 +22,8 @@ from fwk.recording.difference import Difference
 from fwk.recording.differing import Differing, differing, lines_of
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
+from fwk.recording.travel.debugger import LEFT, Travel
+from fwk.recording.travel.snapshots import Snapshots, run_session
 
 DIFFERENT, UNUSABLE = 1, 2
 
@@ -75,14 +76,38 @@ def replay(
             if asked:
                 go_on_live(_opened(log), asked, as_json)
                 return
-            done, notes = _replay(log, only or ([debug] if debug else []), from_tick, to_tick, debug)
         except RecordingError as error:
             typer.echo(f"error: {error}", err=True)
             raise typer.Exit(UNUSABLE) from error
+        work = partial(_replayed, log, only or ([debug] if debug else []), from_tick, verify, as_json)
+        if not debug:
+            raise typer.Exit(work(lambda made: made.run(to_tick)))
+    raise typer.Exit(run_session(partial(_debugged, work, debug, from_tick, to_tick)))
+
+
+def _replayed(
+    log: Path,
+    only: list[str],
+    from_tick: int,
+    verify: bool,
+    as_json: bool,
+    run: Callable[[Replay], None],
+) -> int:
+    """Replays a log with `run` and says what was found; returns the exit code."""
+    try:
+        recording = _opened(log)
+        done = Replay(recording, only)
+        notes = list(_not_as_in_the_run(recording.plan))
+        for text in notes:
+            typer.echo(f"{log}: {text}", err=True)
+        run(done)
+    except RecordingError as error:
+        typer.echo(f"error: {error}", err=True)
+        return UNUSABLE
     found = [difference for difference in done.differences if (difference.tick or 0) >= from_tick]
     if as_json:
         typer.echo(json.dumps({**_plain(done, found, verify), "notes": notes}, indent=2))
-        raise typer.Exit(DIFFERENT if verify and found else 0)
+        return DIFFERENT if verify and found else 0
     typer.echo(f"{done.iterations} iterations replayed")
     for name, reason in done.left_out.items():
         typer.echo(f"not replayed: {name}: {reason}")
@@ -92,16 +117,16 @@ def replay(
         which = ", ".join(f"{len(lost[channel])} of {channel} (the first is {min(lost[channel])})" for channel in lost)
         typer.echo(f"{log}: messages were lost in the run: {which}; their readers may differ", err=True)
     if not verify:
-        return
+        return 0
     if not found:
         typer.echo(f"equal: {done.compared} messages are byte for byte what was recorded")
-        return
+        return 0
     rows = _differing(done, found)
     typer.echo(f"different: {len(found)} of {done.compared} messages; the first is")
     typer.echo(f"  {rows[0].component}: {rows[0].first}")
     for line in lines_of(rows):
         typer.echo(line)
-    raise typer.Exit(DIFFERENT)
+    return DIFFERENT
 
 
 def _differing(done: Replay, found: list[Difference]) -> list[Differing]:
@@ -150,22 +175,6 @@ def _branch(
     return BranchRequest(to_tick, until_tick, sets or (), classes or (), record)
 
 
-def _replay(
-    log: Path, only: list[str], from_tick: int, to_tick: int | None, debugged: str | None
-) -> tuple[Replay, list[str]]:
-    """Replays a log; returns the replay, and its differences to the conditions of the run."""
-    recording = _opened(log)
-    made = Replay(recording, only)
-    notes = list(_not_as_in_the_run(recording.plan))
-    for text in notes:
-        typer.echo(f"{log}: {text}", err=True)
-    if debugged:
-        _debug(made, debugged, from_tick, to_tick)
-    else:
-        made.run(to_tick)
-    return made, notes
-
-
 def _not_as_in_the_run(plan: Plan) -> Iterator[str]:
     """Yields what differs from the run before any component runs: its modules and the BLAS kernel."""
     for module, difference in changed_modules(plan).items():
@@ -174,24 +183,34 @@ def _not_as_in_the_run(plan: Plan) -> Iterator[str]:
         yield text
 
 
-def _debug(made: Replay, name: str, from_tick: int, to_tick: int | None) -> None:
+def _debugged(
+    work: Callable[[Callable[[Replay], None]], int],
+    name: str,
+    from_tick: int,
+    to_tick: int | None,
+    snapshots: Snapshots,
+) -> int:
+    """Replays under pdb with time travel, in a process that may go back; returns the exit code."""
+    try:
+        with failing(UNUSABLE):
+            return work(partial(_debug, snapshots, name, from_tick, to_tick))
+    except typer.Exit as end:
+        return end.exit_code
+
+
+def _debug(snapshots: Snapshots, name: str, from_tick: int, to_tick: int | None, made: Replay) -> None:
     """Runs the replay under pdb; ends the command when the debugger is left."""
     components = {component.name: component for component in made.recording.plan.components}
     if name not in components:
         raise RecordingError(f"--debug: no component '{name}' in this run; {hint(name, components)}")
-    reached = 0
+    travel = Travel(components[name], snapshots, from_tick)
 
-    def begins(tick: int) -> None:
-        nonlocal reached
-        reached = tick
-
-    def work() -> None:
+    def work(begins: Callable[[int], None]) -> None:
         try:
             made.run(to_tick, begins)
         except RecordingError as error:
             raise ComponentFailedError(str(error)) from (error.__cause__ or error)
 
-    request = DebugRequest(components[name].host, components[name])
-    if debug_process(request, work, lambda: reached >= from_tick, "ends the replay") == LEFT:
-        typer.echo(f"left in tick {reached}")
+    if travel.run(work) == LEFT:
+        typer.echo(f"left in tick {travel.tick}")
         raise typer.Exit(0)

@@ -1,5 +1,6 @@
 """Camera frames of a replay: each component gets the frames that it got in the run."""
 
+import mmap
 from collections.abc import Callable
 from pathlib import Path
 from typing import Protocol
@@ -29,6 +30,11 @@ class RingFrames:
         """Returns a function that gives the frame as it is in the ring now."""
         pixels = self._ring.get(number, size)
         return lambda: pixels
+
+
+def private_ring(channel: str) -> Ring:
+    """Returns a ring that processes forked later do not share: each goes on with frames of its own."""
+    return Ring(Ring.create(channel).descriptor, mmap.ACCESS_COPY)
 
 
 class RecordedFrames:

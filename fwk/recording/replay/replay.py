@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from typing import Any
 
-from fwk.component.images import Ring
 from fwk.engine.assignment import Start
 from fwk.engine.component_group import Written
 from fwk.engine.failures import ComponentFailedError
@@ -35,7 +34,7 @@ from fwk.model.tick_events import (
 )
 from fwk.recording.difference import Difference
 from fwk.recording.replay.comparison import OutputComparison
-from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames
+from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames, private_ring
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.recording.replay.life import Life, Owed, blackboard_at, one_component_a_host
 from fwk.recording.replay.recorded_messages import RecordedMessages
@@ -77,7 +76,7 @@ class Replay:
         self.left_out = {plan.components[index].name: reason for index, reason in choice.left_out.items()}
         """Components that are not run, with the reason."""
         self._recorded = {channel: RecordedFrames(recording.path, channel) for channel in plan.record.frames}
-        self._rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
+        self._rings = {channel.name: private_ring(channel.name) for channel in plan.channels if channel.images}
         live = {channel: RingFrames(ring) for channel, ring in self._rings.items()}
         self._frames: dict[str, FrameSource] = {**live, **self._recorded}
         self._host_channels = [

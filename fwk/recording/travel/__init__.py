@@ -1,0 +1,1 @@
+"""Time travel: a replay in the debugger that goes back."""

@@ -1,0 +1,113 @@
+"""Time travel in a replay under pdb: back, goto, until, and back until, with exactly the inputs of the run."""
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from fwk.clock import monotonic_us
+from tests.harness.runs import played
+from tests.harness.terminals import Terminal
+from tests.programs.orchestra import orchestra
+
+pytestmark = pytest.mark.system
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """A folder with the recording of 40 ticks of the orchestra."""
+    options = ("--ticks", "40", "--speed", "max", "--record", "log.lcm")
+    played(tmp_path, orchestra, "launch/orchestra.yaml", *options)
+    return tmp_path
+
+
+def debugged(folder: Path, name: str, *words: str) -> Terminal:
+    """A replay under pdb, at its first prompt."""
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", name, *words]
+    terminal = Terminal(folder, *command)
+    assert "loop()" in terminal.prompt()
+    return terminal
+
+
+def where(terminal: Terminal) -> tuple[int, int]:
+    """Returns the tick, and the iterations before, of the stopped component."""
+    found = re.search(r"\((\d+), (\d+)\)", terminal.ask("p (self.clock.tick, self.note.value.iterations)"))
+    assert found
+    return int(found[1]), int(found[2])
+
+
+@pytest.mark.core
+def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
+    stopped = debugged(recorded, "e/player", "--from-tick", "20", "--verify")
+    assert where(stopped) == (20, 19)
+    heard = stopped.ask("p self.digest()")
+    for command, tick in (
+        ("back", 19),
+        ("back 5", 14),
+        ("goto 30", 30),
+        ("goto 8", 8),
+        ("until self.note.value.iterations == 25", 26),
+        ("back until self.clock.tick % 10 == 0", 20),
+    ):
+        stopped.ask(command)
+        assert where(stopped) == (tick, tick - 1), command
+    assert stopped.ask("p self.digest()") == heard
+    stopped.ask("n")
+    stopped.ask("back")
+    assert where(stopped) == (19, 18)
+    stopped.type("c")
+    stopped.child.expect("equal: ")
+    assert stopped.end() == 0
+
+
+def test_impossible_travels_are_explained(recorded: Path) -> None:
+    stopped = debugged(recorded, "e/player", "--from-tick", "3")
+    for command, reason in (
+        ("back 3", "there are 2 iterations before this one"),
+        ("back soon", "back takes a number of iterations, or 'until CONDITION'"),
+        ("goto x", "goto takes a tick: goto 1200"),
+        ("until self.nota > 1", "AttributeError: 'Player' object has no attribute 'nota'"),
+        ("back until 1 +", "SyntaxError: invalid syntax"),
+    ):
+        assert reason in stopped.ask(command), command
+        assert where(stopped) == (3, 2)
+    assert "no earlier iteration where self.clock.tick > 9" in stopped.ask("back until self.clock.tick > 9")
+    assert where(stopped) == (3, 2)
+    stopped.type("q")
+    stopped.child.expect("left in tick 3")
+    assert stopped.end() == 0
+
+
+def test_breakpoints_survive_a_travel(recorded: Path) -> None:
+    stopped = debugged(recorded, "a/player", "--from-tick", "10")  # takes part in two stages of a tick
+    line = 1 + (recorded / "player.py").read_text().splitlines().index("        self.note.write()")
+    stopped.ask(f"break player.py:{line}, self.clock.tick == 8")
+    stopped.ask("back 10")
+    assert where(stopped) == (5, 8)
+    assert "self.note.write()" in stopped.ask("c")
+    assert where(stopped) == (8, 15)
+    stopped.ask("clear 1")
+    assert "ok" in stopped.ask("p 'ok'")
+    stopped.type("c")
+    stopped.child.expect("iterations replayed")
+    assert stopped.end() == 0
+
+
+def test_frames_of_the_past_come_back(recorded: Path) -> None:
+    stopped = debugged(recorded, "a/viewer", "--from-tick", "30", "--verify")
+    for command in ("goto 5", "goto 20", "back 3"):
+        stopped.ask(command)
+    stopped.type("c")
+    stopped.child.expect("equal: ")
+    assert stopped.end() == 0
+
+
+def test_an_iteration_back_takes_less_than_a_second(recorded: Path) -> None:
+    stopped = debugged(recorded, "e/player", "--from-tick", "39")
+    stopped.ask("back")
+    began_us = monotonic_us()
+    stopped.ask("back 20")
+    assert monotonic_us() - began_us < 1_000_000
+    stopped.type("q")
+    assert stopped.end() == 0
