@@ -18,7 +18,7 @@ from tests.programs.control_system import Steered, write_system
 pytestmark = pytest.mark.system
 
 ROOT = Path(__file__).parents[2]
-MATCH_S = 12
+MATCH_S = 8
 TICKS_BETWEEN = 16
 
 

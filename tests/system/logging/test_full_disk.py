@@ -92,7 +92,7 @@ def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock,
     launched = launch("small.yaml")
     Steered(launched, ports)
     dice, acknowledged, killed = random.Random(7), 0, 0
-    for number in range(1, 13):
+    for number in range(1, 9):
         command = [
             str(BIN / "fwk"),
             "config",
@@ -117,12 +117,12 @@ def test_acknowledged_settings_survive_sigkill(tmp_path: Path, ports: PortBlock,
         assert acknowledged <= read(text)["config"]["r/counter"]["step"] <= number
         assert text.startswith("# this machine\n")
         assert text.endswith("  # as ever\n")
-    assert acknowledged == 12
+    assert acknowledged == 8
     assert killed >= 3
     launched.signal(signal.SIGKILL)
     assert launched.gone_within(30)
     (row,) = json.loads(fwk(tmp_path, "config", "get", "r/counter.step", "--file", "small.yaml", "--json"))
-    assert (row["value"], row["origin"]) == (12.0, "small.host.yaml:4")
+    assert (row["value"], row["origin"]) == (8.0, "small.host.yaml:4")
 
 
 def _when_it_is_about_to_write(setting: "Command | subprocess.Popen[bytes]", folder: Path, later_s: float) -> None:

@@ -32,7 +32,7 @@ def test_requests_and_crashes_are_replayed_exactly(
     run = Steered(launch(FILE, "--record", "log.lcm"), ports)
     luck = random.Random(3)
     fate = Fate(run, ports, luck)
-    for _ in range(30):
+    for _ in range(20):
         fate.strike(luck.choice(["kill", "kill", "stop and start", "restart", "set", "still"]))
         run.ticks_pass(luck.randrange(1, 5))
     run.launched.signal(signal.SIGINT)
