@@ -24,6 +24,7 @@ MODULES = {
     "debug": "steer.debug",
     **dict.fromkeys(("pause", "resume", "step", "speed"), "steer.clock"),
     "config": "steer.config",
+    **dict.fromkeys(("graph", "who"), "look.graph"),
     "bb": "look.bb",
     "log": "look.log",
     "note": "steer.note",

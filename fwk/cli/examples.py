@@ -44,9 +44,15 @@ EXAMPLES = {
     "fwk config list": ("fwk config list 'cyan1/*'",),
     "fwk config get": ("fwk config get cyan1/omni_ball.deviation_px",),
     "fwk config set": ("fwk config set cyan1/omni_ball.deviation_px=2",),
+    "fwk graph": (
+        "fwk graph --file robots.yaml --out robots.svg",
+        "fwk graph 'cyan1/*' --run red",
+        "fwk graph --file robots.yaml --form mermaid",
+    ),
+    "fwk who": ("fwk who cyan1/ball", "fwk who '*/pose' --file robots.yaml"),
     "fwk bb list": ("fwk bb list 'cyan1/*'",),
     "fwk bb show": ("fwk bb show cyan1/world_model", "fwk bb show cyan1/world_model --json"),
-    "fwk bb watch": ("fwk bb watch cyan1/odometry",),
+    "fwk bb watch": ("fwk bb watch cyan1/odometry", "fwk bb watch cyan1/pose --field x_m --field y_m"),
     "fwk log": (
         "fwk log -f --level warning",
         "fwk log --last 20 --component 'cyan1/*'",

@@ -1,19 +1,21 @@
 """`fwk bb`: the channels of a run and their newest messages."""
 
 import json
+import re
 from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Annotated, Any
 
 import typer
 
-from fwk.cli.output import say_table
+from fwk.cli.look.channel_rates import channels_with_rates
+from fwk.cli.output import BAD_INPUT, say_table
 from fwk.cli.run_options import Json, RunChoice, asking
-from fwk.clock import US_PER_S, monotonic_us, sleep_s
+from fwk.clock import US_PER_S
 from fwk.control import client
 from fwk.display.table import Column, Table
+from fwk.model.errors import hint
 
-_RATE_S = 1.0
 _ITEMS_SHOWN = 12
 _ROW_SHOWN = 4
 bb = typer.Typer(add_completion=False, no_args_is_help=True)
@@ -37,14 +39,8 @@ def list_channels(
 
     Rate and age are wall time: messages per second over one second, and time since the newest message.
     """
-    with asking(), client.gateway(chosen) as run:
-        before, began_us = run.ask("channels")["channels"], monotonic_us()
-        sleep_s(_RATE_S)
-        rows, elapsed_us = run.ask("channels")["channels"], monotonic_us() - began_us
-    earlier = {row["channel"]: row["messages"] for row in before}
-    for row in rows:
-        new = row["messages"] - earlier.get(row["channel"], 0)
-        row["rate_hz"] = max(0, new) * US_PER_S / elapsed_us
+    with asking():
+        rows = channels_with_rates(chosen)
     wanted = [row for row in rows if not patterns or any(fnmatchcase(row["channel"], each) for each in patterns)]
     if as_json:
         typer.echo(json.dumps(wanted, indent=2))
@@ -71,19 +67,58 @@ def watch(
     count: Annotated[
         int | None, typer.Option("--count", min=1, metavar="N", help="end after N messages; otherwise with Ctrl-C")
     ] = None,
+    fields: Annotated[
+        list[str] | None,
+        typer.Option("--field", metavar="FIELD", help="only this field, such as pose.x_m or xs[2]; repeatable"),
+    ] = None,
     chosen: RunChoice = None,
     as_json: Json = False,
 ) -> None:
     """Shows a channel's newest message, and from then on each new one, until the run ends.
 
     A reader that is slower than the channel misses messages; their number is shown. `--json` prints a line for each
-    message.
+    message. With `--field` a line has tick, logical time and the values of these fields.
     """
     with asking(), client.gateway(chosen) as run:
         for seen, answer in enumerate(run.follow("watch", channel=channel), 1):
-            typer.echo(json.dumps(answer) if as_json else "\n".join([*_message(answer), ""]))
+            if fields and answer["value"] is not None:
+                typer.echo(_field_line(answer, fields, as_json))
+            else:
+                typer.echo(json.dumps(answer) if as_json else "\n".join([*_message(answer), ""]))
             if seen == count:
                 return
+
+
+def _field_line(answer: dict[str, Any], fields: list[str], as_json: bool) -> str:
+    """Returns the line for these fields of a message."""
+    try:
+        values = {name: field_of(answer["value"], name) for name in fields}
+    except LookupError as error:
+        typer.echo(f"error: {answer['channel']} ({answer['type']}): {error.args[0]}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    if as_json:
+        return json.dumps({"tick": answer["tick"], "time_us": answer["time_us"], **values})
+    shown = "  ".join(f"{name}={_words(value, whole=False)}" for name, value in values.items())
+    return f"{answer['tick']:>8}  {answer['time_us'] / US_PER_S:.3f} s  {shown}"
+
+
+def field_of(value: Any, path: str) -> Any:
+    """Returns a member of a message as plain data; `path` is such as `pose.x_m` or `robots[0].y_m`.
+
+    Raises:
+        LookupError: there is no such member; the text says which there are.
+    """
+    for name in re.findall(r"[^.\[\]]+", path):
+        if isinstance(value, dict) and name in value:
+            value = value[name]
+        elif isinstance(value, list) and name.isdecimal() and int(name) < len(value):
+            value = value[int(name)]
+        elif isinstance(value, list):
+            raise LookupError(f"no item '{name}' in '{path}'; it has {len(value)}")
+        else:
+            known = hint(name, list(value)) if isinstance(value, dict) else "it is a value without fields"
+            raise LookupError(f"no field '{name}' in '{path}'; {known}")
+    return value
 
 
 def _table(rows: list[dict[str, Any]]) -> Table:

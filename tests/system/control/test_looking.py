@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import socket
 import subprocess
 from collections.abc import Callable
@@ -80,6 +81,13 @@ def test_the_blackboard_from_outside(run: Steered) -> None:
     lines = [json.loads(line) for line in run.fwk("bb", "watch", "r/imu", "--count", "4", "--json").splitlines()]
     headings = [line["value"]["heading_rad"] for line in lines]
     assert headings[1:] == [headings[1], headings[1] + 1, headings[1] + 2]
+    said = run.fwk("bb", "watch", "r/imu", "--count", "1", "--field", "heading_rad")
+    assert re.fullmatch(r" *\d+  \d+\.\d{3} s  heading_rad=[\d.]+\n", said), said
+    assert "no field 'heding'" in run.fwk("bb", "watch", "r/imu", "--field", "heding", code=2)
+    (row,) = run.json("who", "r/imu")
+    assert (row["writer"], row["readers"], row["rate_hz"] > 0) == ("r/counter", ["r/follower"], True)
+    nodes = {node["name"]: node["state"] for node in run.json("graph")["nodes"]}
+    assert (len(nodes), set(nodes.values())) == (4, {"running"})
     run.end()
 
 
