@@ -43,6 +43,7 @@ MODULES = {
     "video": "recordings.video",
     "eval": "recordings.evaluate",
     "cam": "look.cam",
+    "web": "look.web",
     "spy": "look.spy",
     "doctor": "check.doctor",
     "completion": "complete.completion",

@@ -142,6 +142,14 @@ class Watch(_Request):
     channel: str
 
 
+class Newest(_Request):
+    """Asks the gateway for the newest messages of channels, encoded, as far as they are newer than the known ones."""
+
+    verb: Literal["newest"]
+    known: Annotated[dict[str, int], Field(max_length=1000)]
+    """Channel to the sequence number that the tool has; 0: none."""
+
+
 class CallService(_Request):
     """Sends a command to a component through the gateway; answered at once and for each answer of the component."""
 
@@ -156,7 +164,7 @@ class CallService(_Request):
 SupervisorRequest = (
     Run | Status | Times | Steer | SetClock | TakePlace | Settings | SetSettings | WatchSettings | Common | Note
 )
-GatewayRequest = Channels | Show | Watch | CallService
+GatewayRequest = Channels | Show | Watch | Newest | CallService
 _LATER = ConfigDict(defer_build=True)  # validators are built for the first request: most runs never get one
 to_supervisor: TypeAdapter[SupervisorRequest] = TypeAdapter(
     Annotated[SupervisorRequest, Field(discriminator="verb")], config=_LATER

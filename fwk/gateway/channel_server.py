@@ -2,7 +2,7 @@
 
 import contextlib
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
@@ -82,6 +82,9 @@ class ChannelServer:
             if isinstance(request, requests.CallService):
                 self._call(request, connection)
                 return
+            if isinstance(request, requests.Newest):
+                connection.reply({"ok": True, "messages": self._newer_than(request.known)})
+                return
             answer = self._shown(request.channel)
             if isinstance(request, requests.Watch):
                 self._watching.setdefault(request.channel, []).append(connection)
@@ -134,6 +137,14 @@ class ChannelServer:
         state = self._table.find(channel.name)
         opened = sorted({component for component, _ in state.readers}) if state else []
         return list(dict.fromkeys([*channel.readers, *opened]))
+
+    def _newer_than(self, known: Mapping[str, int]) -> dict[str, str]:
+        """Returns the newest messages, in hexadecimal digits, of the channels that have one with a higher number."""
+        return {
+            name: data.hex()
+            for name, sequence in known.items()
+            if (data := self._newest.get(name)) and messages.sequence_of(data) > sequence
+        }
 
     def _shown(self, name: str) -> dict[str, Any]:
         row, data = self._row(self._known(name)), self._newest.get(name)

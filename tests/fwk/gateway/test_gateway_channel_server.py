@@ -103,6 +103,16 @@ def test_a_watcher_gets_each_new_message_of_that_channel(board: ChannelServer, c
     assert [each["value"]["heading_rad"] for each in heard(connection)] == [0.5, 1.0]
 
 
+def test_only_messages_that_are_newer_are_given(board: ChannelServer, connection: socket.socket) -> None:
+    assert ask(board, connection, verb="newest", known={"a/imu": 0, "a/pose": 0})["messages"] == {}
+    for sequence in (4, 5):
+        board.message("a/imu", imu(0.5, sequence), 0)
+    newest = {"a/imu": imu(0.5, 5).hex()}
+    assert ask(board, connection, verb="newest", known={"a/imu": 4, "a/pose": 0, "no/such": 0})["messages"] == newest
+    assert ask(board, connection, verb="newest", known={"a/imu": 5})["messages"] == {}
+    assert ask(board, connection, verb="newest", known={"a/imu": "x"})["error"].startswith("not a request: ")
+
+
 def test_an_unknown_channel_is_refused_with_the_nearest(board: ChannelServer, connection: socket.socket) -> None:
     answer = ask(board, connection, verb="show", channel="a/imi")
     assert answer == {"ok": False, "error": "no channel 'a/imi'; did you mean 'a/imu'?"}

@@ -1,0 +1,6 @@
+"""The web console: a browser sees and steers running systems. Exports what projects make views and pages with."""
+
+from fwk.web.scene import Newest, Scene
+from fwk.web.view import OpenPage, Page, RunAccess, View
+
+__all__ = ["Newest", "OpenPage", "Page", "RunAccess", "Scene", "View"]

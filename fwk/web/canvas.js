@@ -1,0 +1,193 @@
+// Shows the drawings of a view. Asks for the next one only after the last was shown, so a hidden page asks for nothing.
+const TRAIL_MS = 2000;
+
+export default {
+  template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
+  props: { url: String, label: String, period: { type: Number, default: 50 }, hidden: { type: Array, default: () => [] },
+           drags: Boolean },
+  mounted() {
+    this.canvas = this.$el.firstChild;
+    this.scale = 0; // pixels a metre; 0: not chosen yet
+    this.trails = new Map();
+    this.drawing = null;
+    this.layers = "";
+    this.open = true;
+    this.frames = 0;
+    const on = (name, handle, options) => this.canvas.addEventListener(name, handle, options);
+    on("wheel", (e) => { e.preventDefault(); this.zoom(e.deltaY < 0 ? 1.15 : 1 / 1.15, e.offsetX, e.offsetY); },
+       { passive: false });
+    on("pointerdown", this.press); on("pointermove", this.move); on("pointerup", this.release);
+    on("keydown", this.key); on("dblclick", () => { this.scale = 0; this.paint(); });
+    this.pointers = new Map();
+    new ResizeObserver(() => this.paint()).observe(this.canvas);
+    requestAnimationFrame(this.ask);
+  },
+  beforeUnmount() { this.open = false; },
+  watch: { hidden() { this.paint(); }, url() { this.trails.clear(); this.scale = 0; } },
+  methods: {
+    async ask(now) {
+      if (!this.open) return;
+      const began = performance.now();
+      try {
+        const answer = await fetch(this.url);
+        if (answer.ok) this.take(await answer.json());
+      } catch (error) { /* the console restarts; the next request finds out */ }
+      setTimeout(() => requestAnimationFrame(this.ask), Math.max(0, this.period - (performance.now() - began)));
+    },
+    take(drawing) {
+      this.drawing = drawing;
+      this.frames += 1;
+      this.canvas.dataset.frames = this.frames;
+      const now = performance.now();
+      for (const shape of drawing.shapes) if (shape.trail) {
+        const trail = this.trails.get(shape.trail) || [];
+        trail.push([now, shape.x, shape.y]);
+        while (trail.length && trail[0][0] < now - TRAIL_MS) trail.shift();
+        this.trails.set(shape.trail, trail);
+      }
+      const layers = [...new Set(drawing.shapes.map((shape) => shape.l).filter(Boolean))].sort();
+      if (layers.join("\n") !== this.layers) {
+        this.layers = layers.join("\n");
+        this.$emit("layers", layers);
+      }
+      if (drawing.headline !== this.headline) this.$emit("headline", (this.headline = drawing.headline));
+      this.paint();
+    },
+    fit(width, height) {
+      let box = this.drawing.bounds;
+      if (!box) {
+        const points = this.drawing.shapes.flatMap((s) => s.p || [[s.x, s.y]]);
+        const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
+        box = points.length ? [Math.min(...xs) - 1, Math.min(...ys) - 1, Math.max(...xs) + 1, Math.max(...ys) + 1]
+                            : [-5, -5, 5, 5];
+      }
+      this.scale = Math.min(width / (box[2] - box[0]), height / (box[3] - box[1]));
+      this.middle = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+    },
+    paint() {
+      if (!this.drawing) return;
+      const dots = window.devicePixelRatio || 1;
+      const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+      if (!width || !height) return;
+      if (this.canvas.width !== width * dots || this.canvas.height !== height * dots) {
+        this.canvas.width = width * dots; this.canvas.height = height * dots;
+      }
+      if (!this.scale) this.fit(width, height);
+      const pen = this.canvas.getContext("2d");
+      pen.setTransform(1, 0, 0, 1, 0, 0);
+      pen.fillStyle = this.drawing.background || getComputedStyle(document.body).backgroundColor;
+      pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
+      const s = this.scale * dots;
+      pen.setTransform(s, 0, 0, -s, (width * dots) / 2 - this.middle[0] * s, (height * dots) / 2 + this.middle[1] * s);
+      pen.lineCap = "round"; pen.lineJoin = "round";
+      const shown = this.drawing.shapes.filter((shape) => !this.hidden.includes(shape.l));
+      for (const shape of shown) if (shape.trail) this.paintTrail(pen, shape);
+      for (const shape of shown) this.paintShape(pen, shape);
+    },
+    paintTrail(pen, shape) {
+      const trail = this.trails.get(shape.trail) || [];
+      pen.strokeStyle = shape.fill || shape.stroke; pen.lineWidth = shape.r / 3; pen.globalAlpha = 0.35;
+      pen.beginPath();
+      for (const [, x, y] of trail) pen.lineTo(x, y);
+      pen.stroke(); pen.globalAlpha = 1;
+    },
+    paintShape(pen, shape) {
+      pen.lineWidth = Math.max(shape.width || 0, 1 / this.scale);
+      pen.setLineDash(shape.dashed ? [0.1, 0.1] : []);
+      pen.beginPath();
+      if (shape.k === "text") return this.paintText(pen, shape);
+      const place = this.dragged && shape.drag === this.dragged.name ? this.dragged : shape;
+      if (shape.k === "circle") pen.arc(place.x, place.y, shape.r, 0, 2 * Math.PI);
+      else if (shape.k === "ellipse") pen.ellipse(shape.x, shape.y, shape.a, shape.b, shape.t, 0, 2 * Math.PI);
+      else for (const [x, y] of shape.p) pen.lineTo(x, y);
+      if (shape.k === "polygon") pen.closePath();
+      if (shape.fill) { pen.fillStyle = shape.fill; pen.fill(); }
+      if (shape.stroke) { pen.strokeStyle = shape.stroke; pen.stroke(); }
+      if (shape.pick && shape.pick === this.picked) {
+        pen.lineWidth = 2.5 / this.scale; pen.strokeStyle = "#ffeb3b"; pen.setLineDash([]);
+        pen.beginPath(); pen.arc(place.x, place.y, shape.r + 4 / this.scale, 0, 2 * Math.PI); pen.stroke();
+      }
+    },
+    paintText(pen, shape) {
+      pen.save();
+      pen.translate(shape.x, shape.y); pen.scale(0.01, -0.01);
+      pen.font = `${Math.max(shape.h * 100, 900 / this.scale)}px system-ui, sans-serif`;
+      pen.textAlign = "center"; pen.textBaseline = "middle"; pen.fillStyle = shape.fill;
+      pen.fillText(shape.s, 0, 0);
+      pen.restore();
+    },
+    at(event) {
+      const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
+      return [this.middle[0] + (event.offsetX - width / 2) / this.scale,
+              this.middle[1] - (event.offsetY - height / 2) / this.scale];
+    },
+    hit(x, y, what) {
+      let best = null, least = Infinity;
+      for (const shape of this.drawing ? this.drawing.shapes : []) {
+        if (shape.k !== "circle" || !shape[what] || this.hidden.includes(shape.l)) continue;
+        const away = Math.hypot(shape.x - x, shape.y - y);
+        if (away < Math.max(shape.r, 10 / this.scale) && away < least) { best = shape; least = away; }
+      }
+      return best;
+    },
+    zoom(factor, x, y) {
+      if (!this.scale) return;
+      const before = this.at({ offsetX: x, offsetY: y });
+      this.scale = Math.min(5000, Math.max(0.5, this.scale * factor));
+      const after = this.at({ offsetX: x, offsetY: y });
+      this.middle = [this.middle[0] + before[0] - after[0], this.middle[1] + before[1] - after[1]];
+      this.paint();
+    },
+    press(event) {
+      if (!this.scale) return;
+      this.canvas.setPointerCapture(event.pointerId);
+      this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+      const [x, y] = this.at(event);
+      const shape = this.drags && this.hit(x, y, "drag");
+      this.pressed = { x: event.offsetX, y: event.offsetY, moved: false };
+      if (shape) this.dragged = { name: shape.drag, x, y };
+    },
+    move(event) {
+      if (!this.pressed || !this.pointers.has(event.pointerId)) return;
+      const last = this.pointers.get(event.pointerId);
+      this.pointers.set(event.pointerId, [event.offsetX, event.offsetY]);
+      if (Math.hypot(event.offsetX - this.pressed.x, event.offsetY - this.pressed.y) > 4) this.pressed.moved = true;
+      if (this.pointers.size === 2) {
+        const other = [...this.pointers.entries()].find(([id]) => id !== event.pointerId)[1];
+        const away = (p) => Math.hypot(p[0] - other[0], p[1] - other[1]);
+        this.zoom(away([event.offsetX, event.offsetY]) / Math.max(1, away(last)), other[0], other[1]);
+      } else if (this.dragged) {
+        [this.dragged.x, this.dragged.y] = this.at(event);
+        this.paint();
+      } else {
+        this.middle = [this.middle[0] - (event.offsetX - last[0]) / this.scale,
+                       this.middle[1] + (event.offsetY - last[1]) / this.scale];
+        this.paint();
+      }
+    },
+    release(event) {
+      if (!this.pressed) return;
+      this.pointers.delete(event.pointerId);
+      if (this.dragged && this.pressed.moved) this.$emit("moved", this.dragged);
+      if (!this.pressed.moved) {
+        const shape = this.hit(...this.at(event), "pick");
+        this.picked = shape ? shape.pick : "";
+        this.$emit("pick", this.picked);
+      }
+      this.dragged = null;
+      if (!this.pointers.size) this.pressed = null;
+      this.paint();
+    },
+    key(event) {
+      const [x, y] = [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2];
+      const step = 40 / (this.scale || 1);
+      const moves = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+      if (event.key === "+") this.zoom(1.2, x, y);
+      else if (event.key === "-") this.zoom(1 / 1.2, x, y);
+      else if (event.key === "0") { this.scale = 0; this.paint(); }
+      else if (event.key === "Tab" || !(event.key in moves)) return;
+      else { this.middle = this.middle.map((m, i) => m + moves[event.key][i]); this.paint(); }
+      event.preventDefault();
+    },
+  },
+};

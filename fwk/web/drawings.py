@@ -1,0 +1,85 @@
+"""Gives browsers the drawings of views and the images of cameras, as often as they ask but no oftener than is useful.
+
+A browser asks for the next drawing after it has shown the last one, so a browser that sleeps costs nothing.
+"""
+
+import asyncio
+from typing import Any
+
+import cv2
+from fastapi import FastAPI
+from starlette.requests import Request
+from starlette.responses import PlainTextResponse, Response
+
+from fwk.component.images import Ring
+from fwk.control.client import ControlError
+from fwk.web.console import Console
+from fwk.web.general_view import GeneralView
+from fwk.web.scene import Newest, Scene
+from fwk.web.view import View
+
+_DRAWING_AGE_S = 0.04
+_IMAGE_AGE_S = 0.15
+_NO_STORE = {"cache-control": "no-store"}
+
+
+def add_drawings(app: FastAPI, console: Console) -> None:
+    """Adds the addresses `/drawing` and `/image`."""
+
+    async def drawing(request: Request) -> Response:
+        run, number = request.query_params.get("run", ""), request.query_params.get("view", "0")
+
+        async def draw() -> bytes:
+            link = console.runs.link(run)
+            views = await views_of(console, run)
+            view = views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
+            newest = await link.newest(view.channels, view.members)
+            return await asyncio.to_thread(drawn, view, newest)
+
+        try:
+            data = await console.shared.get(("drawing", run, number), _DRAWING_AGE_S, draw)
+        except ControlError as error:
+            return PlainTextResponse(str(error), 503, _NO_STORE)
+        return Response(data, 200, _NO_STORE, "application/json")
+
+    async def image(request: Request) -> Response:
+        run, channel = request.query_params.get("run", ""), request.query_params.get("channel", "")
+        try:
+            pid = (await console.runs.link(run).about())["pid"]
+            key = ("image", pid, channel)
+            data = await console.shared.get(key, _IMAGE_AGE_S, lambda: asyncio.to_thread(_image, pid, channel))
+        except ControlError as error:
+            return PlainTextResponse(str(error), 503, _NO_STORE)
+        if data is None:
+            return PlainTextResponse(f"{channel}: no frame", 404, _NO_STORE)
+        return Response(data, 200, _NO_STORE, "image/jpeg")
+
+    app.add_route("/drawing", drawing)
+    app.add_route("/image", image)
+
+
+async def views_of(console: Console, run: str) -> list[View]:
+    """Returns the views that are offered for a run: those of projects first."""
+    channels = [row["channel"] for row in await console.runs.link(run).channels()]
+    return [*console.extensions.views_for(channels), GeneralView()]
+
+
+def drawn(view: View, newest: dict[str, Any]) -> bytes:
+    """Returns the drawing of a view for the browser; a view that fails shows its mistake."""
+    scene = Scene()
+    try:
+        view.draw(Newest(newest), scene)
+    except Exception as error:  # of a project's code; the page shows it
+        scene = Scene()
+        scene.headline = f"{type(view).__name__}: {type(error).__name__}: {error}"
+    return scene.encoded()
+
+
+def _image(pid: int, channel: str) -> bytes | None:
+    """Returns the newest frame of a camera as JPEG."""
+    ring = Ring.of_process(pid, channel)
+    newest = ring.newest() if ring else None
+    if newest is None:
+        return None
+    done, data = cv2.imencode(".jpg", newest[1])
+    return data.tobytes() if done else None

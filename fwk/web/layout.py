@@ -1,0 +1,189 @@
+"""The frame of all pages: navigation, choice of the run, clock, and what happens when the run ends."""
+
+from collections.abc import Awaitable, Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+from urllib.parse import urlencode
+
+from nicegui import ui
+from starlette.requests import Request
+
+from fwk.control.client import ControlError
+from fwk.web.access import Role
+from fwk.web.console import STATIC, Console
+from fwk.web.view import RunAccess
+from fwk.web.words import seconds
+
+THEME = "fwk_theme"
+"""Cookie with the theme that a person has chosen."""
+PAGES = {
+    "/": ("System", "account_tree"),
+    "/view": ("View", "map"),
+    "/board": ("Blackboard", "dashboard"),
+    "/settings": ("Settings", "tune"),
+    "/log": ("Log", "subject"),
+}
+"""Address of a page to its title and icon."""
+SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}
+_REFRESH_S = 0.5
+_OTHER_THEME = f"""() => {{
+    const dark = !document.body.classList.contains('body--dark');
+    setDark(dark);
+    document.cookie = `{THEME}=${{dark ? 'dark' : 'light'}}; path=/; max-age=31536000; SameSite=Strict`;
+}}"""
+
+
+class Frame:
+    """The frame of one open page."""
+
+    def __init__(self, console: Console, request: Request, role: Role, run: str, runs: dict[str, Any]) -> None:
+        self.console = console
+        self.request = request
+        self.link = console.runs.link(run)
+        self.access = RunAccess(self.link, role)
+        self.may_steer = role is Role.STEER
+        self._runs = runs
+        self._on_status: list[Callable[[dict[str, Any]], None]] = []
+
+    @property
+    def run(self) -> str:
+        """Name of the chosen run; empty if none exists."""
+        return self.link.name
+
+    def address(self, path: str, **fields: str) -> str:
+        """Returns the address of another page for the same run."""
+        query = {name: value for name, value in {"run": self.run, **fields}.items() if value}
+        return f"{path}?{urlencode(query)}" if query else path
+
+    def on_status(self, take: Callable[[dict[str, Any]], None]) -> None:
+        """Calls a function with each new state of the run."""
+        self._on_status.append(take)
+
+    def every(self, period_s: float, refresh: Callable[[], Awaitable[None]]) -> None:
+        """Calls a function repeatedly while the page is open; it waits while the run does not exist."""
+
+        async def guarded() -> None:
+            try:
+                await refresh()
+            except ControlError:
+                return  # the banner of the frame says so
+
+        ui.timer(period_s, guarded)
+
+    async def do(self, action: Awaitable[Any], done: str = "") -> Any:
+        """Carries an action out and shows its result or the reason of its refusal; returns None after a refusal."""
+        try:
+            result = await action
+        except ControlError as error:
+            ui.notify(str(error), type="negative", multi_line=True, close_button="close", timeout=10_000)
+            return None
+        if done:
+            ui.notify(done, type="positive")
+        return result
+
+    def build(self, path: str, extra: dict[str, tuple[str, str]]) -> None:
+        """Makes header and navigation."""
+        theme = {"dark": True, "light": False}.get(self.request.cookies.get(THEME, ""))
+        ui.dark_mode(theme)
+        ui.add_css(STATIC / "console.css")
+        ui.page_title(f"{PAGES.get(path, extra.get(path, ('fwk', '')))[0]} - {self.run or 'fwk'}")
+        with ui.header().classes("fwk-header items-center no-wrap"):
+            menu = ui.button(icon="menu").props('flat dense color=white aria-label="navigation"').classes("lt-md")
+            ui.label("fwk").classes("fwk-brand gt-xs")
+            names = sorted({*self._runs, *filter(None, [self.run])})
+            choice = ui.select(names or [""], value=self.run, on_change=lambda each: self._choose(path, each.value))
+            choice.props('dense dark borderless options-dense aria-label="run"').classes("fwk-run").props(
+                "data-name=run"
+            )
+            self._state = ui.label("").classes("fwk-state").props("data-name=state")
+            self._clock = ui.label("").classes("fwk-clock").props("data-name=clock")
+            ui.space()
+            self._build_steering()
+            look = ui.button(icon="contrast").props('flat dense color=white aria-label="dark or light"')
+            look.on("click", js_handler=_OTHER_THEME)
+        with (
+            ui.left_drawer(value=False)
+            .props("width=180 breakpoint=900 bordered show-if-above")
+            .classes("fwk-nav") as drawer
+        ):
+            for address, (title, icon) in {**PAGES, **extra}.items():
+                with ui.link(target=self.address(address)).classes("fwk-link" + (" here" if address == path else "")):
+                    ui.icon(icon)
+                    ui.label(title)
+            if not self.may_steer:
+                ui.label("read only").classes("fwk-reader").props("data-name=read-only")
+        menu.on_click(drawer.toggle)
+        self._banner = ui.label("").classes("fwk-banner").props("data-name=banner")
+        self._banner.set_visibility(False)
+        ui.timer(_REFRESH_S, self._refresh)
+
+    def _build_steering(self) -> None:
+        if not self.may_steer or not self.run:
+            return
+        access = self.access
+        look = "flat dense color=white"
+        with ui.row().classes("items-center no-wrap gap-0"):
+            self._pause = ui.button(icon="pause", on_click=self._pause_or_resume)
+            self._pause.props(f'{look} aria-label="pause or resume"').props("data-name=pause").tooltip(
+                "pause or resume"
+            )
+            step = ui.button(icon="skip_next", on_click=lambda: self.do(access.clock("step", ticks=1)))
+            step.props(f'{look} aria-label="one tick"').props("data-name=step").tooltip("one tick, then pause")
+            speed = ui.select(SPEEDS, value="", on_change=lambda each: self._speed(each.value))
+            speed.props('dense dark borderless options-dense aria-label="speed"').classes("gt-xs").props(
+                "data-name=speed"
+            )
+
+    async def _pause_or_resume(self) -> None:
+        status = await self.do(self.link.status())
+        if status:
+            await self.do(self.access.clock("resume" if status["paused"] else "pause"))
+
+    async def _speed(self, value: str) -> None:
+        if value:
+            await self.do(self.access.clock("speed", speed=float(value)))
+
+    def _choose(self, path: str, run: str) -> None:
+        if run and run != self.run:
+            ui.navigate.to(f"{path}?{urlencode({'run': run})}")
+
+    async def _refresh(self) -> None:
+        if not self.run:
+            if await self.console.runs.all():
+                ui.navigate.reload()
+            return
+        try:
+            status = await self.link.status()
+        except ControlError as error:
+            self._say(f"{error}; this page goes on when it is started again")
+            self._state.set_text("ended")
+            return
+        self._say("")
+        self._state.set_text(state_of(status))
+        self._clock.set_text(f"tick {status['tick']}  {seconds(status['time_us'])}  x {status['speed']:.2f}")
+        if self.may_steer:
+            self._pause.props(f"icon={'play_arrow' if status['paused'] else 'pause'}")
+        for take in self._on_status:
+            take(status)
+
+    def _say(self, text: str) -> None:
+        if self._banner.text != text:
+            self._banner.set_text(text)
+            self._banner.set_visibility(bool(text))
+
+
+def state_of(status: dict[str, Any]) -> str:
+    """Returns the state of a run in a few words."""
+    if status["paused"]:
+        return "paused"
+    if status["waits_for"]:
+        return f"waits for {status['waits_for'][0]}"
+    failed = sum(each["state"] == "failed" for each in status["components"])
+    return f"running, {failed} failed" if failed else "running"
+
+
+@contextmanager
+def body() -> Iterator[None]:
+    """Makes the area for the contents of a page."""
+    with ui.column().classes("fwk-body w-full"):
+        yield

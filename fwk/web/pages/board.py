@@ -1,0 +1,131 @@
+"""Page of the blackboard: all channels with age and rate, and the newest message of one."""
+
+from typing import Any
+
+from nicegui import ui
+
+from fwk.clock import US_PER_S, monotonic_us
+from fwk.control.client import ControlError
+from fwk.web.layout import Frame, body
+from fwk.web.sending import send_form
+from fwk.web.words import age, rows_of, seconds
+
+_COLUMNS = {
+    "channel": "channel",
+    "type": "type",
+    "writer": "writer",
+    "rate": "Hz",
+    "age": "age",
+    "messages": "messages",
+    "bytes": "bytes",
+    "readers": "readers",
+}
+_WORDS = ("channel", "type", "writer", "readers")
+_LIST_S = 1.0
+_SHOW_S = 0.25
+
+
+class Rates:
+    """Rates of channels from the numbers of messages in two answers."""
+
+    def __init__(self) -> None:
+        self._before: dict[str, int] = {}
+        self._before_us = 0
+        self._rates: dict[str, float] = {}
+
+    def measure(self, rows: list[dict[str, Any]], now_us: int) -> dict[str, float]:
+        """Returns messages a second by channel, since the last answer; empty for the first."""
+        elapsed_us = now_us - self._before_us
+        if self._before and elapsed_us < US_PER_S // 2:
+            return self._rates
+        if self._before:
+            self._rates = {
+                row["channel"]: max(0, row["messages"] - self._before.get(row["channel"], 0)) * US_PER_S / elapsed_us
+                for row in rows
+            }
+        self._before = {row["channel"]: row["messages"] for row in rows}
+        self._before_us = now_us
+        return self._rates
+
+
+def build(frame: Frame) -> None:
+    """Makes the page."""
+    link = frame.link
+    chosen = {"channel": frame.request.query_params.get("channel", "")}
+    rates = Rates()
+    with body(), ui.row().classes("w-full items-start"):
+        with ui.column().classes("fwk-half"):
+            wanted = ui.input("filter").props("dense outlined clearable").props("data-name=filter")
+            columns = [
+                {"name": key, "label": title, "field": key, "sortable": True, "align": _align(key)}
+                for key, title in _COLUMNS.items()
+            ]
+            table = ui.table(rows=[], columns=columns, row_key="channel").classes("fwk-table")
+            table.props("dense flat bordered").props("data-name=channels").bind_filter_from(wanted, "value")
+        with ui.column().classes("fwk-half"):
+            title = ui.label("choose a channel").classes("text-subtitle1").props("data-name=channel")
+            about = ui.label("").classes("opacity-70")
+            fields = ui.table(
+                rows=[],
+                columns=[
+                    {"name": "field", "label": "field", "field": "field", "align": "left"},
+                    {"name": "value", "label": "value", "field": "value", "align": "left", "classes": "fwk-value"},
+                ],
+                row_key="field",
+            )
+            fields.props("dense flat bordered").classes("fwk-table").props("data-name=fields")
+            form = ui.column().classes("w-full")
+
+    async def refresh_list() -> None:
+        rows = await link.channels()
+        now = rates.measure(rows, monotonic_us())
+        table.rows = [{**row_of(row), "rate": f"{now.get(row['channel'], 0.0):.1f}"} for row in rows]
+
+    async def refresh_fields() -> None:
+        if not chosen["channel"]:
+            return
+        try:
+            answer = await link.show(chosen["channel"])
+        except ControlError as error:
+            about.set_text(str(error))
+            return
+        title.set_text(answer["channel"])
+        if answer["value"] is None:
+            about.set_text(f"{answer['type']}: never written")
+            fields.rows = []
+            return
+        about.set_text(
+            f"{answer['type']}   sequence {answer['sequence']}   tick {answer['tick']}   "
+            f"{seconds(answer['time_us'])}   by {answer['by']}   {age(answer['age_s'])} old"
+        )
+        members = {key: value for key, value in answer["value"].items() if key != "header" or answer["plain"]}
+        shown = [{"field": name, "value": value} for name, value in rows_of("", members)]
+        if shown != fields.rows:
+            fields.rows = shown
+
+    async def choose(channel: str) -> None:
+        chosen["channel"] = channel
+        form.clear()
+        with form:
+            await send_form(frame, channel)
+        await refresh_fields()
+
+    table.on("row-click", lambda event: choose(event.args[1]["channel"]), [[], ["channel"], None])
+    frame.every(_LIST_S, refresh_list)
+    frame.every(_SHOW_S, refresh_fields)
+    if chosen["channel"]:
+        ui.timer(0.1, lambda: frame.do(choose(chosen["channel"])), once=True)
+
+
+def row_of(row: dict[str, Any]) -> dict[str, Any]:
+    """Returns the row of a channel."""
+    return {
+        **{key: row[key] for key in ("channel", "type", "messages", "bytes")},
+        "writer": row["writer"] or ("outside" if row["outside"] else ""),
+        "age": age(row["age_s"]),
+        "readers": ", ".join(row["readers"]),
+    }
+
+
+def _align(key: str) -> str:
+    return "left" if key in _WORDS else "right"

@@ -1,0 +1,117 @@
+"""Page of the settings: a tree of all components, values with origin, type and meaning; changed live."""
+
+import json
+from typing import Any
+
+from nicegui import ui
+
+from fwk.control.client import ControlError
+from fwk.web.layout import Frame, body
+
+
+def build(frame: Frame) -> None:
+    """Makes the page."""
+    link = frame.link
+    chosen = {"name": frame.request.query_params.get("component", "")}
+    with body():
+        wanted = ui.input("filter by name, value, origin or meaning")
+        wanted.props("dense outlined clearable debounce=300").classes("w-full").props("data-name=filter")
+        with ui.row().classes("w-full items-start no-wrap-md"):
+            tree = ui.tree([], label_key="label", on_select=lambda event: choose(event.value or ""))
+            tree.classes("fwk-tree").props("data-name=tree")
+            rows_area = ui.column().classes("fwk-settings")
+
+    async def refresh_tree() -> None:
+        nodes = tree_of(await link.settings(), wanted.value or "")
+        if nodes != tree.props["nodes"]:
+            tree.props["nodes"] = nodes
+            tree.update()
+
+    async def choose(name: str) -> None:
+        chosen["name"] = name
+        rows = [row for row in await frame.do(link.settings()) or [] if matches(row, name, wanted.value or "")]
+        rows_area.clear()
+        with rows_area:
+            for row in rows:
+                _setting(frame, row)
+            if not rows:
+                ui.label("no setting matches")
+
+    wanted.on_value_change(lambda: choose(chosen["name"]))
+    frame.every(2.0, refresh_tree)
+    if chosen["name"]:
+        ui.timer(0.1, lambda: choose(chosen["name"]), once=True)
+
+
+def tree_of(rows: list[dict[str, Any]], text: str) -> list[dict[str, Any]]:
+    """Returns the nodes of the tree: namespaces with their components."""
+    spaces: dict[str, list[str]] = {}
+    for row in rows:
+        if matches(row, "", text):
+            names = spaces.setdefault(row["component"].partition("/")[0], [])
+            if row["component"] not in names:
+                names.append(row["component"])
+    return [
+        {"id": space, "label": space, "children": [{"id": name, "label": name.partition("/")[2]} for name in names]}
+        for space, names in spaces.items()
+    ]
+
+
+def matches(row: dict[str, Any], name: str, text: str) -> bool:
+    """Tells whether a setting belongs to a node of the tree and contains a text."""
+    component = row["component"]
+    words = (path_of(row), json.dumps(row["value"]), row["origin"], row["meaning"])
+    return (not name or component == name or component.startswith(f"{name}/")) and (
+        not text or any(text.lower() in word.lower() for word in words)
+    )
+
+
+def path_of(row: dict[str, Any]) -> str:
+    """Returns the full name of a setting."""
+    return f"{row['component']}.{row['setting']}"
+
+
+def _setting(frame: Frame, row: dict[str, Any]) -> None:
+    """Makes the field of one setting, with what is known of it."""
+    access = frame.access
+    path = path_of(row)
+    live = frame.may_steer and row["editable"]
+    with ui.column().classes("fwk-setting w-full gap-0"):
+        field: Any
+        if row["type"] == "bool":
+            field = ui.checkbox(path, value=bool(row["value"]))
+        elif " | " in row["type"] and isinstance(row["value"], str):
+            field = ui.select(row["type"].split(" | "), value=row["value"], label=path).props("dense outlined")
+        else:
+            field = ui.input(path, value=_typed(row["value"])).props("dense outlined")
+        field.classes("w-full").props["data-name"] = path
+        field.set_enabled(live)
+        details = ui.label(_details(row)).classes("text-caption opacity-70")
+        mistake = ui.label("").classes("text-negative")
+        mistake.props["data-name"] = f"mistake {path}"
+
+    async def change() -> None:
+        value = json.dumps(field.value) if row["type"] == "bool" else field.value
+        try:
+            answer = await access.set([f"{path}={value}"])
+        except ControlError as error:
+            mistake.set_text(str(error))
+            return
+        mistake.set_text("")
+        details.set_text(f"{_details(row)}; changed here, since tick {answer['tick']}")
+        ui.notify(f"{path} = {value} since tick {answer['tick']}", type="positive")
+
+    if isinstance(field, ui.input):
+        field.on("keydown.enter", change)
+    else:
+        field.on_value_change(change)
+
+
+def _typed(value: Any) -> str:
+    """Returns a value as people type it."""
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+
+
+def _details(row: dict[str, Any]) -> str:
+    parts = (row["type"], row["origin"], "" if row["editable"] else "fixed for the run", row["meaning"])
+    return ", ".join(filter(None, parts))

@@ -1,0 +1,113 @@
+"""A drawing in metres that a view makes and the canvas of the browser shows."""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from fnmatch import filter as matching
+from typing import Any
+
+Point = tuple[float, float]
+_SIGMAS = 2.0
+
+
+class Newest:
+    """The newest messages, decoded; called with a channel it returns that message, or None before the first."""
+
+    def __init__(self, messages: Mapping[str, Any]) -> None:
+        self._messages = messages
+
+    def __call__(self, channel: str) -> Any:
+        """Returns the newest message of a channel."""
+        return self._messages.get(channel)
+
+    def matching(self, pattern: str) -> dict[str, Any]:
+        """Returns the messages of all channels that match a pattern, in the order of their names."""
+        return {channel: self._messages[channel] for channel in sorted(matching(self._messages, pattern))}
+
+
+class Scene:
+    """Collects shapes; x points to the right, y up, lengths are in metres, colours are those of CSS.
+
+    Shapes belong to layers, which people can hide. A shape with `pick` can be chosen, one with `drag` be dragged, under
+    that name; the canvas draws the last seconds of the positions of a circle with `trail`.
+    """
+
+    def __init__(self) -> None:
+        self.bounds: tuple[float, float, float, float] | None = None
+        """Smallest x and y, largest x and y that the canvas shows at first; None: all that is drawn."""
+        self.background = ""
+        """Colour behind everything; empty: that of the page."""
+        self.headline = ""
+        """Line of text above the drawing."""
+        self._layer = ""
+        self._shapes: list[dict[str, Any]] = []
+
+    def layer(self, name: str) -> None:
+        """Names the layer of the shapes that follow."""
+        self._layer = name
+
+    def circle(
+        self,
+        x_m: float,
+        y_m: float,
+        radius_m: float,
+        fill: str = "",
+        stroke: str = "",
+        width_m: float = 0.02,
+        pick: str = "",
+        drag: str = "",
+        trail: str = "",
+    ) -> None:
+        """Draws a circle."""
+        where = {"x": x_m, "y": y_m, "r": radius_m}
+        self._add("circle", where, fill=fill, stroke=stroke, width=width_m, pick=pick, drag=drag, trail=trail)
+
+    def ellipse(self, x_m: float, y_m: float, covariance_m2: Sequence[Sequence[float]], stroke: str) -> None:
+        """Draws two standard deviations of a covariance of x and y."""
+        (xx, xy), (_, yy) = (row[:2] for row in covariance_m2[:2])
+        if not all(map(math.isfinite, (xx, xy, yy))):
+            return
+        middle, spread = (xx + yy) / 2, math.hypot((xx - yy) / 2, xy)
+        axes = [_SIGMAS * math.sqrt(max(0.0, middle + sign * spread)) for sign in (1, -1)]
+        angle = math.atan2(2 * xy, xx - yy) / 2
+        self._add("ellipse", {"x": x_m, "y": y_m, "a": axes[0], "b": axes[1], "t": angle}, stroke=stroke, width=0.02)
+
+    def line(self, points: Sequence[Point], stroke: str, width_m: float = 0.03, dashed: bool = False) -> None:
+        """Draws a line through points."""
+        self._add("line", {"p": [list(point) for point in points]}, stroke=stroke, width=width_m, dashed=dashed)
+
+    def polygon(self, points: Sequence[Point], fill: str = "", stroke: str = "", width_m: float = 0.02) -> None:
+        """Draws a closed line through points, filled or not."""
+        self._add("polygon", {"p": [list(point) for point in points]}, fill=fill, stroke=stroke, width=width_m)
+
+    def text(self, x_m: float, y_m: float, text: str, fill: str, height_m: float = 0.2) -> None:
+        """Writes a text, centred."""
+        self._add("text", {"x": x_m, "y": y_m, "h": height_m, "s": text}, fill=fill)
+
+    def encoded(self) -> bytes:
+        """Returns the drawing for the browser; shapes at positions that are not numbers are left out."""
+        shapes = [shape for shape in self._shapes if _finite(shape)]
+        made = {"shapes": shapes, "bounds": self.bounds, "background": self.background, "headline": self.headline}
+        return json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
+
+    def _add(self, kind: str, where: dict[str, Any], **look: Any) -> None:
+        self._shapes.append({"k": kind, "l": self._layer, **_rounded(where), **{k: v for k, v in look.items() if v}})
+
+
+def _rounded(where: dict[str, Any]) -> dict[str, Any]:
+    """Returns positions to the millimetre: half the bytes."""
+    return {name: _round(value) for name, value in where.items()}
+
+
+def _round(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_round(each) for each in value]
+    return round(value, 3) if isinstance(value, float) else value
+
+
+def _finite(value: Any) -> bool:
+    if isinstance(value, dict):
+        return all(map(_finite, value.values()))
+    if isinstance(value, list):
+        return all(map(_finite, value))
+    return not isinstance(value, float) or math.isfinite(value)

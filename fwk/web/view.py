@@ -1,0 +1,140 @@
+"""What projects add to the console: views on a canvas, and pages; and what these may do with a run."""
+
+from collections.abc import Awaitable, Callable, Mapping, Sequence
+from typing import Any, Protocol
+
+from fwk.bus.public import PublicBus
+from fwk.control.client import RefusedError
+from fwk.control.requests import Action
+from fwk.lcm import messages
+from fwk.web.access import Role
+from fwk.web.run_link import RunLink
+from fwk.web.scene import Newest, Scene
+
+_CALL_S = 10.0
+_STEER_S = 60.0
+
+
+class View:
+    """A drawing of a run on a canvas, twenty times a second. A subclass has `channels` and `draw`.
+
+    The console offers a view for every run that has a channel for each pattern of `needs`.
+    """
+
+    title = "View"
+    needs: Sequence[str] = ()
+    """Patterns of channels without which there is nothing to draw."""
+    channels: Sequence[str] = ()
+    """Patterns of the channels whose newest messages `draw` gets."""
+    members: Sequence[str] = ()
+    """Only channels whose type has these members."""
+    rate_hz = 20.0
+    """How often a browser shows it at most."""
+
+    def draw(self, newest: Newest, scene: Scene) -> None:
+        """Draws the newest messages."""
+        raise NotImplementedError
+
+    async def moved(self, run: "RunAccess", name: str, x_m: float, y_m: float) -> None:
+        """Takes the new position of a shape that was drawn with `drag=name` and that a person has dragged."""
+
+
+class Page:
+    """A page of a project's own. A subclass has `needs` and `build`, which makes it with NiceGUI."""
+
+    title = "Page"
+    path = "page"
+    """Last part of its address."""
+    icon = "extension"
+    needs: Sequence[str] = ()
+    """Patterns of channels that a run must have for this page to be offered."""
+
+    def build(self, page: "OpenPage") -> None:
+        """Makes the elements of the page."""
+        raise NotImplementedError
+
+
+class OpenPage(Protocol):
+    """A page that a browser has open, for one run."""
+
+    access: "RunAccess"
+    may_steer: bool
+
+    def every(self, period_s: float, refresh: Callable[[], Awaitable[None]]) -> None:
+        """Calls a function repeatedly while the page is open; it waits while the run does not exist."""
+
+    async def do(self, action: Awaitable[Any], done: str = "") -> Any:
+        """Carries an action out and shows its result or the reason of its refusal; returns None after a refusal."""
+
+
+class RunAccess:
+    """What a page may do with the chosen run: read always, steer only in the role `STEER`."""
+
+    def __init__(self, link: RunLink, role: Role) -> None:
+        self.link = link
+        self.may_steer = role is Role.STEER
+
+    @property
+    def name(self) -> str:
+        """The name of the run."""
+        return self.link.name
+
+    async def steer(self, action: Action, names: Sequence[str], force: bool = False) -> dict[str, Any]:
+        """Starts, stops, restarts, reloads, loads or unloads components; returns when it has happened.
+
+        Raises:
+            ControlError: refused, or not permitted.
+        """
+        self._check()
+        answer: dict[str, Any] = await self.link.ask("steer", _STEER_S, action=action, names=list(names), force=force)
+        return answer
+
+    async def clock(self, verb: str, **fields: Any) -> dict[str, Any]:
+        """Pauses, resumes, steps, or sets the speed."""
+        self._check()
+        answer: dict[str, Any] = await self.link.ask(verb, _STEER_S, **fields)
+        return answer
+
+    async def set(self, changes: Sequence[str]) -> dict[str, Any]:
+        """Changes settings, `NAME.SETTING=VALUE` each: all or none."""
+        self._check()
+        answer: dict[str, Any] = await self.link.ask("set", changes=list(changes), origin="fwk web")
+        return answer
+
+    async def note(self, text: str) -> dict[str, Any]:
+        """Writes a line into the log of the run."""
+        self._check()
+        answer: dict[str, Any] = await self.link.ask("note", text=text)
+        return answer
+
+    async def call(self, name: str, members: Mapping[str, Any], timeout_s: float = _CALL_S) -> dict[str, Any]:
+        """Sends a command or a request, such as `house/pour`; returns the last answer with `state` and `reason`."""
+        self._check()
+        kind = await self.link.message_type(f"{name}@outside")
+        return await self.link.call(name, _encoded(kind, members, name), timeout_s)
+
+    async def send(self, channel: str, members: Mapping[str, Any]) -> int:
+        """Writes a message on a channel that the launch file opens for programs outside; returns its bytes."""
+        self._check()
+        about = await self.link.about()
+        row = next((row for row in await self.link.channels() if row["channel"] == channel), None)
+        if row is None or not row["outside"]:
+            raise RefusedError(f"{channel}: programs outside may not write it; name it under 'outside:'")
+        if not about["public_url"]:
+            raise RefusedError(f"{about['plan']} has no public bus")
+        data = _encoded(await self.link.message_type(channel), members, channel)
+        bus = PublicBus(about["public_url"])
+        bus.publish(channel, data)
+        bus.close()
+        return len(data)
+
+    def _check(self) -> None:
+        if not self.may_steer:
+            raise RefusedError("this console is for reading only; ask for a link that may steer")
+
+
+def _encoded(kind: Any, members: Mapping[str, Any], channel: str) -> bytes:
+    try:
+        return messages.encode(messages.of_dict(kind, members), channel)
+    except messages.MessageError as error:
+        raise RefusedError(str(error)) from error

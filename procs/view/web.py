@@ -1,0 +1,165 @@
+"""The match in the web console: a view from above, and the referee's page."""
+
+import math
+from collections.abc import Sequence
+
+from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
+from lcmtypes.soccer import ground_truth_t, true_robot_t, world_model_t
+from procs.model.ball import RADIUS_M as BALL_RADIUS_M
+from procs.model.field import SIDES, Field, field_of
+from procs.model.robot import CYAN, MAGENTA, ROBOT, number_of, team_of
+from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
+
+COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
+_UNKNOWN = "#787878"
+_GRASS = "#30803c"
+_SURROUND = "#245c30"
+_WHITE = "#f0f4f0"
+_ARC_STEPS = 24
+_NOSE_M = 0.3
+
+
+class MatchView(View):
+    """The field from above: the truth, and what each robot believes, wants and does."""
+
+    title = "Match"
+    needs = (TRUTH,)
+    channels = (TRUTH, MEASURES, GAME_STATE, "*/world_model", "*/drive_target", "*/role", "*/skill_status")
+
+    def draw(self, newest: Newest, scene: Scene) -> None:
+        """Draws the newest messages."""
+        truth = newest(TRUTH)
+        measures = newest(MEASURES)
+        field = field_of(measures) if measures else Field()
+        scene.headline = headline(newest)
+        scene.background = _SURROUND
+        x_m, y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
+        scene.bounds = (-x_m, -y_m, x_m, y_m)
+        _draw_ground(scene, field)
+        if truth is None:
+            return
+        for robot in truth.robots:
+            _draw_robot(scene, robot)
+        _draw_ball(scene, truth)
+        for robot in truth.robots:
+            _draw_mind(scene, newest, robot)
+
+    async def moved(self, run: RunAccess, name: str, x_m: float, y_m: float) -> None:
+        """Puts ball or robot to another place."""
+        if name == "ball":
+            await run.call("world/place_ball", {"x_m": x_m, "y_m": y_m})
+            return
+        truth = (await run.link.newest((TRUTH,))).get(TRUTH)
+        heading_rad = next((robot.heading_rad for robot in truth.robots if robot.name == name), 0.0) if truth else 0.0
+        await run.call("world/place_robot", {"robot": name, "x_m": x_m, "y_m": y_m, "heading_rad": heading_rad})
+
+
+class RefereePage(Page):
+    """State and score of the match, and a button for every command of the referee."""
+
+    title = "Referee"
+    path = "referee"
+    icon = "sports"
+    needs = ("world/referee_command@outside", GAME_STATE)
+
+    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+    HALVES = ("first_half", "second_half", "first_half_overtime", "second_half_overtime")
+    OF_TEAM = ("kickoff", "freekick", "goalkick", "throwin", "corner", "penalty", "goal", "subgoal")
+    OF_ROBOT = ("yellow_card", "double_yellow", "red_card", "repair", "substitution")
+
+    def build(self, page: OpenPage) -> None:
+        """Makes the elements of the page."""
+        from nicegui import ui
+
+        run = page.access
+        score = ui.label("").classes("text-h5 q-pa-md").props("data-name=score")
+
+        async def refresh() -> None:
+            score.set_text(headline(Newest(await run.link.newest((GAME_STATE,)))) or "before the match")
+
+        page.every(0.5, refresh)
+        if not page.may_steer:
+            return
+
+        def buttons(names: Sequence[str], team: str = "", colour: str = "primary") -> None:
+            with ui.row().classes("q-px-md gap-1"):
+                for name in names:
+                    button = ui.button(
+                        name.replace("_", " "), on_click=lambda name=name: command(name, team), color=colour
+                    )
+                    button.props("no-caps dense").classes("q-px-sm").props(f'data-name="{name} {team}"')
+
+        async def command(name: str, team: str) -> None:
+            members = {"name": name, "team": team, "robot": robot.value or "" if name in self.OF_ROBOT else ""}
+            await page.do(run.call("world/referee_command", members))
+
+        buttons(self.PLAIN)
+        buttons(self.HALVES)
+        for team, colour in COLOURS.items():
+            ui.label(team).classes("q-px-md text-subtitle1")
+            buttons(self.OF_TEAM, team, colour)
+        robot = ui.input("robot, such as cyan1").props("dense outlined").classes("q-px-md").props("data-name=robot")
+        buttons(self.OF_ROBOT)
+
+
+def _draw_ground(scene: Scene, field: Field) -> None:
+    x_m, y_m = field.half_length_m, field.half_width_m
+    scene.polygon([(-x_m, -y_m), (x_m, -y_m), (x_m, y_m), (-x_m, y_m)], fill=_GRASS)
+    for segment in field.segments():
+        scene.line([segment.start, segment.end], _WHITE, field.line_width_m)
+    for arc in field.arcs():
+        turn_rad = (arc.end_rad - arc.start_rad) / _ARC_STEPS
+        angles = [arc.start_rad + step * turn_rad for step in range(_ARC_STEPS + 1)]
+        scene.line([_beside(arc.centre, arc.radius_m, angle) for angle in angles], _WHITE, field.line_width_m)
+    for mark in field.marks():
+        scene.circle(mark.x_m, mark.y_m, field.mark_diameter_m / 2, fill=_WHITE)
+    for side in SIDES:
+        front_m, half_m = side * field.half_length_m, field.goal_width_m / 2
+        back_m = front_m + side * field.goal_depth_m
+        scene.line([(front_m, -half_m), (back_m, -half_m), (back_m, half_m), (front_m, half_m)], _WHITE, 0.08)
+
+
+def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
+    colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
+    scene.layer("truth")
+    radius_m = ROBOT.radius_m
+    scene.circle(
+        *(robot.x_m, robot.y_m, radius_m, colour, "#202226", 0.06),
+        pick=robot.name,
+        drag=robot.name,
+        trail=robot.name,
+    )
+    place = (robot.x_m, robot.y_m)
+    scene.line([place, _beside(place, _NOSE_M, robot.heading_rad)], _WHITE, 0.05)
+    scene.text(robot.x_m, robot.y_m, str(number_of(robot.name) or "?"), "#101214", 0.22)
+
+
+def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
+    scene.layer("truth")
+    place = (truth.ball_x_m, truth.ball_y_m, BALL_RADIUS_M)
+    scene.circle(*place, "#fac41e", "#82591a", 0.03, pick="ball", drag="ball", trail="ball")
+
+
+def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
+    """Draws where a robot believes itself and the ball to be, where it drives, and its role and skill."""
+    colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
+    model: world_model_t | None = newest(f"{robot.name}/world_model")
+    if model is not None:
+        scene.layer("beliefs")
+        if model.localized:
+            scene.circle(model.x_m, model.y_m, 0.28, stroke=colour, width_m=0.03)
+        if model.ball.known:
+            scene.ellipse(model.ball.x_m, model.ball.y_m, model.ball.covariance, colour)
+    target = newest(f"{robot.name}/drive_target")
+    if target is not None and not target.stop:
+        scene.layer("targets")
+        scene.line([(robot.x_m, robot.y_m), (target.x_m, target.y_m)], colour, 0.02, dashed=True)
+    role, skill = newest(f"{robot.name}/role"), newest(f"{robot.name}/skill_status")
+    words = " ".join(filter(None, (role.role if role else "", skill.skill if skill else "")))
+    if words:
+        scene.layer("roles")
+        scene.text(robot.x_m, robot.y_m - 0.45, words, _WHITE, 0.2)
+
+
+def _beside(place: Sequence[float], away_m: float, angle_rad: float) -> tuple[float, float]:
+    return place[0] + away_m * math.cos(angle_rad), place[1] + away_m * math.sin(angle_rad)

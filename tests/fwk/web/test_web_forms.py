@@ -1,0 +1,115 @@
+"""What people type into pages, and what pages say."""
+
+from typing import Any
+
+import pytest
+
+from fwk.web.pages.board import Rates
+from fwk.web.pages.log import FilterMistakeError, filter_of
+from fwk.web.pages.settings import matches, tree_of
+from fwk.web.sending import FieldError, fields_of, value_of
+from fwk.web.words import age, rows_of, seconds, size
+from lcmtypes.core import log_t
+from lcmtypes.soccer import place_ball_t, world_model_t
+
+
+def test_a_form_has_the_fields_that_people_fill_in() -> None:
+    assert fields_of(place_ball_t) == dict.fromkeys(
+        ("x_m", "y_m", "z_m", "vx_m_s", "vy_m_s", "vz_m_s"), ("double", True)
+    )
+    fields = fields_of(world_model_t)
+    assert "n_mates" not in fields
+    assert fields["localized"] == ("boolean", True)
+    assert fields["mate_roles"] == ("string", False)
+
+
+@pytest.mark.parametrize(
+    ("type_name", "plain", "typed", "value"),
+    [
+        ("double", True, " 1.5", 1.5),
+        ("double", True, "", 0.0),
+        ("int32_t", True, "7", 7),
+        ("string", True, "1", "1"),
+        ("boolean", True, True, True),
+        ("double", False, "[1, 2]", [1, 2]),
+        ("byte", False, "[1, 255]", b"\x01\xff"),
+        ("double", False, "", None),
+    ],
+)
+def test_fields_become_values_of_their_type(type_name: str, plain: bool, typed: Any, value: Any) -> None:
+    assert value_of("field", type_name, plain, typed) == value
+
+
+@pytest.mark.parametrize(
+    ("type_name", "plain", "typed", "said"),
+    [
+        ("double", True, "far", "field: 'far' is not a number of type double"),
+        ("int8_t", True, "1.5", "field: '1.5' is not a number of type int8_t"),
+        ("double", False, "[1,", r"field: '\[1,' is not JSON"),
+        ("byte", False, "[256]", "bytes are numbers from 0 to 255"),
+    ],
+)
+def test_a_wrong_field_is_named(type_name: str, plain: bool, typed: str, said: str) -> None:
+    with pytest.raises(FieldError, match=said):
+        value_of("field", type_name, plain, typed)
+
+
+def line(tick: int) -> dict[str, Any]:
+    return dict.fromkeys(log_t.__slots__, "") | {"level": "info", "tick": tick, "component": "a/b"}
+
+
+@pytest.mark.parametrize(
+    ("typed", "wanted"), [("", (1, 5, 9)), ("5", (5,)), ("5..", (5, 9)), ("..5", (1, 5)), (" 1 .. 5 ", (1, 5))]
+)
+def test_ticks_are_typed_as_ranges(typed: str, wanted: tuple[int, ...]) -> None:
+    chosen = filter_of("debug", "", typed, "", "")
+    assert tuple(tick for tick in (1, 5, 9) if chosen.wants(line(tick))) == wanted
+
+
+@pytest.mark.parametrize(("ticks", "text"), [("x", ""), ("..", ""), ("1 2", ""), ("", "(")])
+def test_a_filter_that_is_not_understood_is_refused(ticks: str, text: str) -> None:
+    with pytest.raises(FilterMistakeError, match=r"ticks: write|text: "):
+        filter_of("debug", "", ticks, "", text)
+
+
+def test_rates_come_from_counts_and_survive_quick_looks() -> None:
+    rates = Rates()
+    assert rates.measure([{"channel": "a", "messages": 10}], 1_000_000) == {}
+    assert rates.measure([{"channel": "a", "messages": 30}], 2_000_000) == {"a": 20.0}
+    assert rates.measure([{"channel": "a", "messages": 31}], 2_100_000) == {"a": 20.0}
+    assert rates.measure([{"channel": "a", "messages": 3}], 3_000_000) == {"a": 0.0}  # a new run
+
+
+def test_settings_are_found_in_the_tree_and_by_text() -> None:
+    about = {"origin": "default", "meaning": "Radius of the circle.", "value": 2.0}
+    rows = [{**about, "component": name, "setting": "radius_m"} for name in ("a/mower", "a/rake", "b/mower")]
+    assert [node["id"] for node in tree_of(rows, "")] == ["a", "b"]
+    assert [child["id"] for child in tree_of(rows, "")[0]["children"]] == ["a/mower", "a/rake"]
+    assert tree_of(rows, "b/mow")[0]["id"] == "b"
+    assert [matches(rows[0], name, "") for name in ("", "a", "a/mower", "a/mow", "b")] == [
+        True,
+        True,
+        True,
+        False,
+        False,
+    ]
+    assert matches(rows[0], "", "RADIUS OF")
+    assert not matches(rows[0], "", "diameter")
+
+
+def test_figures_are_written_for_people() -> None:
+    assert (seconds(61_500_000), age(None), age(0.25), age(70.0), age(1200.0)) == (
+        "1:01.50",
+        "never",
+        "0.25 s",
+        "70 s",
+        "20 min",
+    )
+    assert (size(999), size(1500), size(2_000_000), size(3_500_000_000)) == ("999 B", "1.5 kB", "2.0 MB", "3.5 GB")
+    message = {"x_m": 1.23456789, "list": list(range(20)), "of": [{"a": 1}], "text": "<b>"}
+    assert rows_of("", message) == [
+        ("x_m", "1.23457"),
+        ("list", "[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, ... (20)]"),
+        ("of[0].a", "1"),
+        ("text", "<b>"),
+    ]

@@ -1,0 +1,93 @@
+"""The match in the console: what is drawn of the truth and of the beliefs, and what dragging does."""
+
+import asyncio
+import json
+from typing import Any, cast
+
+from fwk.web import Newest, RunAccess, Scene
+from lcmtypes.soccer import (
+    drive_target_t,
+    game_state_t,
+    ground_truth_t,
+    role_t,
+    skill_status_t,
+    true_robot_t,
+    world_model_t,
+)
+from procs.view.web import COLOURS, MatchView
+
+
+def match() -> dict[str, Any]:
+    robot = true_robot_t()
+    robot.name, robot.number, robot.x_m, robot.y_m, robot.heading_rad = "cyan1", 1, 1.0, 2.0, 0.0
+    truth = ground_truth_t()
+    truth.robots, truth.n, truth.ball_x_m, truth.ball_y_m = [robot], 1, 3.0, -1.0
+    model = world_model_t()
+    model.localized, model.x_m, model.y_m = True, 1.1, 2.1
+    model.ball.known, model.ball.x_m, model.ball.y_m = True, 3.2, -1.1
+    model.ball.covariance = [[0.25, 0.0, 0.0, 0.0], [0.0, 0.01, 0.0, 0.0], [0.0] * 4, [0.0] * 4]
+    target = drive_target_t()
+    target.x_m, target.y_m = 2.0, 0.0
+    role, skill = role_t(), skill_status_t()
+    role.role, skill.skill = "attacker", "get_ball"
+    return {
+        "world/ground_truth": truth,
+        "world/game_state": game_state_t(),
+        "cyan1/world_model": model,
+        "cyan1/drive_target": target,
+        "cyan1/role": role,
+        "cyan1/skill_status": skill,
+    }
+
+
+def drawn(messages: dict[str, Any]) -> dict[str, Any]:
+    scene = Scene()
+    MatchView().draw(Newest(messages), scene)
+    made: dict[str, Any] = json.loads(scene.encoded())
+    return made
+
+
+def test_robots_and_ball_lie_where_they_truly_are() -> None:
+    shapes = drawn(match())["shapes"]
+    places = {shape["drag"]: (shape["x"], shape["y"]) for shape in shapes if "drag" in shape}
+    assert places == {"cyan1": (1.0, 2.0), "ball": (3.0, -1.0)}
+
+
+def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:
+    shapes = drawn(match())["shapes"]
+    ring, ellipse = [shape for shape in shapes if shape["l"] == "beliefs"]
+    assert (ring["x"], ring["stroke"]) == (1.1, COLOURS["cyan"])
+    assert (ellipse["x"], ellipse["a"], ellipse["b"]) == (3.2, 1.0, 0.2)
+    (path,) = [shape for shape in shapes if shape["l"] == "targets"]
+    assert path["p"] == [[1.0, 2.0], [2.0, 0.0]]
+    assert [shape["s"] for shape in shapes if shape["l"] == "roles"] == ["attacker get_ball"]
+
+
+def test_the_empty_field_is_drawn_before_the_match() -> None:
+    before = drawn({})
+    assert before["bounds"][2] > before["bounds"][0]
+    assert not any("drag" in shape for shape in before["shapes"])
+
+
+def test_dragging_places_robots_and_ball() -> None:
+    called: list[Any] = []
+
+    class Link:
+        async def newest(self, patterns: Any) -> dict[str, Any]:
+            return match()
+
+    class Run:
+        link = Link()
+
+        async def call(self, name: str, members: Any) -> None:
+            called.append((name, members))
+
+    async def drag() -> None:
+        for name in ("ball", "cyan1"):
+            await MatchView().moved(cast(RunAccess, Run()), name, 0.5, 0.25)
+
+    asyncio.run(drag())
+    assert called == [
+        ("world/place_ball", {"x_m": 0.5, "y_m": 0.25}),
+        ("world/place_robot", {"robot": "cyan1", "x_m": 0.5, "y_m": 0.25, "heading_rad": 0.0}),
+    ]

@@ -1,0 +1,282 @@
+"""The console in a browser, on a real run of 105 components: looks, steers, and is not taken in."""
+
+import re
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Locator, Page, expect
+
+from fwk.control.address import gateway_address, supervisor_address
+from fwk.control.client import Client
+from tests.harness.browser import CHROMIUM, Chromium, Console
+from tests.harness.runs import Launched, PortBlock, write_files
+from tests.programs.garden_system import CROWD, garden_system
+
+pytestmark = pytest.mark.system
+
+
+@dataclass
+class Garden:
+    """A run, a console and a browser that the tests of this module share."""
+
+    folder: Path
+    ports: PortBlock
+    run: Launched
+    console: Console
+    browser: Chromium
+
+    def open(self, path: str = "/?run=garden", **look: object) -> Page:
+        return self.browser.open(f"{self.console.url}{path}", **look)  # type: ignore[arg-type]
+
+    def state(self, component: str) -> str:
+        with Client(supervisor_address(self.ports.bus)) as run:
+            (found,) = run.ask("status", names=[component])["components"]
+        return str(found["state"])
+
+    def tick(self) -> int:
+        with Client(supervisor_address(self.ports.bus)) as run:
+            return int(run.ask("status", names=["a/mower"])["tick"])
+
+    def launch(self) -> None:
+        self.run = Launched(self.folder, self.ports, ("garden.yaml", "--no-record"), {})
+
+
+@pytest.fixture(scope="module")
+def garden(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Garden]:
+    program = shutil.which(CHROMIUM)
+    if not program:
+        pytest.skip(f"needs {CHROMIUM}: apt install {CHROMIUM}")
+    folder = tmp_path_factory.mktemp("garden")
+    with PortBlock(2) as ports, Chromium(program) as browser:
+        write_files(folder, garden_system(ports.public_url))
+        run = Launched(folder, ports, ("garden.yaml", "--no-record"), {})
+        console = Console(folder, "--view", "garden_web")
+        made = Garden(folder, ports, run, console, browser)
+        yield made
+        assert browser.outside == []
+        assert browser.mistakes == []
+        assert console.end() == 0, console.text
+        made.run.end()
+        assert "Traceback" not in console.text
+
+
+@pytest.fixture(autouse=True)
+def close_pages(garden: Garden) -> Iterator[None]:
+    yield
+    garden.browser.close_pages()
+
+
+def row(page: Page, text: str) -> Locator:
+    return page.locator("tbody tr").filter(has=page.get_by_text(text, exact=True))
+
+
+def choose(page: Page, name: str) -> None:
+    row(page, name).get_by_role("checkbox").click()
+
+
+def test_system_page_shows_all_and_steers_by_clicks(garden: Garden) -> None:
+    page = garden.open()
+    expect(page.locator("[data-name=figures]")).to_contain_text(f"{CROWD + 4} components")
+    expect(row(page, "a/mower")).to_contain_text("running")
+    expect(row(page, f"crowd/n{CROWD - 1:03}")).to_contain_text("think")
+    expect(row(page, "b/later")).to_contain_text("stopped")
+    page.get_by_label("filter").fill("a/")
+    expect(page.locator("tbody tr")).to_have_count(3)
+    choose(page, "a/watcher")
+    page.get_by_role("button", name="stop", exact=True).click()
+    expect(row(page, "a/watcher")).to_contain_text("stopped")
+    assert garden.state("a/watcher") == "stopped"
+    page.get_by_role("button", name="start", exact=True).click()
+    expect(row(page, "a/watcher")).to_contain_text("running")
+    assert garden.state("a/watcher") == "running"
+
+
+def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
+    page = garden.open()
+    expect(page.locator("[data-name=state]")).to_have_text("running")
+    page.get_by_role("button", name="pause or resume").click()
+    expect(page.locator("[data-name=state]")).to_have_text("paused")
+    before = garden.tick()
+    page.get_by_role("button", name="one tick").click()
+    expect(page.locator("[data-name=clock]")).to_contain_text(f"tick {before + 1} ")
+    assert garden.tick() == before + 1
+    page.get_by_role("button", name="pause or resume").press("Enter")
+    expect(page.locator("[data-name=state]")).to_have_text("running")
+    page.get_by_role("combobox", name="speed").click()
+    page.get_by_role("option", name="x 2").click()
+    expect(page.locator("[data-name=clock]")).to_contain_text(re.compile(r"x (1\.[5-9]|2)"))
+
+
+def test_details_of_a_component_set_its_log_level(garden: Garden) -> None:
+    page = garden.open()
+    page.get_by_text("a/mower", exact=True).click()
+    dialog = page.get_by_role("dialog")
+    expect(dialog).to_contain_text("fwk debug a/mower --run garden")
+    expect(dialog).to_contain_text("iterations, p50")
+    dialog.get_by_role("combobox", name="log level").click()
+    page.get_by_role("option", name="error").click()
+    settings = garden.open("/settings?run=garden&component=a/mower")
+    expect(settings.get_by_label("a/mower.log_level")).to_have_value("error")
+    dialog.get_by_role("combobox", name="log level").click()
+    page.get_by_role("option", name="info").click()
+    expect(page.get_by_text("changed", exact=True).last).to_be_visible()
+
+
+def test_blackboard_shows_live_fields_and_sends_forms(garden: Garden) -> None:
+    page = garden.open("/board?run=garden")
+    page.get_by_label("filter").fill("a/place")
+    expect(row(page, "a/place")).to_contain_text(re.compile(r"\d+\.\d"))
+    page.get_by_text("a/place", exact=True).click()
+    x_m = page.locator("[data-name=fields] tr").filter(has_text="x_m")
+    first = x_m.inner_text()
+    expect(x_m).not_to_have_text(first)
+    page.get_by_label("filter").fill("outside")
+    page.get_by_text("a/visit@outside", exact=True).click()
+    page.get_by_label("x_m (double)").fill("far")
+    page.get_by_role("button", name="send").click()
+    expect(page.get_by_text("x_m: 'far' is not a number of type double")).to_be_visible()
+    page.get_by_label("x_m (double)").fill("99")
+    page.get_by_role("button", name="send").click()
+    expect(page.get_by_text("a/visit: rejected: that is beyond the fence <img")).to_be_visible()
+    page.get_by_label("x_m (double)").fill("1.5")
+    page.get_by_label("stops_m (double, JSON)").fill("[1, 2.5]")
+    page.get_by_label("note (string)").fill("by hand")
+    page.get_by_role("button", name="send").click()
+    expect(page.get_by_text("a/visit: done")).to_be_visible()
+    page.get_by_label("filter").fill("wish")
+    page.get_by_text("garden/wish", exact=True).click()
+    page.get_by_label("text (string)").fill("rain")
+    page.get_by_role("button", name="send").click()
+    expect(page.get_by_text("garden/wish: sent")).to_be_visible()
+    garden.run.until("visits (1.5, 0.0), by hand, [1.0, 2.5]")
+    garden.run.until("wish 0: rain")
+
+
+def test_settings_change_live_and_say_why_not(garden: Garden) -> None:
+    page = garden.open("/settings?run=garden")
+    page.get_by_text("a", exact=True).locator("xpath=preceding-sibling::i | ../preceding-sibling::i").first.click()
+    page.get_by_text("mower", exact=True).click()
+    radius = page.get_by_label("a/mower.radius_m")
+    expect(radius).to_have_value("2.0")
+    radius.fill("50")
+    radius.press("Enter")
+    expect(page.locator("[data-name='mistake a/mower.radius_m']")).to_contain_text("less than or equal to 5")
+    radius.fill("3.5")
+    radius.press("Enter")
+    expect(page.get_by_text(re.compile(r"changed here, since tick \d+"))).to_be_visible()
+    with Client(supervisor_address(garden.ports.bus)) as run:
+        (setting,) = run.ask("settings", names=["a/mower.radius_m"])["settings"]
+    assert (setting["value"], setting["origin"].partition(",")[0]) == (3.5, "fwk web")
+
+
+def test_the_log_follows_and_filters(garden: Garden) -> None:
+    page = garden.open("/log?run=garden")
+    lines = page.locator(".fwk-lines > div")
+    expect(lines.filter(has_text="grass").first).to_be_visible()
+    page.get_by_label("note for the log").fill("look here")
+    page.get_by_label("note for the log").press("Enter")
+    expect(lines.filter(has_text="look here")).to_be_visible()
+    page.get_by_label("text (regular").fill("look (here")
+    expect(page.locator("[data-name=mistake]")).to_contain_text("text: ")
+    page.get_by_label("text (regular").fill("look h")
+    expect(lines).to_have_count(1)
+    page.get_by_label("text (regular").fill("")
+    page.get_by_label("component or pattern").fill("a/*")
+    expect(lines.filter(has_text="look here")).to_have_count(0)
+    expect(lines.filter(has_text="grass").first).to_be_visible()
+
+
+def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> None:
+    page = garden.open("/view?run=garden")
+    canvas = page.locator("canvas")
+    expect(page.locator("[data-name=headline]")).to_contain_text("mower <img")
+    expect(canvas).to_have_attribute("data-frames", re.compile(r"[1-9]\d"))
+    colours = "c => { const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0; "
+    colours += "for (let i = 0; i < d.length; i += 4) n += d[i] > 200 && d[i + 1] < 80; return n; }"
+    assert canvas.evaluate(colours) > 200
+    page.get_by_role("checkbox", name="mower").click()  # hides the layer
+    page.wait_for_function(f"() => ({colours})(document.querySelector('canvas')) === 0")
+    page.get_by_role("checkbox", name="mower").click()
+    page.get_by_role("button", name="pause or resume").click()
+    expect(page.locator("[data-name=state]")).to_have_text("paused")
+    place = _place(garden)
+    box = canvas.bounding_box()
+    assert box
+    scale = min(box["width"], box["height"]) / 10.0
+    x_px = box["x"] + box["width"] / 2 + place[0] * scale
+    y_px = box["y"] + box["height"] / 2 - place[1] * scale
+    page.mouse.click(x_px, y_px)
+    expect(page.get_by_alt_text("a/image")).to_be_visible()
+    page.get_by_role("button", name="pause or resume").click()
+    expect(page.locator("[data-name=state]")).to_have_text("running")
+
+
+def _place(garden: Garden) -> tuple[float, float]:
+    with Client(gateway_address(garden.ports.bus)) as run:
+        value = run.ask("show", channel="a/place")["value"]
+    return value["x_m"], value["y_m"]
+
+
+def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:
+    page = garden.open()
+    expect(page.get_by_role("link", name="Elsewhere")).to_have_count(0)
+    page.get_by_role("link", name="Gate").click()
+    page.get_by_role("button", name="home").click()
+    expect(page.get_by_text("called home")).to_be_visible()
+
+
+def test_two_browsers_see_the_same_and_a_reader_cannot_steer(garden: Garden) -> None:
+    reader = Console(garden.folder, "--read-only")
+    try:
+        page = garden.browser.open(f"{reader.url}/?run=garden")
+        expect(page.locator("[data-name=read-only]")).to_be_visible()
+        expect(page.get_by_role("button", name="pause or resume")).to_have_count(0)
+        expect(page.get_by_role("button", name="stop", exact=True)).to_have_count(0)
+        other = garden.open()
+        expect(other.locator("[data-name=state]")).to_have_text("running")
+        other.get_by_role("button", name="pause or resume").click()
+        for each in (page, other):
+            expect(each.locator("[data-name=state]")).to_have_text("paused")
+        other.get_by_role("button", name="pause or resume").click()
+        expect(page.locator("[data-name=state]")).to_have_text("running")
+    finally:
+        assert reader.end() == 0
+
+
+def test_a_phone_shows_every_page_without_overflow(garden: Garden) -> None:
+    page = garden.open(width_px=390, height_px=800, scheme="dark")
+    for path in ("/", "/view", "/board", "/settings", "/log"):
+        page.goto(f"{garden.console.url}{path}?run=garden")
+        expect(page.locator("[data-name=state]")).to_have_text("running")
+        assert page.evaluate("document.documentElement.scrollWidth") <= 390, path
+        expect(page.locator("body")).to_have_class(re.compile("body--dark"))
+    page.get_by_role("button", name="dark or light").click()
+    expect(page.locator("body")).to_have_class(re.compile("body--light"))
+    page.reload()
+    expect(page.locator("body")).to_have_class(re.compile("body--light"))
+
+
+def test_nothing_that_a_component_prints_is_markup(garden: Garden) -> None:
+    pages = ("/", "/log", "/board?run=garden&channel=a/place", "/settings?run=garden&component=a/mower", "/view")
+    for path in pages:
+        page = garden.open(path)
+        expect(page.locator("[data-name=state]")).to_have_text("running")
+        if path != "/":
+            expect(page.get_by_text("<script>document.title").first).to_be_visible()
+        assert "broken" not in page.title()
+        assert page.locator("img[src=x]").count() == 0
+
+
+def test_an_open_page_outlives_the_run(garden: Garden) -> None:
+    page = garden.open()
+    expect(page.locator("[data-name=state]")).to_have_text("running")
+    garden.run.signal(2)
+    assert garden.run.wait() == 0
+    expect(page.locator("[data-name=banner]")).to_contain_text("'garden' does not run")
+    garden.launch()
+    expect(page.locator("[data-name=state]")).to_have_text("running")
+    expect(page.locator("[data-name=banner]")).to_be_hidden()
+    expect(row(page, "a/mower")).to_contain_text("running")
