@@ -76,6 +76,7 @@ EXAMPLES = {
     "fwk cut": (
         "fwk cut log.lcm --from 12.5s --to 20s --out goal.lcm",
         "fwk cut log.lcm --from 'ball taken away' --channels 'cyan1/*' --out part.lcm",
+        "fwk cut RUN --last 30 --out just-now.lcm",
     ),
     "fwk filter": (
         "fwk filter log.lcm --channels 'cyan1/*' --out cyan1.lcm",

@@ -5,6 +5,7 @@ from fwk.display.lines import losses
 from fwk.display.plan_overview import overview
 from fwk.display.scoreboard import Scoreboard
 from fwk.model.plan import Plan
+from fwk.model.sections import choice_in_words
 from fwk.supervisor.options import Outcome, RunOptions
 
 _SLOWEST = 3
@@ -13,6 +14,8 @@ _SLOWEST = 3
 def introduction(plan: Plan) -> list[str]:
     """Returns the first lines of a run: its parts, and how to look at its messages."""
     lines = overview(plan)
+    if not plan.record.has_all_channels:
+        lines.append(f"recorded, without a replay: {choice_in_words(plan.record)}")
     if plan.public_url:
         url = "" if plan.public_url == Plan.public_url else f" --url '{plan.public_url}'"
         lines.append(f'to see its messages: fwk spy{url}; for LCM programs in Java: CLASSPATH="$(fwk spy --jar)"')

@@ -11,6 +11,7 @@ from fwk.bus.public import PublicBus
 from fwk.component.images import Ring
 from fwk.gateway.channel_server import ChannelServer
 from fwk.gateway.command_bridge import CommandBridge
+from fwk.gateway.connections import Sink
 from fwk.gateway.gateway import Gateway
 from fwk.gateway.unwrap import Unwrap, plain_channels
 from fwk.launcher.reservations import Reservations
@@ -61,7 +62,10 @@ def run_gateway(
     if options.record:
         try:
             recorder = _recorder(plan, options.record, rings, gateway.log.error)
-            gateway.sinks.insert(0, targets.above(Unwrap(recorder, plain, gateway.dynamic.plain), plan.log.recording))
+            recorded: Sink = Unwrap(recorder, plain, gateway.dynamic.plain)
+            if not plan.record.has_all_channels:
+                recorded = sinks.ChosenChannels(recorded, plan.record)
+            gateway.sinks.insert(0, targets.above(recorded, plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
     run_files = RunFiles(options, gateway.log.error)

@@ -4,14 +4,14 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from fwk.clock import US_PER_S
 from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import Event, LogError, LogReader
 from fwk.lcm.stamped_log import stamp_in
 from fwk.log_tools.new_file import new_log
 from fwk.log_tools.selection import Selection
 from fwk.recording.play.timeline import MomentError, Timeline
-from fwk.recording.versions import EXCERPT, PLAN
-from lcmtypes.core import excerpt_t
+from fwk.recording.versions import EXCERPT, PLAN, excerpt
 
 Progress = Callable[[int], None]
 """Takes the number of bytes read so far."""
@@ -40,6 +40,7 @@ def cut(
     selection: Selection,
     begin: str = "",
     end: str = "",
+    last_s: float | None = None,
     replace: bool = False,
     progress: Progress = lambda _: None,
 ) -> Cut:
@@ -51,13 +52,14 @@ def cut(
         selection: channels and types.
         begin: first moment: a tick (`1200`), a time (`12.5s`) or the text of a bookmark; empty: the beginning.
         end: last moment; its tick is in the new log; empty: the end.
+        last_s: begins so many seconds before the end of the log, which may still grow.
         replace: replaces an existing file.
         progress: takes the number of bytes read so far.
 
     Raises:
         LogError: the log cannot be read, the new one cannot be written, or there is nothing to write.
     """
-    first, last, is_recording = _interval(log, begin, end)
+    first, last, is_recording = _interval(log, begin, end, last_s)
     reader, done = LogReader(log), Cut(log, out)
     done.replayable = is_recording and not first and selection.is_all
     with new_log(out, replace) as made:
@@ -66,10 +68,13 @@ def cut(
             if selection.takes(plan):
                 made.append(plan.channel, plan.data, plan.time_us)
                 if not done.replayable:
-                    made.append(EXCERPT, excerpt(_text(log, selection, begin, end)), plan.time_us)
+                    words = f"the last {last_s:g} s" if last_s is not None else begin and f"from {begin}"
+                    text = ", ".join(filter(None, (log.name, words, end and f"to {end}", *selection.texts)))
+                    made.append(EXCERPT, excerpt(text), plan.time_us)
         for stamp, event in paired(_between(reader, first, last, progress)):
             if is_recording and event.channel == PLAN:
                 continue
+            done.replayable &= event.channel != EXCERPT
             if not selection.takes(event):
                 done.left_out += 1
                 continue
@@ -79,13 +84,6 @@ def cut(
         selection.check(str(log))
         done.events, done.damaged_bytes = made.events, reader.skipped_bytes
     return done
-
-
-def excerpt(text: str) -> bytes:
-    """Returns the message that says that a log is a part of a recording."""
-    made = excerpt_t()
-    made.text = text
-    return bytes(made.encode())
 
 
 def paired(events: Iterator[Event]) -> Iterator[tuple[Event | None, Event]]:
@@ -98,11 +96,14 @@ def paired(events: Iterator[Event]) -> Iterator[tuple[Event | None, Event]]:
         yield stamps.pop(event.channel, None), event
 
 
-def _interval(log: Path, begin: str, end: str) -> tuple[int, int | None, bool]:
+def _interval(log: Path, begin: str, end: str, last_s: float | None) -> tuple[int, int | None, bool]:
     """Returns the first position, the position behind the last event, and whether the log is a recording."""
     timeline = Timeline(log)
     try:
-        first = timeline.find(begin) if begin else timeline.begin
+        if last_s is not None:
+            first = timeline.of_time(max(timeline.begin.time_us, timeline.end_us - round(last_s * US_PER_S)))
+        else:
+            first = timeline.find(begin) if begin else timeline.begin
         last = timeline.find(end) if end else None
     except MomentError as error:
         raise LogError(str(error)) from error
@@ -119,9 +120,3 @@ def _between(reader: LogReader, first: int, last: int | None, progress: Progress
         if not number % EVENTS_PER_CALL:
             progress(reader.position)
         yield event
-
-
-def _text(log: Path, selection: Selection, begin: str, end: str) -> str:
-    moments = [f"from {begin}"] if begin else []
-    moments += [f"to {end}"] if end else []
-    return ", ".join([log.name, *moments, *selection.texts])

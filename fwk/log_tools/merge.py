@@ -7,10 +7,10 @@ from pathlib import Path
 
 from fwk.clock import US_PER_S
 from fwk.lcm.event_log import Event, LogError, LogReader
-from fwk.log_tools.cut import EVENTS_PER_CALL, Progress, excerpt, paired
+from fwk.log_tools.cut import EVENTS_PER_CALL, Progress, paired
 from fwk.log_tools.new_file import new_log
 from fwk.model.names import RESERVED
-from fwk.recording.versions import EXCERPT, PLAN
+from fwk.recording.versions import EXCERPT, PLAN, excerpt
 
 _DAY_US = 24 * 3600 * US_PER_S
 

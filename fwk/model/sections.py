@@ -69,7 +69,22 @@ class RunsPlan:
 
 @dataclass(frozen=True)
 class RecordPlan:
-    """Contents of a recording besides all messages."""
+    """Contents of a recording."""
 
     frames: tuple[str, ...] = ()
     """Channels of cameras whose frames are recorded."""
+    channels: tuple[str, ...] = ()
+    """Channels that are recorded: names, patterns or namespaces; none means all."""
+    exclude: tuple[str, ...] = ()
+    """Channels of these that are not recorded."""
+
+    @property
+    def has_all_channels(self) -> bool:
+        """Whether every message is recorded, as a replay needs it."""
+        return not (self.channels or self.exclude)
+
+
+def choice_in_words(record: RecordPlan) -> str:
+    """Returns which channels are recorded, such as `channels cyan1, without cyan1/image`."""
+    parts = {"channels": record.channels, "without": record.exclude}
+    return ", ".join(f"{word} {' '.join(patterns)}" for word, patterns in parts.items() if patterns)

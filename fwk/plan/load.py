@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from fwk.clock import US_PER_S
@@ -10,7 +10,6 @@ from fwk.model.errors import Problems
 from fwk.model.plan import ComponentPlan, Plan
 from fwk.model.ports import Ports
 from fwk.model.public_url import UrlError, parse_url
-from fwk.model.sections import RecordPlan
 from fwk.model.selection import chosen, groups_of
 from fwk.plan.cameras import check_cameras
 from fwk.plan.files.folders import folders_of, join
@@ -55,6 +54,10 @@ class LaunchOptions:
     speed: float | None = None
     """Logical seconds per wall second; 0: as fast as possible."""
     bus_port: int | None = None
+    record_channels: Sequence[str] = ()
+    """Patterns of the channels that are recorded; empty: as in the launch file."""
+    record_exclude: Sequence[str] = ()
+    """Patterns of the channels that are not recorded."""
 
 
 def load_plan(file: str, options: LaunchOptions = LaunchOptions(), notice: Callable[[str], None] | None = None) -> Plan:
@@ -110,7 +113,8 @@ class _Loading:
         kept = set(chosen(names, options.only, options.without, problems))
         check_left_out(names, kept, granted, options.without, problems)
         shared = self._shared()
-        recorded = record_of(files, whole.channels, problems)
+        choice = {"channels": options.record_channels, "exclude": options.record_exclude}
+        recorded = record_of(files, whole.channels, choice, problems)
         problems.stop_if_any()
         if len(kept) < len(components):
             # All components are right, so a missing writer was left out on purpose.
@@ -127,8 +131,9 @@ class _Loading:
             spare_channels=last(files, "spare_channels", SPARE_CHANNELS) if any(map(_opens, components)) else 0,
             hosts=hosts,
             outside={channel.name: channel.type_name for channel in whole.channels if channel.name in outside},
-            record=RecordPlan(
-                tuple(name for name in recorded.frames if name in {each.name for each in whole.channels})
+            record=replace(
+                recorded,
+                frames=tuple(name for name in recorded.frames if name in {each.name for each in whole.channels}),
             ),
             scoreboard_channels=scoreboard_channels_of(shared["scoreboard"], whole.channels, self.folders),
             modules=imported_modules([each.asked.entry.use for each in components], self.folders),

@@ -1,7 +1,7 @@
 """Reads the sections of a launch file about the run as a whole: time, buses, outside, log, recording, display."""
 
 import ipaddress
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -134,18 +134,38 @@ def runs_of(files: Files) -> RunsPlan:
     return RunsPlan(**_key_by_key(files, "runs"))
 
 
-def record_of(files: Files, channels: Sequence[ChannelPlan], problems: Problems) -> RecordPlan:
-    """Returns the cameras whose frames are recorded; `channels` are those of the whole system."""
-    layers = [layer for layer in files.layers if layer.content.record.frames is not None]
-    if not layers:
-        return RecordPlan()
+def record_of(
+    files: Files, channels: Sequence[ChannelPlan], options: Mapping[str, Sequence[str]], problems: Problems
+) -> RecordPlan:
+    """Returns what is recorded.
+
+    Args:
+        files: the launch file and what it includes.
+        channels: those of the whole system.
+        options: patterns of the command line, which come before those of the files: `channels` and `exclude`.
+        problems: takes the mistakes.
+    """
     cameras = [channel.name for channel in channels if channel.images]
-    patterns = layers[-1].content.record.frames or []
+    frames = _patterns(files, "frames", (), cameras, problems)
+    names = [channel.name for channel in channels]
+    return RecordPlan(
+        tuple(name for name in cameras if any(matches(name, pattern) for pattern in frames)),
+        *(_patterns(files, key, options[key], names, problems) for key in ("channels", "exclude")),
+    )
+
+
+def _patterns(
+    files: Files, key: str, option: Sequence[str], names: Sequence[str], problems: Problems
+) -> tuple[str, ...]:
+    """Returns the patterns of a key of `record`, or of its option; one that matches no name is a mistake."""
+    layers = [layer for layer in files.layers if getattr(layer.content.record, key) is not None]
+    patterns = option or (getattr(layers[-1].content.record, key) if layers else ())
     for pattern in patterns:
-        if not any(matches(name, pattern) for name in cameras) and not files.gaps:
-            place = layers[-1].node.at("record", "frames").place
-            problems.add(place, "", f"record: no camera publishes '{pattern}'; {hint(pattern, cameras)}")
-    return RecordPlan(tuple(name for name in cameras if any(matches(name, pattern) for pattern in patterns)))
+        if not any(matches(name, pattern) for name in names) and not files.gaps:
+            place = f"--record-{key}" if option else layers[-1].node.at("record", key).place
+            what = "camera publishes" if key == "frames" else "channel matches"
+            problems.add(place, "", f"record: no {what} '{pattern}'; {hint(pattern, names)}")
+    return tuple(patterns)
 
 
 def _key_by_key(files: Files, key: str) -> dict[str, Any]:

@@ -8,9 +8,14 @@ from typing import Protocol
 
 from fwk.bus.public import PublicBus
 from fwk.clock import US_PER_S, monotonic_us
+from fwk.gateway.connections import Sink
+from fwk.model.names import RESERVED
 from fwk.model.plan import Plan
 from fwk.model.plan_document import document_of
+from fwk.model.sections import RecordPlan, choice_in_words
+from fwk.model.selection import matches
 from fwk.recording.indexed_log import IndexedLogWriter
+from fwk.recording.versions import EXCERPT, PLAN, excerpt
 from lcmtypes.core import plan_t, protocol_t
 
 DISPLAY_PERIOD_US = US_PER_S // 4
@@ -24,7 +29,9 @@ class Recorder:
         first = plan_t()
         first.version = protocol_t.VERSION
         first.json = json.dumps(document_of(plan))
-        self._writer.append("fwk/plan", first.encode(), 0)
+        self._writer.append(PLAN, first.encode(), 0)
+        if not plan.record.has_all_channels:
+            self._writer.append(EXCERPT, excerpt(choice_in_words(plan.record)), 0)
         self._report = report
         self._due_us = 0
 
@@ -43,6 +50,29 @@ class Recorder:
         self._writer.close()
         if self._writer.dropped:
             self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
+
+
+class ChosenChannels:
+    """Passes the messages of the channels on that the launch file wants recorded, and all of the framework's own."""
+
+    def __init__(self, sink: Sink, record: RecordPlan) -> None:
+        self._sink = sink
+        self._record = record
+        self._known: dict[str, bool] = {}
+        self.tick = sink.tick
+        self.close = sink.close
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        """Passes a message on, if its channel is recorded."""
+        chosen = self._known.get(channel)
+        if chosen is None:
+            chosen = self._known[channel] = channel.startswith(RESERVED) or self._is_chosen(channel)
+        if chosen:
+            self._sink.message(channel, data, time_us)
+
+    def _is_chosen(self, channel: str) -> bool:
+        included = not self._record.channels or any(matches(channel, each) for each in self._record.channels)
+        return included and not any(matches(channel, each) for each in self._record.exclude)
 
 
 class Pace(Protocol):

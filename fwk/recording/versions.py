@@ -46,6 +46,13 @@ _EVENTS_OF_A_HOST: dict[int, type[HostLost | HostLate | HostStopped]] = {
 }
 
 
+def excerpt(text: str) -> bytes:
+    """Returns the message that says which part of a recording a log is."""
+    made = core.excerpt_t()
+    made.text = text
+    return bytes(made.encode())
+
+
 def read_plan(data: bytes) -> tuple[Plan, int]:
     """Returns the plan of a recording and the protocol version of everything in the recording.
 

@@ -3,9 +3,11 @@
 import json
 from dataclasses import asdict
 from pathlib import Path
+from typing import Annotated
 
 import typer
 
+from fwk.cli.arguments import seconds
 from fwk.cli.output import say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.log_options import (
@@ -32,6 +34,10 @@ def cut(
     out: Out,
     begin: From = "",
     end: To = "",
+    last_s: Annotated[
+        float | None,
+        typer.Option("--last", parser=seconds, metavar="SECONDS", help="the last seconds, also of a run that goes on"),
+    ] = None,
     channels: Channels = None,
     exclude: Exclude = None,
     kinds: MessageTypes = None,
@@ -46,9 +52,11 @@ def cut(
 
     Exit codes: 0 written; 2 bad input, or nothing to write.
     """
-    if not (begin or end):
-        raise typer.BadParameter("which interval? use --from or --to; 'fwk filter' chooses channels of a whole log")
-    _write(log, out, begin, end, Selection(channels or (), exclude or (), kinds or ()), force, as_json, types)
+    if not (begin or end or last_s):
+        raise typer.BadParameter("which interval? use --from, --to or --last; 'fwk filter' takes a whole log")
+    if last_s and (begin or end):
+        raise typer.BadParameter("--last is an interval of its own; leave out --from and --to")
+    _write(log, out, (begin, end, last_s), Selection(channels or (), exclude or (), kinds or ()), force, as_json, types)
 
 
 def filter(  # noqa: A001 - the name of the command
@@ -71,17 +79,23 @@ def filter(  # noqa: A001 - the name of the command
     selection = Selection(channels or (), exclude or (), kinds or ())
     if selection.is_all:
         raise typer.BadParameter("which messages? use --channels, --exclude or --type")
-    _write(log, out, "", "", selection, force, as_json, types)
+    _write(log, out, ("", "", None), selection, force, as_json, types)
 
 
 def _write(
-    path: Path, out: Path, begin: str, end: str, selection: Selection, force: bool, as_json: bool, types: Path
+    path: Path,
+    out: Path,
+    interval: tuple[str, str, float | None],
+    selection: Selection,
+    force: bool,
+    as_json: bool,
+    types: Path,
 ) -> None:
     with failing(BAD_INPUT):
         use_types_of(types)
         log = find_log(path)
         with progress_of("reading", log) as progress:
-            done = cut_log(log, out, selection, begin, end, force, progress)
+            done = cut_log(log, out, selection, *interval, force, progress)
     if as_json:
         typer.echo(json.dumps({**asdict(done), "log": str(done.log), "out": str(done.out)}))
         return

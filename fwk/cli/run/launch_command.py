@@ -65,6 +65,16 @@ def launch(
         typer.Option(parser=new_file, metavar="FILE", help="where the LCM log goes; default: in the run directory"),
     ] = None,
     no_record: Annotated[bool, typer.Option("--no-record", help="keep no LCM log")] = False,
+    record_channels: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="PATTERN", help="record only these channels, such as 'cyan1/*', without a replay; repeatable"
+        ),
+    ] = None,
+    record_exclude: Annotated[
+        list[str] | None,
+        typer.Option(metavar="PATTERN", help="record all but these channels, without a replay; repeatable"),
+    ] = None,
     sets: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
     ] = None,
@@ -128,6 +138,8 @@ def launch(
         seed=seed,
         speed=speed,
         bus_port=bus_port,
+        record_channels=tuple(record_channels or ()),
+        record_exclude=tuple(record_exclude or ()),
     )
     with _ending():
         plan = load_plan(file, launch_options, notice)

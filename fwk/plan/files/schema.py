@@ -86,10 +86,14 @@ class RobotEntry(_Entry):
 
 
 class RecordEntry(_Entry):
-    """Contents of a recording besides all messages."""
+    """Contents of a recording."""
 
     frames: Words | None = None
     """Channels of cameras whose frames are recorded, lossless: names or patterns such as `*/image`."""
+    channels: Words | None = None
+    """Channels that are recorded: names, patterns or namespaces; all by default. A replay needs all."""
+    exclude: Words | None = None
+    """Channels of these that are not recorded."""
 
 
 class HostFile(_Entry):

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from lcm import EventLog
 from typer.testing import CliRunner
 
 from fwk.cli.commands import app
@@ -85,6 +86,26 @@ def test_logs_of_lcm_logger_are_cut_by_seconds(tmp_path: Path) -> None:
     assert ticks_in(done.out) == (2, 4)
     assert not done.replayable
     assert set(channels_of(done.out)) == {"cyan2/odometry"}, "no marker in a log without a plan"
+
+
+def test_the_last_seconds_are_an_interval(tmp_path: Path) -> None:
+    log = recording(tmp_path / "log")
+    done = cut(log, tmp_path / "out", ALL, last_s=0.2)
+    assert (ticks_in(done.out), excerpt_in(done.out)) == ((6, 10), "log, the last 0.2 s")
+    assert cut(log, tmp_path / "all", ALL, last_s=99).events == log_info(log).events
+    both = ["cut", str(log), "-o", str(tmp_path / "both"), "--last", "1", "--to", "3"]
+    assert "--last is an interval of its own" in CliRunner().invoke(app, both).stderr
+
+
+def test_the_reader_of_lcm_reads_the_new_log(tmp_path: Path) -> None:
+    done = cut(recording(tmp_path / "log"), tmp_path / "out", ALL, "3", "5")
+    ours = [(event.channel, event.time_us, event.data) for event in LogReader(done.out)]
+    assert [(each.channel, each.timestamp, each.data) for each in EventLog(str(done.out), "r")] == ours
+
+
+def test_a_part_of_a_part_is_not_replayable_either(tmp_path: Path) -> None:
+    part = cut(recording(tmp_path / "log"), tmp_path / "part", ALL, "3")
+    assert not cut(part.out, tmp_path / "out", ALL, end="5").replayable
 
 
 @pytest.mark.parametrize(

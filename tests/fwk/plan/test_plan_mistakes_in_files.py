@@ -16,6 +16,16 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
         name: x
         """,
     ),
+    Broken(
+        """
+        it.yaml:2: record: no channel matches 'it/pose'; there is it/odometry
+        it.yaml:2: record: no channel matches 'at'; there is it/odometry
+        """,
+        """
+        components: {it/a: {use: plan_parts:Odometer}}
+        record: {channels: it/pose, exclude: ["*/odometry", at]}
+        """,
+    ),
     Broken("it.yaml:2: this is not valid YAML: character '\\x07' is not allowed", "name: x\n# \x07"),
     Broken(
         "it.yaml:4: 'it/a' occurs a second time, first in line 2; keep one",

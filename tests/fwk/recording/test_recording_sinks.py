@@ -10,9 +10,10 @@ from fwk import Component, Writes, channel
 from fwk.lcm.event_log import LogReader
 from fwk.logs.rotating import RotatingFile
 from fwk.logs.text_file import TextLog
-from fwk.recording.sinks import Display, Newest, Recorder
+from fwk.model.sections import RecordPlan
+from fwk.recording.sinks import ChosenChannels, Display, Newest, Recorder
 from fwk.testing.plans import plan_of
-from lcmtypes.core import log_t
+from lcmtypes.core import excerpt_t, log_t
 from lcmtypes.robot import imu_t
 
 
@@ -56,6 +57,17 @@ def test_the_recorder_keeps_order_and_logical_time(tmp_path: Path) -> None:
     assert [(event.channel, event.data, event.time_us) for event in events] == [
         ("world/truth", b"%d" % number, number * 50_000) for number in range(100)
     ]
+
+
+def test_a_choice_of_channels_is_recorded(tmp_path: Path) -> None:
+    record = RecordPlan(channels=("world", "a/*"), exclude=("a/image",))
+    recorder = ChosenChannels(Recorder(replace(PLAN, record=record), tmp_path / "a.lcm", pytest.fail), record)
+    for name in ("world/truth", "a/pose", "a/image", "b/pose", "fwk/log"):
+        recorder.message(name, b"1", 0)
+    recorder.close()
+    events = list(LogReader(tmp_path / "a.lcm"))
+    assert [event.channel for event in events] == ["fwk/plan", "fwk/excerpt", "world/truth", "a/pose", "fwk/log"]
+    assert excerpt_t.decode(events[1].data).text == "channels world a/*, without a/image"
 
 
 def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:
