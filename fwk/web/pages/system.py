@@ -118,7 +118,8 @@ async def _open(frame: Frame, name: str) -> None:
     component = next((each for each in (status or {}).get("components", []) if each["name"] == name), None)
     if component is None:
         return
-    dialog = ui.dialog().on("hide", lambda: dialog.delete())
+    dialog = ui.dialog()
+    dialog.on("hide", dialog.delete)
     with dialog, ui.card().classes("fwk-component").style("min-width: min(560px, 92vw)"):
         with ui.row().classes("items-center w-full"):
             ui.label(name).classes("text-h6")
