@@ -32,6 +32,7 @@ MODULES = {
     "call": "steer.call",
     "play": "recordings.play",
     "replay": "recordings.replay",
+    "bisect": "recordings.bisect",
     "compare": "recordings.compare",
     "log-info": "recordings.log_info",
     **dict.fromkeys(("cut", "filter"), "recordings.cut"),

@@ -71,6 +71,10 @@ EXAMPLES = {
         "fwk replay log.lcm --debug cyan1/world_model --from-tick 500",
         "fwk replay log.lcm --to-tick 1200 --then-live --set cyan1/agent.boldness=0.9 --record bold.lcm",
     ),
+    "fwk bisect": (
+        "fwk bisect log.lcm --good v1.2 --bad HEAD --only cyan1/agent",
+        "fwk bisect log.lcm --good HEAD~20 --when 'cyan1.odometry.x_m > 3'",
+    ),
     "fwk compare": ("fwk compare before.lcm after.lcm",),
     "fwk log-info": ("fwk log-info log.lcm", "fwk log-info log.lcm --check --json"),
     "fwk cut": (
