@@ -45,6 +45,7 @@ MODULES = {
     "eval": "recordings.evaluate",
     "cam": "look.cam",
     "web": "look.web",
+    "monitor": "look.monitor",
     "spy": "look.spy",
     "doctor": "check.doctor",
     "completion": "complete.completion",

@@ -106,6 +106,11 @@ EXAMPLES = {
         "fwk eval robots.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
     ),
     "fwk web": ("fwk web", "fwk web --run red --read-only", "fwk web --view yard_view --port 8000"),
+    "fwk monitor": (
+        "fwk monitor --template imu > turns.py",
+        "fwk monitor turns.py --run red",
+        "fwk monitor turns.py --from log.lcm --count 100",
+    ),
     "fwk spy": ("fwk spy",),
     "fwk doctor": ("fwk doctor",),
     "fwk completion": ('eval "$(fwk completion bash)"',),

@@ -84,6 +84,10 @@ def test_the_blackboard_from_outside(run: Steered) -> None:
     said = run.fwk("bb", "watch", "r/imu", "--count", "1", "--field", "heading_rad")
     assert re.fullmatch(r" *\d+  \d+\.\d{3} s  heading_rad=[\d.]+\n", said), said
     assert "no field 'heding'" in run.fwk("bb", "watch", "r/imu", "--field", "heding", code=2)
+    script = run.launched.folder / "ticks.py"
+    script.write_text("channels = ('r/imu',)\n\n\ndef message(channel, message, time_us):\n    print(time_us)\n")
+    times_us = [int(line) for line in run.fwk("monitor", str(script), "--count", "3").splitlines()]
+    assert times_us == [times_us[0], times_us[0] + 50_000, times_us[0] + 100_000]
     (row,) = run.json("who", "r/imu")
     assert (row["writer"], row["readers"], row["rate_hz"] > 0) == ("r/counter", ["r/follower"], True)
     nodes = {node["name"]: node["state"] for node in run.json("graph")["nodes"]}
