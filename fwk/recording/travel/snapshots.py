@@ -138,24 +138,25 @@ def _run_front(work: Callable[[Snapshots], int], session: socket.socket) -> None
 
 
 def _end_of(front: int, session: socket.socket) -> int:
-    """Waits for the exit code of the last front; `FAILED` if the process that has the terminal dies."""
-    watched = os.pidfd_open(front)
+    """Waits for the exit code of the last front; `FAILED` if the processes that may be the front have died."""
+    watched = {front: os.pidfd_open(front)}
     while True:
-        ready, _, _ = select.select([session.fileno(), watched], [], [])
+        ready, _, _ = select.select([session.fileno(), *watched.values()], [], [], None if watched else 0.0)
+        if not ready:
+            return FAILED
         if session.fileno() in ready:
             data = session.recv(_BYTES_MAX)
-            if not data:
-                return FAILED
-            what, number = pickle.loads(data)
+            what, number = pickle.loads(data) if data else (_ENDED, FAILED)
             if what == _ENDED:
                 return int(number)
-            os.close(watched)
-            try:
-                watched = os.pidfd_open(number)
-            except ProcessLookupError:
-                return FAILED
+            gone = [*watched] if what == _FRONT else []  # a front whose order does not arrive goes on
         else:
-            return FAILED
+            number, gone = 0, [pid for pid, descriptor in watched.items() if descriptor in ready]
+        for pid in gone:
+            os.close(watched.pop(pid))
+        if number and number not in watched:
+            with contextlib.suppress(ProcessLookupError):
+                watched[number] = os.pidfd_open(number)
 
 
 def _received(control: socket.socket) -> bytes:
