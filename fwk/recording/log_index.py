@@ -99,6 +99,12 @@ def index_path(log: Path) -> Path:
     return log.with_name(f"{log.name}.index")
 
 
+def changed(log: Path) -> list[ChangedBytes]:
+    """Returns the parts of a log that are not what was written; empty without an index."""
+    index = LogIndex.of(log)
+    return list(index.changes()) if index else []
+
+
 def _channel(content: dict[str, Any]) -> ChannelInfo:
     gaps = [(int(first), int(last)) for first, last in content.pop("gaps")]
     return ChannelInfo(**content, gaps=gaps)

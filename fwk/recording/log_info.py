@@ -6,7 +6,7 @@ from pathlib import Path
 from fwk.lcm.event_log import LogError
 from fwk.lcm.stamped_log import StampedLog
 from fwk.recording.log_contents import ChannelInfo, LogInfo, note_in
-from fwk.recording.log_index import LogIndex
+from fwk.recording.log_index import LogIndex, changed
 
 _EVENTS_PER_CALL = 1000
 
@@ -27,7 +27,7 @@ def log_info(path: Path, check: bool = False, progress: Callable[[int], None] = 
     if index and not check and index.is_current():
         return index.info
     info = _read(reader, progress)
-    info.changed = list(index.changes()) if index else []
+    info.changed = changed(path)
     return info
 
 

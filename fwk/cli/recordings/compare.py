@@ -15,6 +15,7 @@ from fwk.model.plan import Plan
 from fwk.plan.what_ran import different_modules, other_kernel
 from fwk.recording.compare import Comparison, plan_in
 from fwk.recording.differing import differing, lines_of
+from fwk.recording.log_index import changed
 
 EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
 
@@ -39,9 +40,13 @@ def compare(
         logs = find_log(a), find_log(b)
         plans = plan_in(logs[0]), plan_in(logs[1])
         notes = list(_different_conditions((str(a), str(b)), plans))
+        result = Comparison(*logs, common)
+        if result.difference:
+            notes += [
+                f"{path}: damaged: {part}" for path, log in zip((a, b), logs, strict=True) for part in changed(log)
+            ]
         for text in notes:
             typer.echo(text, err=True)
-        result = Comparison(*logs, common)
         rows = differing(result.differences, plans[0] or plans[1])
     if as_json:
         difference = str(result.difference) if result.difference else None

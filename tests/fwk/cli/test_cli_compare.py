@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from fwk.cli.recordings.compare import compare
 from fwk.lcm.event_log import LogWriter
+from fwk.recording.indexed_log import IndexedLogWriter
 
 
 @pytest.fixture
@@ -56,3 +57,16 @@ def test_damage_is_mentioned(tmp_path: Path, fwk: typer.Typer) -> None:
     result = CliRunner().invoke(fwk, [a, a])
     assert result.exit_code == 0
     assert f"{a}: 2 damaged bytes skipped" in result.stderr
+
+
+def test_damage_is_told_from_a_difference(tmp_path: Path, fwk: typer.Typer) -> None:
+    logs = [tmp_path / "a", tmp_path / "b"]
+    for each in logs:
+        with IndexedLogWriter(each, pytest.fail) as writer:
+            writer.append("cyan1/x", b"abc", 1)
+    equal = CliRunner().invoke(fwk, list(map(str, logs)))
+    assert (equal.exit_code, equal.stderr) == (0, "")
+    logs[1].write_bytes(logs[1].read_bytes().replace(b"abc", b"abd"))
+    different = CliRunner().invoke(fwk, list(map(str, logs)))
+    assert different.exit_code == 1
+    assert different.stderr.startswith(f"{logs[1]}: damaged: bytes 0 to {logs[1].stat().st_size - 1} ")
