@@ -92,6 +92,11 @@ class LogWriter:
         else:
             self._write(data, events)
 
+    @property
+    def size_bytes(self) -> int:
+        """Size of the log with the events that have not reached the file yet, without dropped ones."""
+        return self._good_bytes + len(self._buffer)
+
     def written(self, data: bytearray) -> None:
         """Is called with each piece of whole events that has reached the file; for subclasses."""
 

@@ -77,6 +77,8 @@ class RecordPlan:
     """Channels that are recorded: names, patterns or namespaces; none means all."""
     exclude: tuple[str, ...] = ()
     """Channels of these that are not recorded."""
+    size_gb: float = 0.0
+    """Size at which the recording ends, after a whole tick, while the run goes on; 0: no limit."""
 
     @property
     def has_all_channels(self) -> bool:

@@ -148,9 +148,12 @@ def record_of(
     cameras = [channel.name for channel in channels if channel.images]
     frames = _patterns(files, "frames", (), cameras, problems)
     names = [channel.name for channel in channels]
+    sizes = [layer.content.record.size_gb for layer in files.layers if layer.content.record.size_gb is not None]
     return RecordPlan(
-        tuple(name for name in cameras if any(matches(name, pattern) for pattern in frames)),
-        *(_patterns(files, key, options[key], names, problems) for key in ("channels", "exclude")),
+        frames=tuple(name for name in cameras if any(matches(name, pattern) for pattern in frames)),
+        channels=_patterns(files, "channels", options["channels"], names, problems),
+        exclude=_patterns(files, "exclude", options["exclude"], names, problems),
+        size_gb=sizes[-1] if sizes else 0.0,
     )
 
 

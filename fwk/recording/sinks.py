@@ -18,6 +18,7 @@ from fwk.recording.indexed_log import IndexedLogWriter
 from fwk.recording.versions import EXCERPT, PLAN, excerpt
 from lcmtypes.core import plan_t, protocol_t
 
+_GB = 1_000_000_000
 DISPLAY_PERIOD_US = US_PER_S // 4
 
 
@@ -34,13 +35,22 @@ class Recorder:
             self._writer.append(EXCERPT, excerpt(choice_in_words(plan.record)), 0)
         self._report = report
         self._due_us = 0
+        self._limit_bytes = round(plan.record.size_gb * _GB)
+        self._after_end = 0
+        self._is_full = False
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
-        """Adds a message."""
-        self._writer.append(channel, data, time_us)
+        """Adds a message, unless the recording has reached its limit."""
+        if self._is_full:
+            self._after_end += 1
+        else:
+            self._writer.append(channel, data, time_us)
 
     def tick(self) -> None:
-        """Flushes the file once a second, so that a killed run leaves a log."""
+        """Flushes the file once a second, so that a killed run leaves a log; ends the recording at its limit."""
+        if self._limit_bytes and not self._is_full and self._writer.size_bytes >= self._limit_bytes:
+            self._is_full = True
+            self._report(f"{self._writer.path}: the recording ends: it has reached record.size_gb; the run goes on")
         if monotonic_us() >= self._due_us:
             self._due_us = monotonic_us() + US_PER_S
             self._writer.flush()
@@ -50,6 +60,8 @@ class Recorder:
         self._writer.close()
         if self._writer.dropped:
             self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
+        if self._after_end:
+            self._report(f"{self._writer.path}: {self._after_end} messages came after the end of the recording")
 
 
 class ChosenChannels:

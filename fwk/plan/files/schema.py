@@ -94,6 +94,8 @@ class RecordEntry(_Entry):
     """Channels that are recorded: names, patterns or namespaces; all by default. A replay needs all."""
     exclude: Words | None = None
     """Channels of these that are not recorded."""
+    size_gb: float | None = Field(None, ge=0.0, le=1e6)
+    """Size at which the recording ends while the run goes on; 0: no limit."""
 
 
 class HostFile(_Entry):

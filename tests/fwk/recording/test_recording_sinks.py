@@ -11,6 +11,7 @@ from fwk.lcm.event_log import LogReader
 from fwk.logs.rotating import RotatingFile
 from fwk.logs.text_file import TextLog
 from fwk.model.sections import RecordPlan
+from fwk.recording.log_info import log_info
 from fwk.recording.sinks import ChosenChannels, Display, Newest, Recorder
 from fwk.testing.plans import plan_of
 from lcmtypes.core import excerpt_t, log_t
@@ -68,6 +69,25 @@ def test_a_choice_of_channels_is_recorded(tmp_path: Path) -> None:
     events = list(LogReader(tmp_path / "a.lcm"))
     assert [event.channel for event in events] == ["fwk/plan", "fwk/excerpt", "world/truth", "a/pose", "fwk/log"]
     assert excerpt_t.decode(events[1].data).text == "channels world a/*, without a/image"
+
+
+def test_a_recording_ends_at_its_limit_after_a_tick(tmp_path: Path) -> None:
+    said: list[str] = []
+    limited = replace(PLAN, record=RecordPlan(size_gb=1e-5))
+    recorder = Recorder(limited, tmp_path / "a.lcm", said.append)
+    for tick in range(40):
+        for part in (b"first of", b"last of"):
+            recorder.message("world/truth", part + b" %d" % tick + bytes(500), tick)
+        recorder.tick()
+    recorder.close()
+    events = list(LogReader(tmp_path / "a.lcm"))
+    assert events[-1].data.startswith(b"last of")
+    assert 10_000 <= (tmp_path / "a.lcm").stat().st_size < 11_500
+    assert said == [
+        f"{tmp_path}/a.lcm: the recording ends: it has reached record.size_gb; the run goes on",
+        f"{tmp_path}/a.lcm: {81 - len(events)} messages came after the end of the recording",
+    ]
+    assert log_info(tmp_path / "a.lcm").from_index
 
 
 def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:
