@@ -16,6 +16,7 @@ MODULES = {
     "new": "project.new",
     "add": "project.add",
     "remove": "project.remove",
+    "types": "project.types",
     "check": "check.check",
     "ps": "look.ps",
     "status": "look.status",

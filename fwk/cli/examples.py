@@ -25,6 +25,7 @@ EXAMPLES = {
     "fwk add setting": ("fwk add setting tracker gain:float=0.3 --meaning '0 keeps the old value, 1 takes the new.'",),
     "fwk remove reads": ("fwk remove reads tracker ball",),
     "fwk remove setting": ("fwk remove setting tracker gain",),
+    "fwk types": ("fwk types --lang c native/types", "fwk types --lang java build/types"),
     "fwk check": ("fwk check robots.yaml", "fwk check robots.yaml --settings --set cyan1/omni_ball.deviation_px=2"),
     "fwk ps": ("fwk ps --json",),
     "fwk status": ("fwk status", "fwk status 'cyan1/*' --run red", "fwk status cyan1/world_model"),

@@ -14,10 +14,11 @@ from functools import cache
 from pathlib import Path
 from types import ModuleType
 
+from fwk.model.parent_death import die_with_parent as die_with_parent
+
 # Looked up once: a forked process shares with its parent only memory in which neither of them writes.
 _LIBC = ctypes.CDLL(None, use_errno=True)
-_PRCTL, _MALLOPT, _MALLOC_TRIM = _LIBC.prctl, _LIBC.mallopt, _LIBC.malloc_trim
-_PR_SET_PDEATHSIG = 1
+_MALLOPT, _MALLOC_TRIM = _LIBC.mallopt, _LIBC.malloc_trim
 _M_TRIM_THRESHOLD, _M_MMAP_THRESHOLD = -1, -3
 _KEPT_BYTES = 32 << 20
 _KIB = 1 << 10
@@ -28,13 +29,6 @@ _KEEP_ENVIRONMENT = "SPT_NOENV"
 """Setting of setproctitle that leaves alone the memory from which other processes read this one's environment."""
 
 ENDED_WELL = "exit code 0"
-
-
-def die_with_parent(parent: int, death_signal: int = signal.SIGKILL) -> None:
-    """Asks the kernel to send this process `death_signal` when `parent` ends in any way."""
-    _PRCTL(_PR_SET_PDEATHSIG, death_signal)
-    if os.getppid() != parent:  # the parent has ended before this call
-        os._exit(1)
 
 
 def wait_for_end(pid: int) -> str:

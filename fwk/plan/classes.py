@@ -13,6 +13,7 @@ from types import ModuleType, TracebackType
 
 from pydantic import PydanticUserError
 
+from fwk.component import program
 from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.port import DeclarationError
@@ -38,6 +39,8 @@ def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
     Raises:
         UnusableError: the module or class does not exist or has a mistake, or the module has several components.
     """
+    if use.startswith(f"{program.MODULE}:"):
+        return _program(use.partition(":")[2])
     if not _USE.fullmatch(use):
         raise UnusableError(f"'{use}' is not a module; write it as in Python: drivers.wheels, or drivers.wheels:Wheels")
     name, _, wanted = use.partition(":")
@@ -46,6 +49,14 @@ def find_class(use: str, folders: Sequence[str] = ()) -> Declaration:
         return declaration(_named(module, wanted) if wanted else _only(module))
     except DeclarationError as error:
         raise UnusableError(str(error)) from error
+
+
+def _program(name: str) -> Declaration:
+    """Returns the declaration of a program of the launch file."""
+    try:
+        return declaration(getattr(program, name))
+    except (AttributeError, DeclarationError) as error:
+        raise UnusableError(str(error).removeprefix(f"{program.MODULE}.")) from error
 
 
 def find_object(use: str, folders: Sequence[str] = ()) -> object:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from fwk.component.child_process import missing_program
 from fwk.component.declaration import Declaration
 from fwk.model.errors import Problems, hint
 from fwk.model.selection import matches, nearest
@@ -87,6 +88,8 @@ def resolve(
             files.gaps.add(asked.namespace)
             continue
         report = partial(_report, problems, asked.name)
+        if asked.entry.command and (missing := missing_program(asked.entry.command, folders)):
+            report(asked.node.at("command").place, missing)
         _add_shared(files, asked, declared, report)
         layers, former = without_former_every(asked, declared, problems)
         config, origins = effective(declared.config, layers, asked.node.place, report)

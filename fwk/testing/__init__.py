@@ -1,7 +1,7 @@
 """Tests of components: a bench for one component, a system in memory for many or for a launch file."""
 
 from fwk.lcm.type_registry import use_types_of
-from fwk.testing.bench import Bench
+from fwk.testing.bench import Bench, program_bench
 from fwk.testing.expression import Expression, ExpressionError, reads_messages
 from fwk.testing.launched import launch_plan, settings_in, system_of
 from fwk.testing.memory import MemorySystem
@@ -17,6 +17,7 @@ __all__ = [
     "Watch",
     "launch_plan",
     "play",
+    "program_bench",
     "reads_messages",
     "settings_in",
     "system_of",

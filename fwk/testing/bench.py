@@ -1,8 +1,10 @@
 """Test bench for one component: put messages in, iterate, check sent messages. No process, no bus."""
 
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from fwk.clock import US_PER_S
+from fwk.component import program
 from fwk.component.component import Component
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.images import Ring, VisionMaster
@@ -167,3 +169,14 @@ class Bench:
         for channel, data in self.runner.finalize(self.tick, self.time_us):
             port = self._ports[channel]
             port.sent.append(envelope.decode(port.message_type, data, channel))
+
+
+def program_bench(
+    command: Sequence[str],
+    reads: Mapping[str, str] | None = None,
+    writes: Mapping[str, str] | None = None,
+    **settings: Any,
+) -> Bench:
+    """Returns a program of a launch file on the bench: `command`, `reads` and `writes` as there."""
+    kind = getattr(program, program.program_class_name(reads or {}, writes or {}))
+    return Bench(kind, command=[*command], **settings)

@@ -52,6 +52,7 @@ def test_modules_and_files_in_prose_exist(page: Path) -> None:
         ("fwk.testing.Bench", True),
         ("fwk.testing.Bensh", False),
         ("fwk.nowhere", False),
+        ("fwk.h", True),
         ("fwk/tick", True),
         ("lcmtypes/core.lcm", True),
         ("lcmtypes/cor.lcm", False),
@@ -73,6 +74,8 @@ def exists(span: str) -> bool:
 def _module_exists(name: str) -> bool:
     """Returns whether `name` is a module of this repository or of a tutorial, or an attribute of such a module."""
     path = name.replace(".", "/")
+    if (ROOT / "fwk/scaffold/native" / name).exists():
+        return True
     if (ROOT / f"{path}.py").exists() or (ROOT / path).is_dir() or f"{path}.py" in tutorial_files():
         return True
     module, _, attribute = name.rpartition(".")

@@ -72,7 +72,8 @@ def component(
         sort = asked(kind, f"Kind: {_KINDS}", "--kind", "stages")
         changes = new_component(found, chosen, sort, launch, namespace)
         file = found.launch_file(launch).name
-        carry_out(changes, dry_run, force, as_json, (f"fwk check {file}", f"fwk-launch {file}"))
+        build = ("make -C native",) if sort == "c" else ()
+        carry_out(changes, dry_run, force, as_json, (*build, f"fwk check {file}", f"fwk-launch {file}"))
         if not dry_run:
             generate_types(found)
 

@@ -2,10 +2,11 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
 
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 from fwk.component.declaration import EVERY_MAX, RATE_MAX_HZ
+from fwk.component.program import MODULE, program_class_name
 from fwk.model.sections import LogPlan, RestartPolicy, RunsPlan
 
 PACE_MAX = "max"
@@ -45,11 +46,25 @@ class _Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
 
 
+def _use_or_command(schema: dict[str, Any]) -> None:
+    """Changes the JSON Schema of a component: `use` is required unless there is a `command`."""
+    schema["required"] = [name for name in schema.get("required", ()) if name != "use"]
+    schema["anyOf"] = [{"required": ["use"]}, {"required": ["command"]}]
+
+
 class ComponentEntry(_Entry):
     """A component."""
 
+    model_config = ConfigDict(json_schema_extra=_use_or_command)
+
     use: str
     """Module with one component, or `module:Class`."""
+    command: Words = []
+    """Instead of `use`: a program that carries out the iterations, and its arguments."""
+    reads: dict[str, str] = {}
+    """Ports of a program that read: name to message type."""
+    writes: dict[str, str] = {}
+    """Ports of a program that write: name to message type."""
     config: dict[str, Any] = {}
     channels: dict[str, str] = {}
     """Port to channel or pattern, where it differs from the class."""
@@ -74,6 +89,27 @@ class ComponentEntry(_Entry):
     """Wall time within which its process must end when it is stopped during the run."""
     memory_limit_mb: float | None = Field(None, gt=0.0, le=1e9)
     """Memory that it may use beyond that of its process at the start."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _program(cls, value: Any) -> Any:
+        """Sets `use` to the class that runs a program."""
+        if not isinstance(value, dict):
+            return value
+        reads, writes = value.get("reads", {}), value.get("writes", {})
+        if "command" not in value:
+            if reads or writes:
+                raise ValueError(
+                    "'reads' and 'writes' are for a program, with 'command'; a class declares its ports itself"
+                )
+            return value
+        if "use" in value:
+            raise ValueError("both 'use' and 'command'; keep one of them")
+        if not all(isinstance(ports, dict) for ports in (reads, writes)):
+            return {**value, "use": MODULE}  # the mistake is reported for that key
+        if twice := sorted(reads.keys() & writes.keys()):
+            raise ValueError(f"'{twice[0]}' is read and written; give one of the ports another name")
+        return {**value, "use": f"{MODULE}:{program_class_name(reads, writes)}"}
 
 
 class RobotEntry(_Entry):

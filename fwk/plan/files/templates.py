@@ -10,7 +10,7 @@ from fwk.plan.files.schema import ComponentEntry
 from fwk.plan.files.source import Node
 from fwk.plan.files.substitution import substitute
 
-_FILLED = ("config", "channels", "providers", "needs", "offset")
+_FILLED = ("config", "channels", "providers", "needs", "offset", "command")
 """Keys of a component in whose texts `{key}` is replaced."""
 
 
@@ -126,6 +126,9 @@ class _Maker:
             filled = self._filled(Node(keys, node.place), asked)
             asked.node = Node({**node.value, **filled.value}, node.place)
             asked.config = [(layer, filled.value["config"])] if "config" in keys else []
+            if command := filled.child("command"):
+                words = command if isinstance(command.value, list) else Node([command], command.place)
+                asked.config.append((layer, Node({"command": words}, node.place)))
             self.made[name] = asked
 
     def _filled(self, node: Node, asked: Asked) -> Node:

@@ -16,7 +16,13 @@ from tests.harness.runs import PortBlock
 @pytest.mark.system
 @pytest.mark.parametrize(
     ("name", "n_files", "n_commands"),
-    [("commands-between-components.md", 5, 4), ("porting.md", 7, 4), ("devices.md", 3, 3), ("generator.md", 0, 10)],
+    [
+        ("commands-between-components.md", 5, 4),
+        ("porting.md", 7, 4),
+        ("devices.md", 3, 3),
+        ("generator.md", 0, 10),
+        ("other-languages.md", 6, 4),
+    ],
 )
 def test_the_page_works_word_for_word(
     tmp_path: Path, ports: PortBlock, name: str, n_files: int, n_commands: int

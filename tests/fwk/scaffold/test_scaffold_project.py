@@ -11,7 +11,7 @@ from fwk.scaffold.interface import generate_types
 from fwk.scaffold.new import new_component, new_project
 from fwk.scaffold.project import Project
 from fwk.scaffold.templates import kinds
-from tests.fwk.cli.cli_processes import run
+from tests.fwk.cli.cli_processes import environment, run
 from tests.harness.commands import BIN
 from tests.harness.runs import Launched, PortBlock, replayed
 
@@ -20,19 +20,29 @@ pytestmark = [pytest.mark.system]
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
+    """A project with two components of every kind; the tests of this file need a compiler for those in C."""
     made = Project(tmp_path_factory.mktemp("project"))
     write(new_project("garden", made.root))
     for kind in kinds():
         write(new_component(made, f"a_very_long_{kind}"[:24], kind))
         write(new_component(made, kind[0], kind))
     generate_types(made)
+    done = run(made.root, "make", "--silent", "-C", "native")
+    assert done.returncode == 0, done.stdout
     return made
 
 
 @pytest.mark.parametrize("tool", ["ruff format --check .", "ruff check .", "mypy", "pytest -q -p no:cacheprovider"])
 def test_every_kind_passes_the_projects_own_checks(project: Project, tool: str) -> None:
     program, *words = tool.split()
-    done = subprocess.run([BIN / program, *words], cwd=project.root, capture_output=True, text=True, timeout=250)
+    done = subprocess.run(
+        [BIN / program, *words],
+        cwd=project.root,
+        env=environment(project.root),
+        capture_output=True,
+        text=True,
+        timeout=250,
+    )
     assert done.returncode == 0, done.stdout + done.stderr
 
 
