@@ -25,7 +25,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
     write(new_project("garden", made.root))
     for kind in kinds():
         write(new_component(made, f"a_very_long_{kind}"[:24], kind))
-        write(new_component(made, kind[0], kind))
+        write(new_component(made, f"{kind[:2]}x", kind))
     generate_types(made)
     done = run(made.root, "make", "--silent", "-C", "native")
     assert done.returncode == 0, done.stdout
