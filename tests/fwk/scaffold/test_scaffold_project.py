@@ -9,7 +9,7 @@ import pytest
 from fwk.scaffold.changes import write
 from fwk.scaffold.interface import generate_types
 from fwk.scaffold.new import new_component, new_project
-from fwk.scaffold.project import Project
+from fwk.scaffold.project import NAME_MAX, Project
 from fwk.scaffold.templates import kinds
 from tests.fwk.cli.cli_processes import environment, run
 from tests.harness.commands import BIN
@@ -24,7 +24,7 @@ def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
     made = Project(tmp_path_factory.mktemp("project"))
     write(new_project("garden", made.root))
     for kind in kinds():
-        write(new_component(made, f"a_very_long_{kind}"[:24], kind))
+        write(new_component(made, f"{kind}{'x' * NAME_MAX}"[:NAME_MAX], kind))
         write(new_component(made, f"{kind[:2]}x", kind))
     generate_types(made)
     done = run(made.root, "make", "--silent", "-C", "native")

@@ -34,7 +34,8 @@ class Thing(Component):
         self.thing.value.value = 1.0
 
     def loop(self) -> None:
-        self.thing.value.value = max(0.0, self.thing.value.value - self.config.loss)
+        measured = self.thing.value
+        measured.value = max(0.0, measured.value - self.config.loss)
         self.thing.write()
 
 

@@ -27,4 +27,5 @@ def test_thing_finds_nothing_in_the_dark() -> None:
 def test_thing_camera_publishes_a_frame_in_each_iteration() -> None:
     bench = Bench(ThingCamera, size_px=32)
     bench.iterate(2)
-    assert [(frame.width_px, frame.height_px) for frame in bench.thing_image.sent] == [(32, 32), (32, 32)]
+    frames = bench.thing_image.sent
+    assert [(frame.width_px, frame.height_px) for frame in frames] == [(32, 32), (32, 32)]
