@@ -4,7 +4,7 @@ from fwk.clock import speed_word
 from fwk.recording.play.player import FASTEST, Player
 from fwk.recording.play.timeline import MomentError
 
-KEYS = "space pause, s step, ←/→ 1 s, ↑/↓ 10 s, g go to, +/- speed, m max, l loop, q quit"
+KEYS = "space pause  s step  ←→ 1 s  ↑↓ 10 s  g go to  +- speed  m max  l loop  q quit"
 _JUMPS_S = {"left": -1.0, "right": 1.0, "down": -10.0, "up": 10.0}
 _ERASE = ("\x7f", "\x08")
 
@@ -47,10 +47,12 @@ class Controls:
         player, timeline = self.player, self.player.timeline
         if self._typed is not None:
             return f"go to tick, time (12.5s) or bookmark: {self._typed}"
+        if self.said:
+            return self.said
         where = f"tick {player.tick}, " if player.tick is not None else ""
-        pace = "paused" if player.paused else f"speed {speed_word(player.speed)}"
+        pace = f"speed {speed_word(player.speed)}{', paused' if player.paused else ''}"
         moment = f"{where}{timeline.seconds(player.time_us):.2f} of {timeline.length_s:.2f} s"
-        return f"{moment}, {pace}, {player.messages} messages   {self.said or KEYS}"
+        return f"{moment}, {pace}, {player.messages} messages   {KEYS}"
 
     def _type(self, key: str, now_us: int) -> None:
         assert self._typed is not None
@@ -60,7 +62,7 @@ class Controls:
             try:
                 self.player.seek(self.player.timeline.find(self._typed), now_us)
             except MomentError as error:
-                self.said = str(error)
+                self.said = str(error).removeprefix(f"{self.player.timeline.path}: ")
             self._typed = None
         elif key == "escape":
             self._typed = None

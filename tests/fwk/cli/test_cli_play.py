@@ -1,6 +1,7 @@
 """`fwk play`: keys, bad input, what lcm-logger hears, and a live component on a played log."""
 
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -19,6 +20,7 @@ from tests.fwk.recording.recording_made import entries, write
 from tests.harness.fixtures import Launch, launch  # noqa: F401 - a fixture
 from tests.harness.logs import Recording
 from tests.harness.runs import PortBlock, fwk, write_files
+from tests.harness.terminals import Terminal
 from tests.programs.control_system import Steered
 from tests.programs.outside_system import outside_system
 
@@ -36,7 +38,7 @@ def test_keys_pause_jump_and_change_the_speed(controls: Controls) -> None:
     player = controls.player
     pressed(controls, "space", "+", "+", "right")
     assert (player.paused, player.speed, player.tick) == (True, 4.0, 21)
-    assert controls.line().startswith("tick 21, 1.05 of 5.00 s, paused, 0 messages   space pause")
+    assert controls.line().startswith("tick 21, 1.05 of 5.00 s, speed 4, paused, 0 messages   space pause")
     pressed(controls, "space", "-", "left", "l")
     assert (player.paused, player.speed, player.time_us, player.loop) == (False, 2.0, 50_000, True)
     pressed(controls, "m")
@@ -117,3 +119,22 @@ def test_a_live_component_reads_a_played_log(
     assert run.launched.wait() == 0, run.launched.text
     assert Recording(tmp_path / "live.lcm").decoded("r/total")[-1].heading_rad == 30.0
     assert "refused" not in run.launched.text
+
+
+@pytest.mark.system
+def test_play_obeys_keys_in_a_terminal(tmp_path: Path, ports: PortBlock) -> None:
+    recording(tmp_path / "log", ticks=100)
+    words = ("play", "log", "--paused", "--url", ports.public_url)
+    terminal = Terminal(tmp_path, sys.executable, "-m", "fwk.cli.main", *words)
+    for keys, shown in (
+        ("", "tick 1, 0.05 of 5.00 s, speed 1, paused, 0 messages"),
+        ("s", "tick 1, 0.05 of 5.00 s, speed 1, paused, 3 messages"),
+        ("ss", "tick 3, 0.15 of 5.00 s, speed 1, paused, 7 messages"),
+        ("g4s\r", "tick 80, 4.00 of 5.00 s, speed 1, paused, 7 messages"),
+        ("g700\r", "no tick 700; the last one is 100"),
+    ):
+        terminal.child.send(keys)
+        terminal.child.expect_exact(shown)
+    terminal.child.send("m ")
+    terminal.child.expect_exact("49 messages played on")
+    assert terminal.end() == 0
