@@ -9,10 +9,19 @@ from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import LogWriter
 from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import stamp_in
-from fwk.recording.log_contents import LOG_LINES, ChannelInfo, LogInfo, Note, note_in, type_names, whole_header
+from fwk.recording.log_contents import (
+    LOG_LINES,
+    ChannelInfo,
+    LogInfo,
+    Note,
+    excerpt_in,
+    note_in,
+    type_names,
+    whole_header,
+)
 from fwk.recording.log_index import BLOCK_BYTES, Block, LogIndex, index_path
 from fwk.recording.ticks import tick_of
-from fwk.recording.versions import RECORD
+from fwk.recording.versions import EXCERPT, RECORD
 from lcmtypes.core import header_t
 
 _Messages = list[tuple[bytes, int]]
@@ -33,6 +42,7 @@ class IndexedLogWriter(LogWriter):
         self._channels: defaultdict[str, _Counted] = defaultdict(_Counted)
         self._stamps: dict[str, list[header_t]] = {}
         self._notes: list[Note] = []
+        self._excerpt = ""
         self._record = b""
         self._time_us = 0
         self._blocks: list[Block] = []
@@ -56,6 +66,8 @@ class IndexedLogWriter(LogWriter):
                 self._record = messages[-1][0]
             elif channel == STAMP:
                 self._take_stamps(messages)
+            elif channel == EXCERPT:
+                self._excerpt = excerpt_in(channel, messages[-1][0])
             elif channel == LOG_LINES:
                 self._notes += filter(None, (note_in(channel, data) for data, _ in messages))
         self._appended.clear()
@@ -94,6 +106,7 @@ class IndexedLogWriter(LogWriter):
     def _info(self, size_bytes: int) -> LogInfo:
         counted = self._channels.values()
         info = LogInfo(self.path, size_bytes, sum(each.messages for each in counted), notes=self._notes)
+        info.excerpt = self._excerpt
         info.first_us = min(each.first_us for each in counted)
         info.last_us = max(each.last_us for each in counted)
         info.dropped = self.events - info.events

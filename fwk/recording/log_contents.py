@@ -10,7 +10,8 @@ from fwk.lcm.event_log import Event
 from fwk.lcm.messages import HEADER_SIZE, Header, type_name
 from fwk.lcm.type_registry import decoded, header_of, types_of
 from fwk.model.names import NOTE
-from lcmtypes.core import log_t
+from fwk.recording.versions import EXCERPT
+from lcmtypes.core import excerpt_t, log_t
 
 LOG_LINES = "fwk/log"
 """Channel of log lines."""
@@ -120,6 +121,8 @@ class LogInfo:
     damaged_bytes: int = 0
     notes: list[Note] = field(default_factory=list)
     """Bookmarks, in their order."""
+    excerpt: str = ""
+    """Which part of a recording the log is; empty: a whole recording, or a log of another program."""
     from_index: bool = False
     """Whether the log was not read: numbers of lost messages have no places, and no message was decoded."""
     changed: list[ChangedBytes] = field(default_factory=list)
@@ -149,6 +152,14 @@ def type_names(data: bytes, in_envelope: bool = False) -> str:
 def whole_header(data: bytes) -> Header | None:
     """Returns the header of a message; None if it has none, or is too short for one."""
     return header_of(data) if len(data) >= HEADER_SIZE else None
+
+
+def excerpt_in(channel: str, data: bytes) -> str:
+    """Returns the words of the message that says which part of a recording a log is; empty for other messages."""
+    try:
+        return str(excerpt_t.decode(data).text) if channel == EXCERPT else ""
+    except Exception:  # any error of generated code on broken bytes
+        return ""
 
 
 def note_in(channel: str, data: bytes) -> Note | None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fwk.lcm.event_log import LogError
 from fwk.lcm.stamped_log import StampedLog
-from fwk.recording.log_contents import ChannelInfo, LogInfo, note_in
+from fwk.recording.log_contents import ChannelInfo, LogInfo, excerpt_in, note_in
 from fwk.recording.log_index import LogIndex, changed
 
 _EVENTS_PER_CALL = 1000
@@ -42,6 +42,7 @@ def _read(reader: StampedLog, progress: Callable[[int], None]) -> LogInfo:
         info.dropped += max(0, event.number - following) if not reader.skipped_bytes else 0
         following = event.number + 1
         channels.setdefault(event.channel, ChannelInfo()).add(event)
+        info.excerpt = excerpt_in(event.channel, event.data) or info.excerpt
         if note := note_in(event.channel, event.data):
             info.notes.append(note)
         if not info.events % _EVENTS_PER_CALL:

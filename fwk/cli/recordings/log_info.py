@@ -60,6 +60,8 @@ def _summary(info: LogInfo) -> list[str]:
     made = [f"{info.file}: {info.size_bytes} bytes, {info.events} events on {len(info.channels)} channels"]
     ticks = f", ticks {info.ticks[0]} to {info.ticks[1]}" if info.ticks else ""
     made.append(f"duration {info.duration_s:.3f} s{ticks}")
+    if info.excerpt:
+        made.append(f"a part of a recording: {info.excerpt}")
     if info.dropped:
         made.append(f"{info.dropped} events were dropped by the program that wrote the log")
     if info.damaged_bytes:

@@ -59,6 +59,8 @@ def test_other_parts_say_so_and_are_not_replayed(tmp_path: Path) -> None:
     done = cut(log, tmp_path / "out", Selection(["cyan1/*"]), "3", "5")
     assert not done.replayable
     assert excerpt_in(done.out) == "log, from 3, to 5, channels cyan1/*"
+    for info in (log_info(done.out), log_info(done.out, check=True)):
+        assert info.excerpt == "log, from 3, to 5, channels cyan1/*"
     with pytest.raises(RecordingError, match=r"a part of a recording \(log, from 3, to 5, channels cyan1/\*\)"):
         list(Recording(done.out).ticks())
 
