@@ -47,6 +47,7 @@ MODULES = {
     "cam": "look.cam",
     "web": "look.web",
     "monitor": "look.monitor",
+    "foxglove": "look.foxglove",
     "spy": "look.spy",
     "doctor": "check.doctor",
     "completion": "complete.completion",

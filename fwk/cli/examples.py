@@ -107,6 +107,7 @@ EXAMPLES = {
         "fwk eval robots.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
     ),
     "fwk web": ("fwk web", "fwk web --run red --read-only", "fwk web --view yard_view --port 8000"),
+    "fwk foxglove": ("fwk foxglove", "fwk foxglove --run red --port 9000"),
     "fwk monitor": (
         "fwk monitor --template imu > turns.py",
         "fwk monitor turns.py --run red",

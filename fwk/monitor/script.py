@@ -37,7 +37,7 @@ class Script:
             raise ScriptError(_failure(file, error)) from error
         self.channels: Sequence[str] = made.get("channels", "")
         """Channels, or patterns of them."""
-        self._message: Callable[[str, Any, int], object] = made.get("message", None)
+        self._message: Any = made.get("message")
         self._end: Callable[[], object] = made.get("end", lambda: None)
         named = not isinstance(self.channels, str) and all(isinstance(each, str) for each in self.channels)
         if not self.channels or not named or not callable(self._message):

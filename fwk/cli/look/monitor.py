@@ -1,6 +1,5 @@
 """`fwk monitor SCRIPT.py`: a few lines of the user see the messages of a run or of a log."""
 
-import select
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -8,20 +7,15 @@ import typer
 
 from fwk.bus.public import PublicBus
 from fwk.cli.arguments import folder
+from fwk.cli.look.public_messages import heard
 from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import RunChoice, asking
-from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import client
-from fwk.control.client import ControlError
 from fwk.lcm.event_log import LogReader
-from fwk.lcm.messages import MessageError
-from fwk.lcm.type_registry import header_of
 from fwk.model.errors import hint
 from fwk.monitor.script import Script, ScriptError, templates
-
-_LOOK_US = US_PER_S
 
 
 def monitor(
@@ -68,10 +62,10 @@ def monitor(
 
 def _read(script: Script, log: Path, count: int | None) -> None:
     """Gives the messages of a log to the script, each with its time stamp there."""
-    heard = 0
+    taken = 0
     for event in LogReader(log):
-        heard += script.hear(event.channel, event.data, event.time_us)
-        if heard == count:
+        taken += script.hear(event.channel, event.data, event.time_us)
+        if taken == count:
             return
 
 
@@ -84,34 +78,16 @@ def _listen(script: Script, chosen: str | None, count: int | None) -> None:
         if not about["public_url"]:
             _complain(f"{about['plan']} has no public bus; monitor its recording with --from", FAILED)
         bus = PublicBus(about["public_url"])
+        taken = 0
         try:
-            _hear(script, bus, run, count)
+            for message in heard(bus, run):
+                taken += script.hear(*message)
+                if taken == count:
+                    return
         except KeyboardInterrupt:
             return
         finally:
             bus.close()
-
-
-def _hear(script: Script, bus: PublicBus, run: client.Client, count: int | None) -> None:
-    heard, look_us = 0, monotonic_us() + _LOOK_US
-    while True:
-        select.select([bus.fileno()], [], [], max(0, look_us - monotonic_us()) / US_PER_S)
-        try:
-            message = bus.receive()
-        except MessageError:  # a datagram of another program; the run names it
-            continue
-        if message is not None:
-            channel, data, _ = message
-            header = header_of(data)
-            heard += script.hear(channel, data, header.time_us if header else 0)
-            if heard == count:
-                return
-        if monotonic_us() >= look_us:
-            look_us = monotonic_us() + _LOOK_US
-            try:
-                run.ask("run")
-            except ControlError:  # the run has ended
-                return
 
 
 def _print_template(name: str) -> None:

@@ -1,0 +1,50 @@
+"""`fwk foxglove`: shows a run in Foxglove while it goes on."""
+
+from typing import Annotated
+
+import typer
+
+from fwk.bus.public import PublicBus
+from fwk.cli.look.public_messages import heard
+from fwk.cli.output import FAILED
+from fwk.cli.recordings.user_folders import use_folders
+from fwk.cli.run_options import RunChoice, asking
+from fwk.control import client
+from fwk.log_tools.export import INSTALL
+
+PORT = 8765
+
+
+def foxglove(
+    port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="port for Foxglove; 0: a free one")] = PORT,
+    chosen: RunChoice = None,
+) -> None:
+    """Serves the messages of a run to Foxglove until the run ends: each as its type, and poses, markers and log lines.
+
+    Open Foxglove, choose 'Open connection' and type the address that is printed. Other machines cannot connect.
+    """
+    try:
+        from fwk.log_tools.foxglove_server import FoxgloveServer
+    except ImportError as error:
+        typer.echo(f"error: Foxglove needs another library: {INSTALL}", err=True)
+        raise typer.Exit(FAILED) from error
+    with asking(), client.supervisor(chosen) as run:
+        about = run.ask("run")
+        for folder in about["folders"]:
+            use_folders([folder])
+        if not about["public_url"]:
+            typer.echo(f"error: {about['plan']} has no public bus; export its recording with fwk export", err=True)
+            raise typer.Exit(FAILED)
+        try:
+            server = FoxgloveServer(about["name"], port)
+        except (OSError, RuntimeError) as error:
+            typer.echo(f"error: port {port} cannot be opened: {error}; choose another with --port", err=True)
+            raise typer.Exit(FAILED) from error
+        bus = PublicBus(about["public_url"])
+        typer.echo(f"{about['name']}: ws://127.0.0.1:{server.port} for Foxglove; Ctrl-C ends")
+        try:
+            for message in heard(bus, run):
+                server.show(*message)
+        finally:
+            bus.close()
+            server.close()
