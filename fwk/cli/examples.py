@@ -109,7 +109,7 @@ EXAMPLES = {
     "fwk web": ("fwk web", "fwk web --run red --read-only", "fwk web --view yard_view --port 8000"),
     "fwk foxglove": ("fwk foxglove", "fwk foxglove --run red --port 9000"),
     "fwk monitor": (
-        "fwk monitor --template imu > turns.py",
+        "fwk monitor --template imu",
         "fwk monitor turns.py --run red",
         "fwk monitor turns.py --from log.lcm --count 100",
     ),
