@@ -45,10 +45,15 @@ def new_log(path: Path, replace: bool) -> Iterator[IndexedLogWriter]:
     Raises:
         LogError: the file exists and `replace` is false, cannot be written, or would hold no event.
     """
+
+    def fail(_: str) -> NoReturn:
+        """Ends the work; a recording would go on without messages."""
+        raise LogError(f"{path}: cannot be written: the disk is full, or failed")
+
     with new_file(path, replace) as part:
         index = index_path(part)
         try:
-            with IndexedLogWriter(part, _fail) as log:
+            with IndexedLogWriter(part, fail) as log:
                 yield log
             if not log.events:
                 raise LogError(f"{path}: not written: no event would be in it")
@@ -57,8 +62,3 @@ def new_log(path: Path, replace: bool) -> Iterator[IndexedLogWriter]:
                 os.replace(index, index_path(path))
         finally:
             index.unlink(missing_ok=True)
-
-
-def _fail(text: str) -> NoReturn:
-    """Ends the work when the disk is full; a recording would go on without messages."""
-    raise LogError(text)

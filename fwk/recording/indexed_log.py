@@ -3,6 +3,7 @@
 import zlib
 from collections import defaultdict
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 from fwk.lcm.envelope import STAMP
@@ -37,7 +38,8 @@ class IndexedLogWriter(LogWriter):
 
     def __init__(self, path: Path, report: Callable[[str], None]) -> None:
         super().__init__(path, report)
-        index_path(path).unlink(missing_ok=True)
+        with suppress(OSError):  # the index of a log that was here before; it does not fit the new one anyway
+            index_path(path).unlink(missing_ok=True)
         self._appended: defaultdict[str, _Messages] = defaultdict(list)  # since the last flush
         self._channels: defaultdict[str, _Counted] = defaultdict(_Counted)
         self._stamps: dict[str, list[header_t]] = {}
@@ -85,7 +87,7 @@ class IndexedLogWriter(LogWriter):
         if self._file.closed:
             return
         super().close()
-        if self.dropped or not self._end:
+        if self.dropped or not self._end or not self.path.is_file():
             return
         if self._end > self._begin:
             self._end_block()

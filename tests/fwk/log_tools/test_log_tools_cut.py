@@ -1,6 +1,7 @@
 """Parts of logs: intervals, channels, types; the new log appears whole or not at all."""
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ from fwk.recording.log_info import log_info
 from fwk.recording.replay.recording import Recording, RecordingError
 from lcmtypes.core import excerpt_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, channels_of, heard, recording
+from tests.fwk.recording.recording_made import write
 
 ALL = Selection()
 
@@ -151,3 +153,11 @@ def test_the_commands_tell_what_they_did(tmp_path: Path) -> None:
         "log": log, "out": out, "events": 6, "left_out": 0, "damaged_bytes": 0, "replayable": True,
     }  # fmt: skip
     assert run(app, ["cut", log, "-o", out]).exit_code == run(app, ["filter", log, "-o", out]).exit_code == 2
+
+
+def test_a_full_disk_ends_the_work_without_a_file(tmp_path: Path, small_disk: Callable[[int], Path]) -> None:
+    log = write(tmp_path / "log", [("big", bytes(300_000), time_us) for time_us in range(8)])
+    disk = small_disk(1)
+    result = CliRunner().invoke(app, ["filter", str(log), "--channels", "*", "-o", str(disk / "out")])
+    assert (result.exit_code, list(disk.iterdir())) == (2, [])
+    assert result.stderr == f"error: {disk}/out: cannot be written: the disk is full, or failed\n"

@@ -121,3 +121,8 @@ def test_a_log_that_lacks_events_has_no_index(tmp_path: Path) -> None:
         writer.append("a", b"1", 1)
         writer.dropped += 1
     assert not index_path(tmp_path / "log").exists()
+
+
+def test_a_device_has_no_index() -> None:
+    indexed(Path("/dev/null"), entries(ticks=1))
+    assert not index_path(Path("/dev/null")).exists()
