@@ -114,7 +114,7 @@ EXAMPLES = {
         "fwk monitor turns.py --from log.lcm --count 100",
     ),
     "fwk spy": ("fwk spy",),
-    "fwk doctor": ("fwk doctor",),
+    "fwk doctor": ("fwk doctor", "fwk doctor robots.yaml"),
     "fwk completion": ('eval "$(fwk completion bash)"',),
 }
 """Command, as it is typed, to examples of it."""

@@ -121,6 +121,16 @@ def generate(folder: Path) -> list[Path]:
     return list(dict.fromkeys(packages.values()))
 
 
+def stale_types(folder: Path) -> list[Path]:
+    """Returns the .lcm files of a folder whose generated classes are missing or of another content; reads only."""
+    marks = {path.name: path.read_text() for path in folder.rglob(".*.generated")}
+    return [
+        path
+        for path in sorted(folder.glob("*.lcm"))
+        if marks.get(f".{path.stem}.generated") != _mark(path.read_text(errors="replace"))
+    ]
+
+
 def _read(sources: Iterable[Path]) -> list[LcmFile]:
     files, mistakes = [], []
     for source in sources:

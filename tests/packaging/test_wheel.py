@@ -83,6 +83,11 @@ def test_the_wheel_holds_code_types_and_launch_files(wheel: Path) -> None:
         "lcmtypes/core/header_t.pyi",
         "lcmtypes/soccer/__init__.py",
         "launch/soccer.yaml",
+        "fwk/scaffold/native/fwk.h",
+        "fwk/scaffold/templates/c/native/Makefile",
+        "fwk/scaffold/templates/project/gitignore",
+        "fwk/scaffold/templates/stages/lcmtypes/thing.lcm",
+        "fwk/scaffold/templates/stages/things/thing.py",
     }
     assert wanted <= names
     assert LEFTOVER not in names

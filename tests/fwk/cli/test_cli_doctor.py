@@ -83,6 +83,7 @@ def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.Mon
 def test_only_problems_that_stop_runs_are_failures(monkeypatch: pytest.MonkeyPatch, level: Severity, code: int) -> None:
     found = [lambda: Finding(level, "gears", "turning", "oil them" if code else "")]
     monkeypatch.setattr("fwk.cli.check.doctor.all_checks", lambda wanted: found)
+    monkeypatch.setattr("fwk.cli.check.doctor.system_checks", lambda plan: [])
     app = typer.Typer()
     app.command()(doctor)
     result = CliRunner().invoke(app, [])

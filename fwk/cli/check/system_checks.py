@@ -1,0 +1,151 @@
+"""Checks of installation, processes, clock and disk, and of a plan on this machine."""
+
+import os
+import re
+import tempfile
+from collections.abc import Callable, Iterable
+from importlib import metadata
+from pathlib import Path
+
+import psutil
+
+import lcmtypes
+from fwk.cli.check.machine_checks import Finding, Severity
+from fwk.cli.run.run_directory import RUNS
+from fwk.clock import US_PER_S, monotonic_us, wall_us
+from fwk.display.plan_overview import counted
+from fwk.lcm.typegen import stale_types
+from fwk.model.plan import Plan
+
+_REQUIREMENT = re.compile(r"([\w.-]+)(\[[^]]*\])?\s*(?:>=\s*([\d.]+))?")
+_TITLE = "fwk: "
+_OWNERS = (" supervisor",)
+_CLOCK_SOURCE = Path("/sys/devices/system/clocksource/clocksource0/current_clocksource")
+_FAST_CLOCKS = (
+    "tsc",
+    "kvm-clock",
+    "arch_sys_counter",
+    "hyperv_clocksource_tsc_page",
+    "hyperv_clocksource",
+    "xen",
+    "riscv_clocksource",
+)
+_EARLIEST_US = 1_735_689_600 * US_PER_S  # 2025-01-01: before it no version of fwk existed
+_DISK_BYTES = 8 << 20
+_DISK_BYTES_PER_S = 10 << 20  # a recording of ten robots is a tenth of that
+_PROCESSES_PER_CORE = 8
+
+
+def versions(requirements: Iterable[str] | None = None) -> Finding:
+    """Checks that the libraries are there, in versions that fwk works with; by default those that fwk names."""
+    subject, wrong, names = "versions of libraries", [], []
+    for text in metadata.requires("fwk") or () if requirements is None else requirements:
+        found = _REQUIREMENT.match(text)
+        if not found or "extra ==" in text:
+            continue
+        name, least = found[1], found[3]
+        try:
+            version = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            wrong.append(f"{name} is missing")
+        else:
+            if not least or _parts(version) >= _parts(least):
+                continue
+            wrong.append(f"{name} {version}, needed {least}")
+        names.append(f"'{name}>={least}'" if least else name)
+    if wrong:
+        return Finding(Severity.BAD, subject, ", ".join(wrong), f"pip install --upgrade {' '.join(names)}")
+    return Finding(Severity.OK, subject, "as needed")
+
+
+def _parts(version: str) -> list[int]:
+    return [int(each) for each in re.findall(r"\d+", version)[:3]]
+
+
+def stale_files(folders: Iterable[str] | None = None) -> Finding:
+    """Checks that the classes of message types are those of their .lcm files; by default those of all in use."""
+    subject = "message types"
+    old = [each for folder in (lcmtypes.__path__ if folders is None else folders) for each in stale_types(Path(folder))]
+    if old:
+        text = f"the classes of {', '.join(str(each) for each in old[:3])} are not those of the file"
+        parents = " ".join(dict.fromkeys(str(each.parent) for each in old))
+        return Finding(Severity.WARNING, subject, text, f"python -m fwk.lcm.typegen {parents}")
+    return Finding(Severity.OK, subject, "generated from their files")
+
+
+def orphans(titles: Callable[[], dict[int, tuple[int, str]]] | None = None) -> Finding:
+    """Checks that each process of a run has its supervisor; `titles` gives parent and title of all processes."""
+    subject = "processes of runs"
+    found = (titles or _titles)()
+    ours = {pid: (parent, title) for pid, (parent, title) in found.items() if title.startswith(_TITLE)}
+    left = [pid for pid, (parent, title) in ours.items() if parent not in ours and not title.endswith(_OWNERS)]
+    if left:
+        text = ", ".join(f"{pid} ({ours[pid][1].removeprefix(_TITLE)})" for pid in left[:5])
+        return Finding(
+            Severity.WARNING, subject, f"without a supervisor: {text}", f"kill -9 {' '.join(map(str, left))}"
+        )
+    runs = sum(title.endswith(_OWNERS) for _, title in ours.values())
+    return Finding(Severity.OK, subject, f"{counted(runs, 'run')}, no process left behind")
+
+
+def _titles() -> dict[int, tuple[int, str]]:
+    found = {}
+    for process in psutil.process_iter(["ppid", "cmdline"]):
+        found[process.pid] = (process.info["ppid"] or 0, " ".join(process.info["cmdline"] or ()))
+    return found
+
+
+def clock(source: Path = _CLOCK_SOURCE, now_us: Callable[[], int] = wall_us) -> Finding:
+    """Checks that the clock is set and quick to read."""
+    subject = "clock"
+    if now_us() < _EARLIEST_US:
+        return Finding(
+            Severity.WARNING,
+            subject,
+            "the date is before 2025: times in logs are wrong",
+            "sudo timedatectl set-ntp true",
+        )
+    name = source.read_text().strip() if source.is_file() else ""
+    if name and name not in _FAST_CLOCKS:
+        advice = f"echo tsc | sudo tee {source}"
+        return Finding(
+            Severity.WARNING, subject, f"the kernel reads '{name}', which is slow: ticks take longer", advice
+        )
+    return Finding(Severity.OK, subject, f"set, read from {name}" if name else "set")
+
+
+def disk(folder: Path | None = None, now_us: Callable[[], int] = monotonic_us) -> Finding:
+    """Checks that the disk of the run directories is there and takes recordings quickly."""
+    place = folder or Path.home() / RUNS
+    subject = f"disk of {place}"
+    there = next(each for each in (place, *place.parents) if each.is_dir())
+    try:
+        with tempfile.TemporaryFile(dir=there) as file:
+            began = now_us()
+            file.write(bytes(_DISK_BYTES))
+            file.flush()
+            os.fsync(file.fileno())
+            seconds = max(now_us() - began, 1) / US_PER_S
+    except OSError as error:
+        return Finding(Severity.BAD, subject, f"{error.strerror}: nothing is recorded", f"df -h {there}")
+    rate = _DISK_BYTES / seconds
+    text = f"writes {rate / (1 << 20):.0f} MiB/s"
+    if rate < _DISK_BYTES_PER_S:
+        advice = "fwk-launch FILE --record /dev/shm/log.lcm"
+        return Finding(Severity.WARNING, subject, f"{text}: a recording of a large system may lose messages", advice)
+    return Finding(Severity.OK, subject, text)
+
+
+def cores(plan: Plan, count: int | None = None) -> Finding:
+    """Checks that the machine has enough cores for the processes of a plan."""
+    cores_ = count or len(os.sched_getaffinity(0))
+    text = f"{counted(len(plan.hosts), 'process')} on {counted(cores_, 'core')}"
+    if len(plan.hosts) > _PROCESSES_PER_CORE * cores_:
+        slow = "late components in real time" if plan.clock == "wall" else "slow ticks"
+        return Finding(Severity.WARNING, f"cores for {plan.name}", f"{text}: {slow}", "fwk-launch FILE --hosting robot")
+    return Finding(Severity.OK, f"cores for {plan.name}", text)
+
+
+def system_checks(plan: Plan | None) -> list[Callable[[], Finding]]:
+    """Returns the checks of this module; with a plan, also that of its processes."""
+    return [versions, stale_files, orphans, clock, disk, *([lambda: cores(plan)] if plan else [])]
