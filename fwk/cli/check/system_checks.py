@@ -13,7 +13,7 @@ import lcmtypes
 from fwk.cli.check.machine_checks import Finding, Severity
 from fwk.cli.run.run_directory import RUNS
 from fwk.clock import US_PER_S, monotonic_us, wall_us
-from fwk.display.plan_overview import counted
+from fwk.display.plan_overview import counted, fewer_processes
 from fwk.lcm.typegen import stale_types
 from fwk.model.plan import Plan
 
@@ -139,10 +139,12 @@ def disk(folder: Path | None = None, now_us: Callable[[], int] = monotonic_us) -
 def cores(plan: Plan, count: int | None = None) -> Finding:
     """Checks that the machine has enough cores for the processes of a plan."""
     cores_ = count or len(os.sched_getaffinity(0))
-    text = f"{counted(len(plan.hosts), 'process')} on {counted(cores_, 'core')}"
+    text = f"{counted(len(plan.hosts), 'process', 'processes')} on {counted(cores_, 'core')}"
     if len(plan.hosts) > _PROCESSES_PER_CORE * cores_:
         slow = "late components in real time" if plan.clock == "wall" else "slow ticks"
-        return Finding(Severity.WARNING, f"cores for {plan.name}", f"{text}: {slow}", "fwk-launch FILE --hosting robot")
+        return Finding(
+            Severity.WARNING, f"cores for {plan.name}", f"{text}: {slow}", f"fwk-launch FILE {fewer_processes(plan)}"
+        )
     return Finding(Severity.OK, f"cores for {plan.name}", text)
 
 

@@ -83,7 +83,7 @@ def test_too_few_cores_for_a_plan_are_found(tmp_path: Path, monkeypatch: pytest.
     assert checks.cores(plan, 2) == Finding(Severity.OK, "cores for many", "9 processes on 2 cores")
     found = checks.cores(plan, 1)
     assert (found.level, found.text) == (Severity.WARNING, "9 processes on 1 core: late components in real time")
-    assert found.advice == "fwk-launch FILE --hosting robot"
+    assert found.advice == "fwk-launch FILE --hosting single"
     monkeypatch.chdir(tmp_path)
     app = typer.Typer()
     app.command()(doctor)
