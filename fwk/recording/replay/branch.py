@@ -15,6 +15,7 @@ from fwk.gateway.connections import Sink
 from fwk.lcm import envelope
 from fwk.lcm.messages import sequence_of
 from fwk.model.channel_table import facts_in
+from fwk.model.names import LINES
 from fwk.model.plain_values import value_messages, value_of
 from fwk.model.plan import ComponentPlan
 from fwk.model.tick_events import (
@@ -152,6 +153,8 @@ class Branch(Replay):
             elif component.index not in running:
                 self.absent[component.name] = f"it did not run in tick {tick}"
         self.absent |= dict.fromkeys(plan.outside, "messages from outside end")
+        if any(channel.name == LINES and channel.readers for channel in plan.channels):
+            self.absent[LINES] = "no component reads log lines after the branch"
 
     def _live_tick(self, settings: Sequence[NewSettings]) -> None:
         """Runs a tick as the main loop does, and records it."""

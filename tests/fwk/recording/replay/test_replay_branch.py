@@ -1,0 +1,164 @@
+"""A branch in memory: state and sequence numbers continue; late, lost and absent participants are handled or named."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from fwk import Component, MainLoop, Reads, Writes
+from fwk.lcm.messages import sequence_of
+from fwk.model.plan import Plan
+from fwk.model.tick_events import (
+    HostLate,
+    HostLost,
+    HostStarted,
+    HostStopped,
+    MainLoopGiven,
+    StageBegun,
+    StageDone,
+    TickEvent,
+    events_of,
+)
+from fwk.recording.replay.branch import Branch, with_classes
+from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.testing.plans import plan_of
+from lcmtypes.core import tick_record_t
+from lcmtypes.robot import imu_t
+from lcmtypes.soccer import pose_t
+from tests.fwk.recording.replay.replay_logs import PERIOD_US, HandMadeLog
+
+SENSOR, COUNTER = 0, 1
+ACQUIRE, THINK = 1, 5
+
+
+class Sensor(Component):
+    """Counts its iterations."""
+
+    stage = "sensor_acquire"
+    imu: Writes[imu_t]
+
+    def loop(self) -> None:
+        self.imu.value.heading_rad += 1.0
+        self.imu.write()
+
+
+class Counter(Component):
+    """Sums up what it hears."""
+
+    stage = "think"
+    main_loop: MainLoop
+    imu: Reads[imu_t]
+    pose: Writes[pose_t]
+
+    def loop(self) -> None:
+        self.pose.value.heading_rad += sum(each.heading_rad for each in self.imu.fresh)
+        self.pose.write()
+
+
+class Doubling(Sensor):
+    """Writes twice in each iteration."""
+
+    def loop(self) -> None:
+        super().loop()
+        super().loop()
+
+
+class Loud:
+    """Sink of a branch that keeps everything."""
+
+    def __init__(self) -> None:
+        self.records: list[tick_record_t] = []
+        self.messages: list[tuple[str, bytes, int]] = []
+
+    def message(self, channel: str, data: bytes, time_us: int) -> None:
+        if channel == "fwk/record":
+            self.records.append(tick_record_t.decode(data))
+        else:
+            self.messages.append((channel, data, time_us))
+
+    def tick(self) -> None:
+        pass
+
+    def close(self) -> None:
+        pass
+
+    def poses(self) -> list[tuple[int, float]]:
+        """Returns sequence number and heading of the counter's messages."""
+        found = [data for channel, data, _ in self.messages if channel == "r/pose"]
+        return [(sequence_of(data), pose_t.decode(data).heading_rad) for data in found]
+
+
+def plan() -> Plan:
+    return plan_of({"r/sensor": Sensor, "r/counter": Counter})
+
+
+def recorded(path: Path, ticks: int = 3, last: Callable[[list[TickEvent]], list[TickEvent]] = list) -> Recording:
+    """A recording of some ticks; `last` changes the events of the last one."""
+    log, total = HandMadeLog(path, plan()), 0.0
+    for tick in range(1, ticks + 1):
+        events: list[TickEvent] = [HostStarted(host, 1, 0) for host in (SENSOR, COUNTER)] if tick == 1 else []
+        events += [StageBegun(ACQUIRE, ACQUIRE), StageDone(SENSOR, tick, ACQUIRE)]
+        events += [StageBegun(THINK, THINK), StageDone(COUNTER, tick, THINK)]
+        imu, pose = imu_t(), pose_t()
+        total += tick
+        imu.heading_rad, pose.heading_rad = float(tick), total
+        log.message("r/imu", imu, "r/sensor", tick, ACQUIRE)
+        changed = last(events) if tick == ticks else events
+        if StageDone(COUNTER, tick, THINK) in changed:
+            log.message("r/pose", pose, "r/counter", tick, THINK)
+        log.tick(tick, changed)
+    log.replayed()
+    return Recording(path)
+
+
+def branched(recording: Recording, to_tick: int = 3, until: int = 5) -> tuple[Branch, Loud]:
+    """A branch after `to_tick`, and its messages."""
+    branch, sink = Branch(recording), Loud()
+    branch.run(to_tick)
+    branch.check_state()
+    branch.go_on(until, sink)
+    return branch, sink
+
+
+def test_state_numbers_and_time_continue(tmp_path: Path) -> None:
+    branch, sink = branched(recorded(tmp_path / "log"))
+    assert sink.poses() == [(4, 1.0 + 2 + 3 + 4), (5, 1.0 + 2 + 3 + 4 + 5)]
+    assert [time_us for _, _, time_us in sink.messages[::2]] == [4 * PERIOD_US, 5 * PERIOD_US]
+    stages = [StageBegun(ACQUIRE, ACQUIRE), StageDone(0, 4, ACQUIRE), StageBegun(THINK, THINK), StageDone(1, 4, THINK)]
+    assert list(events_of(sink.records[0].events)) == stages
+    assert (branch.absent, branch.differences) == ({}, [])
+
+
+def test_numbers_of_another_class_have_no_gap(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log")
+    with_classes(recording, {"r/sensor": f"{__name__}:Doubling"})
+    branch, sink = Branch(recording, {"r/sensor": ""}), Loud()
+    branch.run(3)
+    branch.go_on(4, sink)
+    numbers = [sequence_of(data) for channel, data, _ in sink.messages if channel == "r/imu"]
+    assert numbers == [4, 5]
+    assert sink.poses() == [(4, 1.0 + 2 + 3 + 7 + 8)]
+    assert branch.differences == []
+
+
+def test_a_late_iteration_ends_in_the_first_live_tick(tmp_path: Path) -> None:
+    late = recorded(tmp_path / "log", last=lambda events: [*events[:-1], HostLate(COUNTER)])
+    _, sink = branched(late)
+    assert next(iter(events_of(sink.records[0].events))) == StageDone(COUNTER, 3, THINK)
+    assert sink.poses() == [(3, 6.0), (4, 10.0), (5, 15.0)]
+
+
+def test_a_host_that_leaves_finalizes_and_stays_absent(tmp_path: Path) -> None:
+    branch, sink = branched(recorded(tmp_path / "log", last=lambda events: [*events, HostStopped(COUNTER)]))
+    assert sink.poses() == []
+    assert branch.absent == {"r/counter": "it did not run in tick 3"}
+    lost, sink = branched(recorded(tmp_path / "lost", last=lambda events: [*events[:-2], HostLost(COUNTER)]))
+    assert lost.absent == branch.absent
+    assert all(channel == "r/imu" for channel, _, _ in sink.messages)
+
+
+def test_a_main_loop_that_cannot_be_rebuilt_is_refused(tmp_path: Path) -> None:
+    given = recorded(tmp_path / "log", last=lambda events: [MainLoopGiven(COUNTER), *events])
+    branched(given, to_tick=2)
+    with pytest.raises(RecordingError, match="cannot go on live after tick 3: in tick 3 the main loop passes to a"):
+        branched(given)
