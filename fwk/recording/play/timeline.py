@@ -11,13 +11,11 @@ from fwk.clock import US_PER_S
 from fwk.lcm.event_log import Event, LogError, LogReader
 from fwk.lcm.messages import fingerprint
 from fwk.lcm.type_registry import header_of
-from fwk.recording.versions import BROKEN, PLAN
+from fwk.recording.log_contents import note_in
+from fwk.recording.versions import BROKEN, PLAN, RECORD
 from lcmtypes import core_v1
-from lcmtypes.core import log_t, tick_record_t
+from lcmtypes.core import tick_record_t
 
-RECORD, LINES = "fwk/record", "fwk/log"
-SUPERVISOR = "supervisor"
-"""Component in the log lines of `fwk note`."""
 WITHOUT_TICKS_US = 50_000
 """Logged time of one step in a log without ticks."""
 _TAIL_BYTES = 1 << 20
@@ -169,8 +167,8 @@ class Timeline:
                 begins = None
             if event.channel == RECORD:
                 begins = _tick_after(event.data)
-            elif event.channel == LINES and (text := _note_of(event.data)):
-                self._notes.append((text, moment))
+            elif note := note_in(event.channel, event.data):
+                self._notes.append((note.text, moment))
             if event.channel != PLAN:  # the plan belongs to the first tick
                 position = self._reader.position
 
@@ -186,8 +184,8 @@ class Timeline:
             if begins:
                 moment = Moment(position, tick, event.time_us)
                 yield moment
-            if event.channel == LINES and moment and (text := _note_of(event.data)):
-                self._notes.append((text, moment))
+            if moment and (note := note_in(event.channel, event.data)):
+                self._notes.append((note.text, moment))
             position = self._reader.position
 
     def _last_time_us(self) -> int:
@@ -206,12 +204,3 @@ def _tick_after(record: bytes) -> int | None:
         return int(kind.decode(record).tick) + 1
     except BROKEN:
         return None
-
-
-def _note_of(line: bytes) -> str:
-    """Returns the text of a line that `fwk note` may have written; empty: another component wrote it."""
-    try:
-        said = log_t.decode(line)
-    except BROKEN:
-        return ""
-    return str(said.text) if said.component == SUPERVISOR else ""

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from fwk.lcm.event_log import LogWriter
+from fwk.model.names import NOTE
 from lcmtypes.core import log_t, plan_t, tick_record_t
 from tests.fwk.recording.recording_made import PERIOD_US, entries, odometry, write
 from tests.fwk.recording.recording_made import entry as made_entry
@@ -38,4 +39,5 @@ def line(component: str, text: str) -> bytes:
     """Returns an encoded log line."""
     said = log_t()
     said.component, said.text = component, text
+    said.file = NOTE if component == "supervisor" else "drive.py"
     return bytes(said.encode())

@@ -6,8 +6,9 @@ import pytest
 
 from fwk.lcm.event_log import LogError, LogWriter
 from fwk.recording.play.timeline import MomentError, Timeline
+from lcmtypes.core import log_t, plan_t
 from tests.fwk.recording.play.play_logs import foreign, heard, recording
-from tests.fwk.recording.recording_made import PERIOD_US
+from tests.fwk.recording.recording_made import PERIOD_US, write
 
 
 def test_a_recorded_tick_begins_after_the_record_before(tmp_path: Path) -> None:
@@ -73,3 +74,11 @@ def test_ticks_before_damage_and_after_it_are_found(tmp_path: Path) -> None:
     log.write_bytes(data)
     timeline = Timeline(log)
     assert timeline.find("7").time_us == 7 * PERIOD_US
+
+
+def test_only_lines_of_fwk_note_are_bookmarks(tmp_path: Path) -> None:
+    other = log_t()
+    other.component, other.file, other.text = "supervisor", "fwk/supervisor/processes/hosts.py", "a waits for b"
+    log = write(tmp_path / "log", [("fwk/plan", plan_t().encode(), 0), ("fwk/log", other.encode(), 0)])
+    with pytest.raises(MomentError, match="no bookmark 'waits'"):
+        Timeline(log).find("waits")
