@@ -1,6 +1,7 @@
 """A project with a component of every kind passes its own lint, types and tests, runs and replays."""
 
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pexpect
@@ -11,43 +12,51 @@ from fwk.scaffold.interface import generate_types
 from fwk.scaffold.new import new_component, new_project
 from fwk.scaffold.project import NAME_MAX, Project
 from fwk.scaffold.templates import kinds
-from tests.fwk.cli.cli_processes import environment, run
+from tests.fwk.cli.cli_processes import environment
 from tests.harness.commands import BIN
 from tests.harness.runs import Launched, PortBlock, replayed
 
 pytestmark = [pytest.mark.system]
 
 
-@pytest.fixture(scope="module")
-def project(tmp_path_factory: pytest.TempPathFactory) -> Project:
-    """A project with two components of every kind; the tests of this file need a compiler for those in C."""
-    made = Project(tmp_path_factory.mktemp("project"))
-    write(new_project("garden", made.root))
+def made(folder: Path, name_of: Callable[[str], str]) -> Project:
+    """Returns a project with a component of every kind."""
+    project = Project(folder)
+    write(new_project("garden", folder))
     for kind in kinds():
-        write(new_component(made, f"{kind}{'x' * NAME_MAX}"[:NAME_MAX], kind))
-        write(new_component(made, f"{kind[:2]}x", kind))
-    generate_types(made)
-    done = run(made.root, "make", "--silent", "-C", "native")
-    assert done.returncode == 0, done.stdout
-    return made
+        write(new_component(project, name_of(kind), kind))
+    generate_types(project)
+    return project
 
 
-@pytest.mark.parametrize("tool", ["ruff format --check .", "ruff check .", "mypy", "pytest -q -p no:cacheprovider"])
-def test_every_kind_passes_the_projects_own_checks(project: Project, tool: str) -> None:
-    program, *words = tool.split()
+def check(project: Project, *command: str) -> None:
     done = subprocess.run(
-        [BIN / program, *words],
+        [BIN / command[0], *command[1:]],
         cwd=project.root,
         env=environment(project.root),
-        capture_output=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
         text=True,
         timeout=250,
     )
-    assert done.returncode == 0, done.stdout + done.stderr
+    assert done.returncode == 0, done.stdout
 
 
-def test_every_kind_runs_and_replays(project: Project, ports: PortBlock) -> None:
-    assert run(project.root, "fwk", "check", "garden.yaml").returncode == 0
+def test_code_is_formatted_for_short_and_long_names(tmp_path: Path) -> None:
+    made(tmp_path, lambda kind: f"{kind}{'x' * NAME_MAX}"[:NAME_MAX])
+    project = made(tmp_path, lambda kind: f"{kind[:2]}x")
+    check(project, "ruff", "format", "--check", ".")
+    check(project, "ruff", "check", ".")
+
+
+def test_every_kind_passes_types_and_tests_runs_and_replays(
+    tmp_path: Path, needs: Callable[..., None], ports: PortBlock
+) -> None:
+    needs("cc", "make")
+    project = made(tmp_path, lambda kind: f"my_{kind}")
+    check(project, "pytest", "-q", "-p", "no:cacheprovider")  # builds the program in C, too
+    check(project, "mypy")
+    check(project, "fwk", "check", "garden.yaml")
     arguments = ("garden.yaml", "--ticks", "20", "--speed", "max", "--record", "log.lcm", "--hosting", "single")
     launched = Launched(project.root, ports, (*arguments, "--set", f"public_url={ports.public_url}"), {})
     try:
