@@ -14,7 +14,7 @@ PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures clean
+.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures web-pictures clean
 
 help:  ## Lists what can be made
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -64,6 +64,12 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg from its recording
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
 	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
+
+web-pictures: types  ## Plays a match and takes docs/web-*.png in a headless Chromium
+	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --run pictures --detach --no-record
+	$(BIN)/fwk web --run pictures --port 8461 & console=$$!; \
+	$(BIN)/python -m tools.docs.web_pictures http://127.0.0.1:8461 pictures; code=$$?; \
+	kill $$console; $(BIN)/fwk stop --all --run pictures; exit $$code
 
 clean:  ## Removes what was made, the environment too
 	rm -rf .venv build/lib build/bdist.* build/site dist fwk.egg-info lcmtypes/*/ tests/components/lcmtypes/*/ tests/simulation/messages/lcmtypes/*/ .mypy_cache .ruff_cache .pytest_cache .hypothesis

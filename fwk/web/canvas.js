@@ -23,7 +23,7 @@ export default {
     requestAnimationFrame(this.ask);
   },
   beforeUnmount() { this.open = false; },
-  watch: { hidden() { this.paint(); }, url() { this.trails.clear(); this.scale = 0; } },
+  watch: { hidden() { this.paint(); } },
   methods: {
     async ask(now) {
       if (!this.open) return;

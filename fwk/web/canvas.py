@@ -25,6 +25,11 @@ class Canvas(Element, component="canvas.js"):
         self._props["hidden"] = list(layers)
         self.update()
 
+    def show(self, url: str) -> None:
+        """Asks another address for drawings."""
+        self._props["url"] = url
+        self.update()
+
     def on_pick(self, take: Callable[[str], Any]) -> None:
         """Calls a function with the name of a chosen shape; empty: none."""
         self.on("pick", lambda event: take(event.args))

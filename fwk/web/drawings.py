@@ -4,6 +4,7 @@ A browser asks for the next drawing after it has shown the last one, so a browse
 """
 
 import asyncio
+from fnmatch import fnmatchcase
 from typing import Any
 
 import cv2
@@ -11,10 +12,16 @@ from fastapi import FastAPI
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
+from fwk.clock import monotonic_us
 from fwk.component.images import Ring
 from fwk.control.client import ControlError
+from fwk.display.graph import graph
+from fwk.display.graph_svg import svg
+from fwk.lcm.event_log import LogError
+from fwk.recording.play.timeline import MomentError
 from fwk.web.console import Console
 from fwk.web.general_view import GeneralView
+from fwk.web.rates import Rates
 from fwk.web.scene import Newest, Scene
 from fwk.web.view import View
 
@@ -54,6 +61,34 @@ def add_drawings(app: FastAPI, console: Console) -> None:
             return PlainTextResponse(f"{channel}: no frame", 404, _NO_STORE)
         return Response(data, 200, _NO_STORE, "image/jpeg")
 
+    async def graph_svg(request: Request) -> Response:
+        link = console.runs.link(request.query_params.get("run", ""))
+        around = request.query_params.get("around", "")
+        try:
+            status, channels = await link.status(), await link.channels()
+        except ControlError as error:
+            return PlainTextResponse(str(error), 503, _NO_STORE)
+        rates = console.rates.setdefault(status["pid"], Rates()).measure(channels, monotonic_us())
+        rows = [{**row, "rate_hz": rates.get(row["channel"], 0.0)} for row in channels]
+        stages = dict.fromkeys((*status["order"], *(name for each in status["components"] for name in each["stages"])))
+        used = [name for name in stages if any(name in each["stages"] for each in status["components"])]
+        found = graph(status["plan"], used, status["components"], rows)
+        return Response(svg(found.around([around]) if around else found), 200, _NO_STORE, "image/svg+xml")
+
+    async def recorded(request: Request) -> Response:
+        name, number, tick = (request.query_params.get(key, "") for key in ("log", "view", "tick"))
+        try:
+            run = console.recorded(name)
+            views = views_of_recording(console, name)
+            view = views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
+            newest = await asyncio.to_thread(run.newest, int(tick) if tick.isdecimal() else 1)
+        except (LogError, MomentError) as error:
+            return PlainTextResponse(str(error), 404, _NO_STORE)
+        chosen = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
+        return Response(await asyncio.to_thread(drawn, view, chosen), 200, _NO_STORE, "application/json")
+
+    app.add_route("/graph.svg", graph_svg)
+    app.add_route("/recorded", recorded)
     app.add_route("/drawing", drawing)
     app.add_route("/image", image)
 
@@ -62,6 +97,21 @@ async def views_of(console: Console, run: str) -> list[View]:
     """Returns the views that are offered for a run: those of projects first."""
     channels = [row["channel"] for row in await console.runs.link(run).channels()]
     return [*console.extensions.views_for(channels), GeneralView()]
+
+
+def views_of_recording(console: Console, name: str) -> list[View]:
+    """Returns the views that are offered for a recording.
+
+    Raises:
+        LogError: it cannot be read.
+    """
+    return [*console.extensions.views_for(console.recorded(name).info.channels), GeneralView()]
+
+
+def wants(view: View, channel: str, value: Any) -> bool:
+    """Tells whether a view draws a message."""
+    named = any(fnmatchcase(channel, pattern) for pattern in view.channels)
+    return named and {*view.members} <= {*value.__slots__}
 
 
 def drawn(view: View, newest: dict[str, Any]) -> bytes:

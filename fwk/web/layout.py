@@ -20,8 +20,11 @@ PAGES = {
     "/": ("System", "account_tree"),
     "/view": ("View", "map"),
     "/board": ("Blackboard", "dashboard"),
+    "/graph": ("Graph", "hub"),
+    "/plots": ("Plots", "show_chart"),
     "/settings": ("Settings", "tune"),
     "/log": ("Log", "subject"),
+    "/recordings": ("Recordings", "history"),
 }
 """Address of a page to its title and icon."""
 SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}

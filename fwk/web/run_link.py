@@ -72,7 +72,9 @@ class RunLink:
         Raises:
             NotRunningError: it does not exist.
         """
-        found = (await self._runs.all()).get(self.name)
+        runs = await self._runs.all()
+        ports = {str(run.get("bus_port")): run for run in runs.values()}
+        found = runs.get(self.name) or ports.get(self.name)
         if found is None:
             raise NotRunningError(f"'{self.name}' does not run")
         return found

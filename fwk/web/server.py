@@ -20,7 +20,7 @@ from fwk.web.drawings import add_drawings
 from fwk.web.extensions import Extensions
 from fwk.web.layout import Frame
 from fwk.web.log_tail import LogTails
-from fwk.web.pages import board, log, settings, system, view
+from fwk.web.pages import board, graph, log, plots, recordings, settings, system, view
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
 
@@ -32,8 +32,11 @@ _BUILDERS: dict[str, Callable[[Frame], None]] = {
     "/": system.build,
     "/view": view.build,
     "/board": board.build,
+    "/graph": graph.build,
+    "/plots": plots.build,
     "/settings": settings.build,
     "/log": log.build,
+    "/recordings": recordings.build,
 }
 
 
@@ -127,7 +130,7 @@ def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> N
         role: Role = request.state.role
         frame = Frame(console, request, role, run, runs)
         frame.build(path, await _own_pages(console, frame))
-        if run:
+        if run or path == "/recordings":
             builder(frame)
         else:
             ui.label("nothing runs on this machine; start something with: fwk-launch FILE").classes("q-pa-md")

@@ -72,6 +72,7 @@ class Chromium:
             viewport={"width": width_px, "height": height_px},
             color_scheme="dark" if scheme == "dark" else "light",
             ignore_https_errors=True,
+            reduced_motion="reduce",  # menus that open at once, also on a busy machine
         )
         page = context.new_page()
         page.set_default_timeout(_WAIT_MS)

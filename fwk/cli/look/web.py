@@ -1,17 +1,14 @@
 """`fwk web`: the console in a browser."""
 
-import importlib.util
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
+from fwk.cli.run.console import MISSING, PORT, can_serve
 from fwk.cli.run.run_directory import RUNS, run_dirs
 from fwk.cli.run.run_record import read_record
 from fwk.cli.run_options import BAD_INPUT, FAILED
-
-PORT = 8460
-_LIBRARY = "nicegui"
 
 
 def web(
@@ -46,8 +43,8 @@ def web(
     On 127.0.0.1 the kernel tells which user a browser belongs to; only you and root are admitted. On any other address
     the console needs TLS and admits links with a token: one that may steer, one that may only look.
     """
-    if importlib.util.find_spec(_LIBRARY) is None:
-        typer.echo("error: the console needs NiceGUI: pip install 'fwk[web]'", err=True)
+    if not can_serve():
+        typer.echo(f"error: {MISSING}", err=True)
         raise typer.Exit(FAILED)
     from fwk.web.access import Access, is_loopback, new_tokens
 

@@ -16,6 +16,7 @@ from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
 from fwk.cli.examples import epilog
 from fwk.cli.output import BAD_INPUT, notice
+from fwk.cli.run.console import beside, check_library
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
 from fwk.cli.run.profile import write_profiles
@@ -115,6 +116,7 @@ def launch(
         typer.Option(parser=video_file, metavar="FILE.mp4", help="draw the run into a video when it has ended"),
     ] = None,
     watch: Annotated[bool, typer.Option("--watch", help="reload components when their source files change")] = False,
+    web: Annotated[bool, typer.Option("--web", help="serve the console for this run, as 'fwk web' does")] = False,
     plain: Annotated[bool, typer.Option("--plain", help="lines of text instead of the live display")] = False,
     _version: VersionFlag = False,
 ) -> None:
@@ -126,6 +128,8 @@ def launch(
         raise typer.BadParameter("--record and --no-record exclude each other; keep one")
     if video and no_record:
         raise typer.BadParameter("--video is made from the recording; leave out --no-record")
+    if web:
+        check_library()
     if debugpy and not debug:
         raise typer.BadParameter("--debugpy belongs to --debug NAME; name a component")
     if detach and debug and not debugpy:
@@ -171,6 +175,8 @@ def launch(
         )
         for line in (*introduction(plan), *advice(plan)):
             typer.echo(line)
+        if web:
+            typer.echo(f"console: {beside(name, run_dir)}")
         removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
         if removed:
             typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' keeps one")

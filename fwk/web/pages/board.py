@@ -4,9 +4,10 @@ from typing import Any
 
 from nicegui import ui
 
-from fwk.clock import US_PER_S, monotonic_us
+from fwk.clock import monotonic_us
 from fwk.control.client import ControlError
 from fwk.web.layout import Frame, body
+from fwk.web.rates import Rates
 from fwk.web.sending import send_form
 from fwk.web.words import age, rows_of, seconds
 
@@ -21,31 +22,8 @@ _COLUMNS = {
     "readers": "readers",
 }
 _WORDS = ("channel", "type", "writer", "readers")
-_LIST_S = 1.0
+_LIST_S = 2.0
 _SHOW_S = 0.25
-
-
-class Rates:
-    """Rates of channels from the numbers of messages in two answers."""
-
-    def __init__(self) -> None:
-        self._before: dict[str, int] = {}
-        self._before_us = 0
-        self._rates: dict[str, float] = {}
-
-    def measure(self, rows: list[dict[str, Any]], now_us: int) -> dict[str, float]:
-        """Returns messages a second by channel, since the last answer; empty for the first."""
-        elapsed_us = now_us - self._before_us
-        if self._before and elapsed_us < US_PER_S // 2:
-            return self._rates
-        if self._before:
-            self._rates = {
-                row["channel"]: max(0, row["messages"] - self._before.get(row["channel"], 0)) * US_PER_S / elapsed_us
-                for row in rows
-            }
-        self._before = {row["channel"]: row["messages"] for row in rows}
-        self._before_us = now_us
-        return self._rates
 
 
 def build(frame: Frame) -> None:
@@ -61,7 +39,9 @@ def build(frame: Frame) -> None:
                 for key, title in _COLUMNS.items()
             ]
             table = ui.table(rows=[], columns=columns, row_key="channel").classes("fwk-table")
-            table.props("dense flat bordered").props("data-name=channels").bind_filter_from(wanted, "value")
+            table.props("dense flat bordered virtual-scroll").props("data-name=channels").bind_filter_from(
+                wanted, "value"
+            )
         with ui.column().classes("fwk-half"):
             title = ui.label("choose a channel").classes("text-subtitle1").props("data-name=channel")
             about = ui.label("").classes("opacity-70")

@@ -4,7 +4,7 @@ from typing import Any
 
 from nicegui import ui
 
-from fwk.clock import rate_word, turns_word
+from fwk.clock import US_PER_S, monotonic_us, rate_word, turns_word
 from fwk.control.requests import Action
 from fwk.model.histogram import Histogram
 from fwk.web.layout import Frame, body
@@ -35,11 +35,13 @@ _COLUMNS = {
 }
 _WORDS = ("name", "state", "stage", "reason")
 _STATE_CELL = '<q-td :props="props"><span :class="`s-${props.value}`">{{ props.value }}</span></q-td>'
-_STEP_S = 1.0
+_FIGURES_US = 2 * US_PER_S
+"""Figures are shown anew so often, states at once: a browser needs long to draw a hundred rows."""
 
 
 def build(frame: Frame) -> None:
     """Makes the page."""
+    shown_us = 0
     with body():
         figures = ui.label("").props("data-name=figures")
         with ui.row().classes("items-center gap-1"):
@@ -51,7 +53,7 @@ def build(frame: Frame) -> None:
             for key, title in _COLUMNS.items()
         ]
         table = ui.table(rows=[], columns=columns, row_key="name", selection="multiple").classes("fwk-table")
-        table.props("dense flat bordered binary-state-sort").props("data-name=components")
+        table.props("dense flat bordered binary-state-sort virtual-scroll").props("data-name=components")
         table.bind_filter_from(wanted, "value")
         table.add_slot("body-cell-state", _STATE_CELL)
         table.on("row-click", lambda event: _open(frame, event.args[1]["name"]), [[], ["name"], None])
@@ -63,9 +65,10 @@ def build(frame: Frame) -> None:
             each.set_enabled(bool(names))
 
     def show(status: dict[str, Any]) -> None:
+        nonlocal shown_us
         rows = [row_of(each) for each in status["components"]]
-        if rows != table.rows:
-            table.rows = rows
+        if states_of(rows) != states_of(table.rows) or monotonic_us() > shown_us + _FIGURES_US:
+            table.rows, shown_us = rows, monotonic_us()
         figures.set_text(
             f"{len(rows)} components   {status['ticks_per_s']:.1f} ticks/s   late {status['late']}   "
             f"repeated {status['repeated']}   {status['run_dir']}"
@@ -85,6 +88,11 @@ def row_of(component: dict[str, Any]) -> dict[str, Any]:
         "mean_ms": round(component["mean_ms"], 2),
         "worst_ms": round(component["worst_ms"], 1),
     }
+
+
+def states_of(rows: list[dict[str, Any]]) -> list[tuple[str, ...]]:
+    """Returns what is shown at once."""
+    return [(row["name"], row["state"], row["reason"]) for row in rows]
 
 
 def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:

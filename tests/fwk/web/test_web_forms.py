@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from fwk.web.pages.board import Rates
 from fwk.web.pages.log import FilterMistakeError, filter_of
 from fwk.web.pages.settings import matches, tree_of
+from fwk.web.rates import Rates
 from fwk.web.sending import FieldError, fields_of, value_of
 from fwk.web.words import age, rows_of, seconds, size
 from lcmtypes.core import log_t

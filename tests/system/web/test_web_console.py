@@ -1,11 +1,15 @@
 """The console in a browser, on a real run of 105 components: looks, steers, and is not taken in."""
 
+import math
 import re
 import shutil
+import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+import cv2
 import pytest
 from playwright.sync_api import Locator, Page, expect
 
@@ -28,8 +32,14 @@ class Garden:
     console: Console
     browser: Chromium
 
+    @property
+    def name(self) -> str:
+        """Returns the name of the run, which no other run on this machine has."""
+        return f"garden{self.ports.bus}"
+
     def open(self, path: str = "/?run=garden", **look: object) -> Page:
-        return self.browser.open(f"{self.console.url}{path}", **look)  # type: ignore[arg-type]
+        own = path.replace("run=garden", f"run={self.name}")
+        return self.browser.open(f"{self.console.url}{own}", **look)  # type: ignore[arg-type]
 
     def state(self, component: str) -> str:
         with Client(supervisor_address(self.ports.bus)) as run:
@@ -41,7 +51,7 @@ class Garden:
             return int(run.ask("status", names=["a/mower"])["tick"])
 
     def launch(self) -> None:
-        self.run = Launched(self.folder, self.ports, ("garden.yaml", "--no-record"), {})
+        self.run = Launched(self.folder, self.ports, ("garden.yaml", "--run", self.name), {})
 
 
 @pytest.fixture(scope="module")
@@ -52,8 +62,9 @@ def garden(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Garden]:
     folder = tmp_path_factory.mktemp("garden")
     with PortBlock(2) as ports, Chromium(program) as browser:
         write_files(folder, garden_system(ports.public_url))
-        run = Launched(folder, ports, ("garden.yaml", "--no-record"), {})
-        console = Console(folder, "--view", "garden_web")
+        name = f"garden{ports.bus}"
+        run = Launched(folder, ports, ("garden.yaml", "--run", name), {})
+        console = Console(folder, "--view", "garden_web", "--run", name)
         made = Garden(folder, ports, run, console, browser)
         yield made
         assert browser.outside == []
@@ -81,8 +92,9 @@ def test_system_page_shows_all_and_steers_by_clicks(garden: Garden) -> None:
     page = garden.open()
     expect(page.locator("[data-name=figures]")).to_contain_text(f"{CROWD + 4} components")
     expect(row(page, "a/mower")).to_contain_text("running")
-    expect(row(page, f"crowd/n{CROWD - 1:03}")).to_contain_text("think")
     expect(row(page, "b/later")).to_contain_text("stopped")
+    page.get_by_label("filter").fill(f"n{CROWD - 1:03}")
+    expect(row(page, f"crowd/n{CROWD - 1:03}")).to_contain_text("think")
     page.get_by_label("filter").fill("a/")
     expect(page.locator("tbody tr")).to_have_count(3)
     choose(page, "a/watcher")
@@ -95,7 +107,7 @@ def test_system_page_shows_all_and_steers_by_clicks(garden: Garden) -> None:
 
 
 def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
-    page = garden.open()
+    page = garden.open("/plots?run=garden")
     expect(page.locator("[data-name=state]")).to_have_text("running")
     page.get_by_role("button", name="pause or resume").click()
     expect(page.locator("[data-name=state]")).to_have_text("paused")
@@ -112,9 +124,10 @@ def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
 
 def test_details_of_a_component_set_its_log_level(garden: Garden) -> None:
     page = garden.open()
+    page.get_by_label("filter").fill("a/mower")
     page.get_by_text("a/mower", exact=True).click()
     dialog = page.get_by_role("dialog")
-    expect(dialog).to_contain_text("fwk debug a/mower --run garden")
+    expect(dialog).to_contain_text(f"fwk debug a/mower --run {garden.name}")
     expect(dialog).to_contain_text("iterations, p50")
     dialog.get_by_role("combobox", name="log level").click()
     page.get_by_role("option", name="error").click()
@@ -231,7 +244,7 @@ def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:
 def test_two_browsers_see_the_same_and_a_reader_cannot_steer(garden: Garden) -> None:
     reader = Console(garden.folder, "--read-only")
     try:
-        page = garden.browser.open(f"{reader.url}/?run=garden")
+        page = garden.browser.open(f"{reader.url}/?run={garden.name}")
         expect(page.locator("[data-name=read-only]")).to_be_visible()
         expect(page.get_by_role("button", name="pause or resume")).to_have_count(0)
         expect(page.get_by_role("button", name="stop", exact=True)).to_have_count(0)
@@ -249,7 +262,7 @@ def test_two_browsers_see_the_same_and_a_reader_cannot_steer(garden: Garden) -> 
 def test_a_phone_shows_every_page_without_overflow(garden: Garden) -> None:
     page = garden.open(width_px=390, height_px=800, scheme="dark")
     for path in ("/", "/view", "/board", "/settings", "/log"):
-        page.goto(f"{garden.console.url}{path}?run=garden")
+        page.goto(f"{garden.console.url}{path}?run={garden.name}")
         expect(page.locator("[data-name=state]")).to_have_text("running")
         assert page.evaluate("document.documentElement.scrollWidth") <= 390, path
         expect(page.locator("body")).to_have_class(re.compile("body--dark"))
@@ -270,12 +283,59 @@ def test_nothing_that_a_component_prints_is_markup(garden: Garden) -> None:
         assert page.locator("img[src=x]").count() == 0
 
 
+def test_the_graph_shows_states_and_rates(garden: Garden) -> None:
+    page = garden.open("/graph?run=garden&around=a/*")
+    image = page.get_by_alt_text("graph of the components")
+    expect(image).to_have_attribute("src", re.compile("around=a%2F"))
+    answer = page.request.get(f"{garden.console.url}/graph.svg?run={garden.name}&around=a/*")
+    assert "a/mower to a/watcher: " in answer.text()
+    assert "crowd" not in answer.text()
+    page.wait_for_function("() => document.querySelector('.fwk-graph img').naturalWidth > 100")
+
+
+def test_plots_draw_any_numeric_fields_together(garden: Garden) -> None:
+    page = garden.open("/plots?run=garden")
+    fields = page.get_by_label("fields, such as")
+    fields.fill("a/place")
+    expect(page.locator("[data-name=mistake]")).to_contain_text("'a/place' is not CHANNEL.FIELD")
+    fields.fill("a/place.x_m, a/place.covariance_m2[0][1]")
+    expect(page.locator("[data-name=mistake]")).to_have_text("")
+    expect(page.locator("canvas")).to_be_visible()
+
+
+def test_pictures_of_the_documentation_can_be_taken(garden: Garden, tmp_path: Path) -> None:
+    program = [sys.executable, "-m", "tools.docs.web_pictures", garden.console.url, garden.name, "--out", str(tmp_path)]
+    made = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
+    assert made.returncode == 0, made.stderr
+    found = {path.stem: cv2.imread(str(path)) for path in tmp_path.iterdir()}
+    sizes = {name: picture.shape[:2] for name, picture in found.items() if picture is not None}
+    assert sizes["web-view"] == (800, 1280)
+    assert sizes["web-phone"] == (760, 390)
+
+
+def test_recordings_are_shown_tick_by_tick(garden: Garden) -> None:
+    page = garden.open("/recordings?run=garden")
+    page.get_by_role("cell", name=re.compile("-garden")).first.click()
+    expect(page.locator("[data-name=tick]")).to_have_text("tick 1")
+    page.get_by_role("button", name="one tick on").click()
+    expect(page.locator("[data-name=tick]")).to_have_text("tick 2")
+    expect(page.locator("[data-name=headline]")).to_contain_text("mower <img")
+    page.get_by_role("button", name="play").click()
+    expect(page.locator("[data-name=tick]")).to_have_text(re.compile(r"tick \d\d"))
+    name = garden.run.run_dir.name
+    for tick, radius_m in ((1, 2.0), (30, 2.0)):
+        drawing = page.request.get(f"{garden.console.url}/recorded?log={name}&tick={tick}").json()
+        circle = next(shape for shape in drawing["shapes"] if shape["k"] == "circle")
+        assert circle["x"] == pytest.approx(radius_m * math.cos(0.1 * tick), abs=0.001)
+    assert page.request.get(f"{garden.console.url}/recorded?log=../../etc&tick=1").status == 404
+
+
 def test_an_open_page_outlives_the_run(garden: Garden) -> None:
     page = garden.open()
     expect(page.locator("[data-name=state]")).to_have_text("running")
     garden.run.signal(2)
     assert garden.run.wait() == 0
-    expect(page.locator("[data-name=banner]")).to_contain_text("'garden' does not run")
+    expect(page.locator("[data-name=banner]")).to_contain_text(f"'{garden.name}' does not run")
     garden.launch()
     expect(page.locator("[data-name=state]")).to_have_text("running")
     expect(page.locator("[data-name=banner]")).to_be_hidden()

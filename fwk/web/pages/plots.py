@@ -1,0 +1,66 @@
+"""Page of the plots: curves of any numeric fields together."""
+
+from nicegui import ui
+
+from fwk.web.layout import Frame, body
+from fwk.web.plotting import Curves, FieldNameError, number_at, parted
+
+_ASK_S = 0.1
+_DRAW_S = 0.5
+
+
+def build(frame: Frame) -> None:
+    """Makes the page."""
+    curves = Curves()
+    fields: list[str] = []
+    with body():
+        asked = frame.request.query_params.get("fields", "")
+        chosen = ui.input("fields, such as cyan1/pose.x_m, cyan1/pose.y_m", value=asked)
+        chosen.props("dense outlined clearable debounce=500").classes("w-full")
+        mistake = ui.label("").classes("text-negative").props("data-name=mistake")
+        chart = ui.echart(
+            {
+                "animation": False,
+                "legend": {},
+                "tooltip": {"trigger": "axis"},
+                "grid": {"left": 60, "right": 20, "top": 40, "bottom": 40},
+                "xAxis": {"type": "value", "scale": True, "name": "s"},
+                "yAxis": {"type": "value", "scale": True},
+                "series": [],
+            }
+        )
+        chart.classes("w-full").style("height: calc(100vh - 190px); min-height: 240px")
+
+    def choose() -> None:
+        fields[:] = [each.strip() for each in (chosen.value or "").split(",") if each.strip()]
+        try:
+            for each in fields:
+                parted(each)
+        except FieldNameError as error:
+            mistake.set_text(str(error))
+            fields.clear()
+            return
+        mistake.set_text("")
+        curves.choose(fields)
+        chart.options["series"] = []
+
+    async def ask() -> None:
+        if not fields:
+            return
+        wanted = {each: parted(each) for each in fields}
+        newest = await frame.link.newest(sorted({channel for channel, _ in wanted.values()}))
+        time_us = (await frame.link.status())["time_us"]
+        for each, (channel, field) in wanted.items():
+            message = newest.get(channel)
+            header = getattr(message, "header", None)
+            curves.add(each, header.time_us if header else time_us, number_at(message, field))
+
+    async def draw() -> None:
+        if fields:
+            chart.options["series"] = curves.series()
+            chart.update()
+
+    chosen.on_value_change(choose)
+    choose()
+    frame.every(_ASK_S, ask)
+    frame.every(_DRAW_S, draw)

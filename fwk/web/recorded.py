@@ -1,0 +1,86 @@
+"""Recordings as pages show them: the newest messages at any tick of a log."""
+
+import threading
+from pathlib import Path
+from typing import Any
+
+from fwk.lcm.type_registry import decoded
+from fwk.recording.log_contents import LogInfo
+from fwk.recording.log_info import log_info
+from fwk.recording.play.timeline import Timeline
+
+LOG = "log.lcm"
+_BEGIN_TICKS = 20
+"""What is written only at the beginning, such as the measures of a field, is known at every tick."""
+_BACK_TICKS = 100
+"""After a jump, what was not written in so many ticks is not known."""
+
+
+class RecordedRun:
+    """One recording. Reading on to a later tick is quick; a jump reads the hundred ticks before it.
+
+    Raises:
+        LogError: the log cannot be read.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / LOG
+        self.info: LogInfo = log_info(self.path)
+        self._timeline = Timeline(self.path)
+        self._lock = threading.Lock()
+        self._tick = 0
+        self._newest: dict[str, bytes] = {}
+        self._begin = self._read({}, 0, _BEGIN_TICKS)
+
+    @property
+    def last_tick(self) -> int:
+        """The last tick of the recording; 0 if it has none."""
+        return self.info.ticks[1] if self.info.ticks else 0
+
+    def newest(self, tick: int) -> dict[str, Any]:
+        """Returns the newest messages after a tick, decoded, by channel; those of unknown types are left out."""
+        with self._lock:
+            if not self._tick <= tick <= self._tick + _BACK_TICKS:
+                self._newest, self._tick = dict(self._begin), max(0, tick - _BACK_TICKS)
+            self._newest = self._read(self._newest, self._tick, tick)
+            self._tick = tick
+            found = dict(self._newest)
+        made = {}
+        for channel, data in found.items():
+            try:
+                made[channel] = decoded(data)
+            except Exception:  # of generated code, or a type that is not known here
+                continue
+        return made
+
+    def _read(self, newest: dict[str, bytes], after: int, until: int) -> dict[str, bytes]:
+        """Returns the newest messages with those of the ticks from `after` to `until`."""
+        made = dict(newest)
+        last = self.last_tick
+        begin = self._timeline.of_tick(min(after + 1, last))
+        end = self._timeline.of_tick(until + 1).position if until < last else None
+        for event, position in self._timeline.events_from(begin):
+            if end is not None and position > end:
+                break
+            if not event.channel.startswith("fwk/"):
+                made[event.channel] = event.data
+        return made
+
+
+class RecordedRuns:
+    """The recordings that pages look at, by the name of their run directory."""
+
+    def __init__(self) -> None:
+        self._open: dict[str, RecordedRun] = {}
+
+    def of(self, folder: str) -> RecordedRun:
+        """Opens a recording.
+
+        Raises:
+            LogError: the log cannot be read.
+        """
+        if folder not in self._open:
+            if len(self._open) >= 4:
+                self._open.pop(next(iter(self._open)))
+            self._open[folder] = RecordedRun(Path(folder))
+        return self._open[folder]

@@ -1,0 +1,75 @@
+"""Takes the pictures of the console for the documentation: real pages of a real match, in a headless Chromium.
+
+`make web-pictures` plays a short match, serves the console and calls this program.
+"""
+
+import argparse
+import shutil
+from pathlib import Path
+
+from playwright.sync_api import Page, sync_playwright
+
+PROGRAM = "chromium-headless-shell"
+PICTURES = {
+    "web-view": "/view",
+    "web-system": "/",
+    "web-board": "/board?channel=world/ground_truth",
+    "web-settings": "/settings?component=cyan1/omni_ball",
+    "web-phone": "/view",
+}
+"""Name of a picture to the page that it shows."""
+_WAIT_MS = 60_000.0
+
+
+def main() -> None:
+    """Writes the pictures into a folder."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("url", help="address of the console, such as http://127.0.0.1:8460")
+    parser.add_argument("run", help="name of the run")
+    parser.add_argument("--out", type=Path, default=Path(__file__).parents[2] / "docs", help="folder of the pictures")
+    arguments = parser.parse_args()
+    for path in take(arguments.url.rstrip("/"), arguments.run, arguments.out):
+        print(path)
+
+
+def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> list[Path]:
+    """Writes a picture of each page and returns their paths.
+
+    Raises:
+        FileNotFoundError: no Chromium is installed.
+    """
+    program = shutil.which(PROGRAM)
+    if program is None:
+        raise FileNotFoundError(f"needs {PROGRAM}: apt install {PROGRAM}")
+    made = []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        for name, path in pictures.items():
+            phone = name.endswith("-phone")
+            context = browser.new_context(
+                viewport={"width": 390, "height": 760} if phone else {"width": 1280, "height": 800},
+                color_scheme="dark" if phone else "light",
+            )
+            page = context.new_page()
+            page.set_default_timeout(_WAIT_MS)
+            page.goto(f"{url}{path}{'&' if '?' in path else '?'}run={run}")
+            _settle(page)
+            made.append(out / f"{name}.png")
+            page.screenshot(path=made[-1])
+            context.close()
+        browser.close()
+    return made
+
+
+def _settle(page: Page) -> None:
+    """Waits until the page shows the run."""
+    page.wait_for_function("document.querySelector('[data-name=clock]').innerText.startsWith('tick')")
+    if page.url.partition("?")[0].endswith("/view"):
+        page.wait_for_function("document.querySelector('canvas')?.dataset.frames > 40")
+    else:
+        page.locator("tbody tr, .q-tree__node").first.wait_for()
+    page.wait_for_timeout(1500)
+
+
+if __name__ == "__main__":
+    main()
