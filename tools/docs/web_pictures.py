@@ -13,12 +13,12 @@ PROGRAM = "chromium-headless-shell"
 PICTURES = {
     "web-view": "/view",
     "web-system": "/",
-    "web-board": "/board?channel=world/ground_truth",
-    "web-settings": "/settings?component=cyan1/omni_ball",
     "web-phone": "/view",
 }
 """Name of a picture to the page that it shows."""
 _WAIT_MS = 60_000.0
+_SETTLED_MS = 4_000.0
+"""From the first figures of a page to all of it."""
 
 
 def main() -> None:
@@ -66,9 +66,7 @@ def _settle(page: Page) -> None:
     page.wait_for_function("document.querySelector('[data-name=clock]').innerText.startsWith('tick')")
     if page.url.partition("?")[0].endswith("/view"):
         page.wait_for_function("document.querySelector('canvas')?.dataset.frames > 40")
-    else:
-        page.locator("tbody tr, .q-tree__node").first.wait_for()
-    page.wait_for_timeout(1500)
+    page.wait_for_timeout(_SETTLED_MS)
 
 
 if __name__ == "__main__":
