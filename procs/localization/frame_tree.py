@@ -5,7 +5,7 @@ from pydantic import Field
 from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, Writes, channel, transform_message
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import pose_t
-from procs.model.frames import plausible
+from procs.model.geometry import plausible
 
 
 class Mounting(Config):

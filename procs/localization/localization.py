@@ -11,7 +11,8 @@ from procs.localization.line_map import line_map
 from procs.localization.self_localizer import LocalizerSettings, Motion, SelfLocalizer
 from procs.model.algebra import product
 from procs.model.field import Field
-from procs.model.frames import Floats, plausible, rotation, wrap
+from procs.model.frames import Floats, rotation, wrap
+from procs.model.geometry import plausible
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _STALE_S = 0.5  # points captured before are taken as they are

@@ -8,13 +8,6 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Indices = NDArray[np.intp]
-BOUND = 1e4
-"""Largest plausible value of a measurement, in m, rad, m/s and so on."""
-
-
-def plausible(*values: float) -> bool:
-    """Returns whether all values can be measurements; NaN and infinity cannot."""
-    return all(abs(value) < BOUND for value in values)
 
 
 def wrap(angle_rad: float) -> float:

@@ -4,7 +4,8 @@ import math
 
 from procs.model.field import Point
 
-_ASTRONOMICAL = 1e6
+BOUND = 1e4
+"""Bound of the values of measurements, in m, rad, m/s and so on."""
 
 
 def wrap_rad(angle_rad: float) -> float:
@@ -33,5 +34,5 @@ def between(start: Point, end: Point, share: float) -> Point:
 
 
 def plausible(*values: float) -> bool:
-    """Returns whether all values can be measurements; NaN, infinity and astronomical values cannot."""
-    return all(abs(value) < _ASTRONOMICAL for value in values)
+    """Returns whether all values can be measurements; NaN, infinity and values of 10,000 and more cannot."""
+    return all(abs(value) < BOUND for value in values)

@@ -10,18 +10,16 @@ from fwk import Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
-from procs.model.units import US_PER_S
 from procs.simulation.camera_errors import PRESETS
-from procs.simulation.past import Past
+from procs.simulation.delayed_truth import DelayedTruth, Exposure
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
 from procs.vision.calibration import MirrorConfig
 from procs.vision.colours import COLOURS, MAGENTA
-
-_FARTHEST = 1e4  # metres, radians, metres a second
 
 
 class CameraConfig(Config):
@@ -36,7 +34,7 @@ class CameraConfig(Config):
     realism: Realism = "realistic"
     """Deviation of the camera from the ideal: none, friendly, realistic or harsh. Non-null settings override it."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
-    """From the exposure until the frame is published; rendering shows the world as it was then."""
+    """Delay from the exposure until the frame is published; rendering shows the world at the exposure."""
     shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Standard deviation by which the standing robot's mirror shakes the picture."""
     shake_px_per_m_s: float | None = Setting(default=None, ge=0.0, le=3.0)
@@ -78,23 +76,15 @@ class Camera(Component):
 
     def init(self) -> None:
         cv2.setNumThreads(1)
-        self._robot = self.name.rpartition("/")[0]
-        self._missing = False
-        self._past = Past()
+        self._delayed = DelayedTruth(self.name, "pictures", self.log)
         self._noise_seed = int(self.rng.integers(1 << 32))
         self._apply_settings()
 
     def loop(self) -> None:
-        if not self.ground_truth.refreshed:
-            return
-        for truth in self.ground_truth.fresh:
-            self._past.add(truth)
-        capture_us = self.ground_truth.header.time_us - round(self._errors.latency_s * US_PER_S)
-        truth = self._past.at(capture_us)
-        own = self._own_robot(truth)
-        if own is not None:
-            frame = self._renderer.render(self._scene(own, truth), self._shake_px(own))
-            self.image.publish(self._noise.apply(frame, self.rng), max(1, capture_us))
+        seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
+        if seen:
+            frame = self._renderer.render(self._scene(seen), self._shake_px(seen.own))
+            self.image.publish(self._noise.apply(frame, self.rng), seen.capture_us)
 
     def config_changed(self) -> None:
         self._apply_settings()
@@ -109,22 +99,11 @@ class Camera(Component):
         )
         self._noise.spoil_lens(errors.blur_px, errors.vignette)
 
-    def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
-        own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
-        if own is None and not self._missing:
-            names = ", ".join(robot.name for robot in truth.robots) or "no robot"
-            self.log.warning(f"no pictures: robot '{self._robot}' is not on the field, which has {names}")
-        self._missing = own is None
-        return own
-
-    def _scene(self, own: true_robot_t, truth: ground_truth_t) -> Scene:
-        others = [
-            (robot.x_m, robot.y_m, COLOURS.get(robot.team, MAGENTA))
-            for robot in truth.robots
-            if robot.name != self._robot and _is_here(robot)
-        ]
+    def _scene(self, seen: Exposure) -> Scene:
+        others = [(robot.x_m, robot.y_m, COLOURS.get(robot.team, MAGENTA)) for robot in seen.others]
+        own, truth = seen.own, seen.truth
         ball_m = (truth.ball_x_m, truth.ball_y_m, truth.ball_z_m + self.config.ball.radius_m)
-        return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if _near(*ball_m) else None)
+        return Scene(Pose(own.x_m, own.y_m, own.heading_rad), others, ball_m if plausible(*ball_m) else None)
 
     def _shake_px(self, own: true_robot_t) -> tuple[float, float]:
         speed_m_s = math.hypot(own.vx_m_s, own.vy_m_s)
@@ -135,12 +114,3 @@ class Camera(Component):
 
 def _bodies(config: CameraConfig) -> Bodies:
     return Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
-
-
-def _is_here(robot: true_robot_t) -> bool:
-    return _near(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)
-
-
-def _near(*values: float) -> bool:
-    """Returns whether the values can belong to something on the field; NaN and infinity cannot."""
-    return all(abs(value) < _FARTHEST for value in values)

@@ -20,9 +20,8 @@ from procs.model.field import Field, Point
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
-from procs.model.units import US_PER_S
+from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.line_scan import line_scan
-from procs.simulation.past import Past
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
 from procs.vision.calibration import MirrorConfig
@@ -40,7 +39,7 @@ class PerceptsConfig(Config):
     realism: Realism = "realistic"
     """Deviation of the percepts from the ideal: none, friendly, realistic or harsh."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
-    """From the exposure until the percepts are published."""
+    """Delay from the exposure until the percepts are published."""
     shake_px: float | None = Setting(default=None, ge=0.0, le=3.0)
     """Standard deviation by which the standing robot's mirror shakes."""
     ball_px: float | None = Setting(default=None, ge=0.0)
@@ -91,33 +90,28 @@ class Percepts(Component):
         line_scan(config.field)
 
     def init(self) -> None:
-        self._robot = self.name.rpartition("/")[0]
-        self._past = Past()
-        self._missing = False
+        self._delayed = DelayedTruth(self.name, "percepts", self.log)
         self._before_us = -1
         self._apply_settings()
 
     def loop(self) -> None:
         if not self.ground_truth.refreshed:
             return
-        for truth in self.ground_truth.fresh:
-            self._past.add(truth)
-        capture_us = self.ground_truth.header.time_us - round(self._errors.latency_s * US_PER_S)
-        truth = self._past.at(capture_us)
-        own = self._own_robot(truth)
+        seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
-        if own is None:
+        if seen is None:
             return
+        own = seen.own
         deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
         forward, left = (deviation_px * self.rng.standard_normal(2)).tolist()
-        others = [(robot.x_m, robot.y_m) for robot in truth.robots if robot.name != self._robot and _is_here(robot)]
+        others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
-        self._see_ball(own, truth, robots_m, (forward, left), passed_s)
+        self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
         self._see_robots(robots_m, (forward, left), passed_s)
         self._see_lines(own, robots_m, (forward, left))
         for port in (self.ball_percept, self.obstacle_percepts, self.line_points):
-            port.value.capture_us = max(1, capture_us)
+            port.value.capture_us = seen.capture_us
             port.write()
 
     def config_changed(self) -> None:
@@ -127,14 +121,6 @@ class Percepts(Component):
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
         self._lines = line_scan(self.config.field)
-
-    def _own_robot(self, truth: ground_truth_t) -> true_robot_t | None:
-        own = next((robot for robot in truth.robots if robot.name == self._robot and _is_here(robot)), None)
-        if own is None and not self._missing:
-            names = ", ".join(robot.name for robot in truth.robots) or "no robot"
-            self.log.warning(f"no percepts: robot '{self._robot}' is not on the field, which has {names}")
-        self._missing = own is None
-        return own
 
     def _see_ball(
         self, own: true_robot_t, truth: ground_truth_t, robots_m: Floats, shake_px: tuple[float, float], passed_s: float
@@ -211,10 +197,6 @@ class Percepts(Component):
 
 
 def _seen_from(own: true_robot_t, points_m: Floats) -> Floats:
-    """Points (n, 2) of the world frame in the robot frame."""
+    """Returns points (n, 2) of the world frame in the robot frame."""
     cosine, sine = math.cos(own.heading_rad), math.sin(own.heading_rad)
     return product(points_m - (own.x_m, own.y_m), np.array(((cosine, -sine), (sine, cosine))))
-
-
-def _is_here(robot: true_robot_t) -> bool:
-    return plausible(robot.x_m, robot.y_m, robot.heading_rad, robot.vx_m_s, robot.vy_m_s)

@@ -8,12 +8,10 @@ from fwk import Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
-from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
-from procs.model.units import US_PER_S
 from procs.simulation.camera_errors import PRESETS
-from procs.simulation.past import Past
+from procs.simulation.delayed_truth import DelayedTruth
 from procs.simulation.rendering.renderer import Pose
 from procs.simulation.rendering.shapes import Bodies
 from procs.simulation.rendering.stereo_renderer import StereoRenderer
@@ -28,7 +26,7 @@ class StereoCameraConfig(Config):
     realism: Realism = "realistic"
     """Deviation of the cameras from the ideal: none, friendly, realistic or harsh."""
     latency_s: float | None = Setting(default=None, ge=0.0, le=1.0)
-    """From the exposure until the frame is published."""
+    """Delay from the exposure until the frame is published."""
     noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
     field: Field = Field()
@@ -51,29 +49,16 @@ class StereoCamera(Component):
 
     def init(self) -> None:
         cv2.setNumThreads(1)
-        self._robot = self.name.rpartition("/")[0]
-        self._past = Past()
-        self._missing = False
+        self._delayed = DelayedTruth(self.name, "stereo pictures", self.log)
         self._apply_settings()
 
     def loop(self) -> None:
-        if not self.ground_truth.refreshed:
-            return
-        for truth in self.ground_truth.fresh:
-            self._past.add(truth)
-        capture_us = self.ground_truth.header.time_us - round(self._errors.latency_s * US_PER_S)
-        robots = [
-            robot for robot in self._past.at(capture_us).robots if plausible(robot.x_m, robot.y_m, robot.heading_rad)
-        ]
-        own = next((robot for robot in robots if robot.name == self._robot), None)
-        if own is None and not self._missing:
-            self.log.warning(f"no stereo pictures: robot '{self._robot}' is not on the field")
-        self._missing = own is None
-        if own is not None:
-            others = [(robot.x_m, robot.y_m) for robot in robots if robot.name != self._robot]
+        seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
+        if seen:
+            own, others = seen.own, [(robot.x_m, robot.y_m) for robot in seen.others]
             frame = self._renderer.render(Pose(own.x_m, own.y_m, own.heading_rad), others)
             noise = self._errors.noise_levels * self.rng.standard_normal(frame.shape, np.float32)
-            self.stereo_image.publish(np.clip(frame + noise, 0, 255).astype(np.uint8), max(1, capture_us))
+            self.stereo_image.publish(np.clip(frame + noise, 0, 255).astype(np.uint8), seen.capture_us)
 
     def config_changed(self) -> None:
         self._apply_settings()

@@ -8,7 +8,7 @@ from pydantic import Field
 from fwk import Clock, Component, Config, Reads, Writes
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t
 from procs.model.algebra import Floats
-from procs.model.frames import plausible
+from procs.model.geometry import plausible
 from procs.model.units import US_PER_S
 
 

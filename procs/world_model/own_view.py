@@ -4,7 +4,8 @@ import numpy as np
 
 from lcmtypes.robot import odometry_t
 from lcmtypes.soccer import ball_percept_t, obstacle_percepts_t, pose_t
-from procs.model.frames import Floats, covariance_to_world, plausible, rotation, to_world
+from procs.model.frames import Floats, covariance_to_world, rotation, to_world
+from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
 

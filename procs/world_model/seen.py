@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from procs.model.frames import BOUND, Flags, Floats
+from procs.model.frames import Flags, Floats
+from procs.model.geometry import BOUND
 
 _LEAST_M2 = 1e-6  # a millimetre: least variance of a sighting, which keeps filters regular
 

@@ -3,7 +3,8 @@
 import numpy as np
 
 from lcmtypes.soccer import team_message_t
-from procs.model.frames import plausible, wrap
+from procs.model.frames import wrap
+from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
 
