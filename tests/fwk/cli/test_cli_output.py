@@ -77,11 +77,11 @@ def test_too_few_descriptors_are_a_sentence(tmp_path: Path) -> None:
     assert ended.value.code == 2
 
 
-def test_a_run_with_few_descriptors_is_refused(tmp_path: Path) -> None:
+def test_a_run_with_few_descriptors_is_refused(tmp_path: Path, ports: PortBlock) -> None:
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))
 
-    command = [sys.executable, "-m", "fwk.cli.launch", "one-robot.yaml", "--ticks", "1"]
+    command = [sys.executable, "-m", "fwk.cli.launch", "one-robot.yaml", "--bus-port", str(ports.bus)]
     environment = {**os.environ, "HOME": str(tmp_path)}
     done = run(command, stdout=subprocess.PIPE, env=environment, preexec_fn=limit)
     assert done.returncode == 2
