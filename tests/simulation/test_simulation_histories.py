@@ -10,6 +10,9 @@ from tests.simulation.scenario import Scenario, scenario_of
 
 HISTORIES = 8
 """In one test."""
+FIRST = range(1, 1 + 5 * HISTORIES, HISTORIES)
+QUICK = 1
+"""Number of these tests in `make test-fast`."""
 
 
 def broken(scenario: Scenario) -> list[str]:
@@ -17,7 +20,9 @@ def broken(scenario: Scenario) -> list[str]:
     return [str(failure) for failure in verdict_of(scenario).failures]
 
 
-@pytest.mark.parametrize("first", range(1, 1 + 5 * HISTORIES, HISTORIES))
+@pytest.mark.parametrize(
+    "first", [*FIRST[:QUICK], *(pytest.param(each, marks=pytest.mark.slow) for each in FIRST[QUICK:])]
+)
 def test_histories_keep_every_promise(first: int) -> None:
     found = {seed: broken(scenario_of(seed)) for seed in range(first, first + HISTORIES)}
     assert {seed: failures for seed, failures in found.items() if failures} == {}

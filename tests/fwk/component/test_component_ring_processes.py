@@ -96,6 +96,7 @@ def result(reader: subprocess.Popen[str]) -> tuple[int, int]:
     return whole, lost
 
 
+@pytest.mark.slow
 def test_readers_see_whole_frames_under_fast_overwriting(start: Start) -> None:
     start(WRITER)
     for whole, lost in [result(reader) for reader in [start(READER) for _ in range(4)]]:
@@ -103,6 +104,7 @@ def test_readers_see_whole_frames_under_fast_overwriting(start: Start) -> None:
         assert lost >= 20
 
 
+@pytest.mark.slow
 def test_a_reader_killed_during_a_read_stops_no_process(start: Start) -> None:
     writer, *victims, survivor = start(WRITER), start(READER), start(READER), start(READER)
     for victim in victims:
@@ -113,6 +115,7 @@ def test_a_reader_killed_during_a_read_stops_no_process(start: Start) -> None:
     assert writer.poll() is None
 
 
+@pytest.mark.slow
 def test_killed_writer_leaves_no_torn_frame(start: Start) -> None:
     readers = [start(READER) for _ in range(2)]
     for _ in range(3):

@@ -49,6 +49,7 @@ def play(system: MemorySystem, duration_s: float) -> tuple[list[game_state_t], l
     return states, events
 
 
+@pytest.mark.slow
 def test_lone_robot_scores_on_an_empty_goal_after_kick_off() -> None:
     for seed in (1, 2, 3):
         states, _ = play(match(["cyan2"], seed, NOISE), 16.0)

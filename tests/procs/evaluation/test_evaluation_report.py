@@ -5,12 +5,14 @@ import json
 from pathlib import Path
 
 import cv2
+import pytest
 
 from procs.evaluation.match import measured, report
 
 SECONDS = 4.5
 
 
+@pytest.mark.slow
 def test_report_of_two_short_pieces(tmp_path: Path) -> None:
     pieces = [json.loads(json.dumps(measured("soccer-1v1.yaml", SECONDS, seed))) for seed in (1, 2)]
     text = report(pieces, tmp_path)

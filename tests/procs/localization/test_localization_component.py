@@ -16,6 +16,7 @@ from tests.procs.localization.localization_parts import (
 )
 
 
+@pytest.mark.slow
 def test_standing_robot_knows_its_pose_to_3_cm_and_002_rad() -> None:
     errors = []
     for seed in range(20):
@@ -33,6 +34,7 @@ def test_standing_robot_knows_its_pose_to_3_cm_and_002_rad() -> None:
     assert deviation[2] < 0.02
 
 
+@pytest.mark.slow
 def test_driving_robot_stays_localized_within_10_cm() -> None:
     robot = FakeRobot(seed=5)
     bench = Bench(Localization, start_x_m=0.0, start_y_m=0.0, start_heading_rad=0.0)

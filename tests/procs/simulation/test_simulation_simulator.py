@@ -232,6 +232,7 @@ def digest(system: MemorySystem) -> str:
     return total.hexdigest()
 
 
+@pytest.mark.slow
 def test_ten_robots_wander_and_touch_the_ball_and_each_other() -> None:
     system = wandering_robots(200)
     kinds = set()

@@ -177,6 +177,7 @@ def digest(seed: int) -> str:
     return seen.hexdigest()
 
 
+@pytest.mark.slow
 def test_fresh_processes_give_the_same_bytes() -> None:
     """The bytes depend neither on the order of sets nor on the default kernel of the linear algebra library."""
     code = "import runpy, sys; print(runpy.run_path(sys.argv[1])['digest'](1))"

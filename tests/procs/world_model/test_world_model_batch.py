@@ -58,6 +58,7 @@ def test_tracks_equal_filters_of_the_library() -> None:
     assert tracks.covariances[0] == pytest.approx(covariance, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_mixture_equals_the_estimator_of_the_library() -> None:
     from filterpy.kalman import IMMEstimator, KalmanFilter
 
