@@ -64,7 +64,8 @@ def web(
         access = Access(address, listener.getsockname()[1], read_only, tuple(names or ()), tokens)
         for role, link in access.links().items():
             typer.echo(f"console ({role}): {link}")
-        serve(Options(access, run, tuple(views or ()), certificate, key), listener, recordings)
+        with listener:
+            serve(Options(access, run, tuple(views or ()), certificate, key), listener, recordings)
     except (ServeError, ExtensionError) as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT) from error

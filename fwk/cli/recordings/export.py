@@ -1,6 +1,7 @@
 """`fwk export LOG` and `fwk import FILE`: other formats."""
 
 import json
+import os
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -30,7 +31,7 @@ from fwk.log_tools.selection import Selection
 
 def _new_place(text: str) -> Path:
     """Returns the absolute path of a file or folder that can be written; an existing folder is the caller's matter."""
-    return Path(text).absolute() if Path(text).is_dir() else new_file(text)
+    return Path(text).absolute() if os.path.isdir(text) else new_file(text)
 
 
 def export(

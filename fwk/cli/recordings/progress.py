@@ -1,5 +1,6 @@
 """Progress bar of commands that read whole logs."""
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -14,7 +15,7 @@ Progress = Callable[[int], None]
 @contextmanager
 def progress_of(verb: str, *logs: Path) -> Iterator[Progress]:
     """Shows a bar on a terminal while large logs are read; the bar disappears at the end."""
-    total = sum(log.stat().st_size for log in logs if log.is_file())
+    total = sum(os.path.getsize(log) for log in logs if os.path.isfile(log))
     if total < _SMALL_BYTES or not sys.stderr.isatty():
         yield lambda _: None
         return

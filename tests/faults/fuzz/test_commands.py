@@ -21,6 +21,7 @@ from fwk.cli.steer.send import made
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
+from fwk.web import server
 from tests.harness.components import sources
 from tests.harness.fuzz import HOSTILE_TEXT, all_types
 from tests.harness.runs import PortBlock, write_files
@@ -37,7 +38,7 @@ class _WouldRunError(Exception):
 
 @pytest.fixture
 def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a launch file whose run is never started."""
+    """A folder with a launch file whose run is never started; nor is the console."""
 
     def run(*_: object) -> None:
         raise _WouldRunError
@@ -46,6 +47,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(launching, "run", run)
+    monkeypatch.setattr(server, "serve", run)
     return tmp_path
 
 

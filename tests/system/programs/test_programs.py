@@ -61,12 +61,13 @@ def test_programs_write_the_same_bytes_in_every_run(tmp_path: Path, launch: Laun
 
 def test_a_program_that_ends_is_started_again_and_leaves_nothing(tmp_path: Path, launch: Launch) -> None:
     system(tmp_path, '""', a=f"command: [{sys.executable}, ./adder.py, '5'], stage: act, restart: {{backoff_s: 0}}")
-    run = launch("walk.yaml", "--ticks", "400", "--speed", "10", "--record", "log.lcm")
+    run = launch("walk.yaml", "--speed", "10", "--record", "log.lcm")
     run.until("ended with exit code 3 and without an answer")
     run.until_true(lambda: bool(programs(run.processes())), "the program of the second life")
     (program,) = programs(run.processes())
     os.kill(program.ppid(), signal.SIGKILL)
     run.until_true(lambda: not program.is_running(), "the end of the program with its host")
+    run.signal(signal.SIGINT)
     assert run.wait() in (0, 1), run.text
     replayed(tmp_path)
 
