@@ -1,5 +1,6 @@
 """`fwk web`: the console in a browser."""
 
+import re
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -9,6 +10,8 @@ from fwk.cli.run.console import MISSING, PORT, can_serve
 from fwk.cli.run.run_directory import RUNS, run_dirs
 from fwk.cli.run.run_record import read_record
 from fwk.cli.run_options import BAD_INPUT, FAILED
+
+_HOST_NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9.-]*[A-Za-z0-9])?")
 
 
 def web(
@@ -46,6 +49,9 @@ def web(
     if not can_serve():
         typer.echo(f"error: {MISSING}", err=True)
         raise typer.Exit(FAILED)
+    for name in names or ():
+        if not _HOST_NAME.fullmatch(name):
+            raise typer.BadParameter(f"--name {name!r}: not the name of a machine, such as robot or robot.local")
     from fwk.web.access import Access, is_loopback, new_tokens
 
     local = is_loopback(address)

@@ -1,5 +1,6 @@
 """Page of the components: state, times, losses; start, stop, restart, reload, log level."""
 
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
@@ -71,7 +72,7 @@ def build(frame: Frame) -> None:
             table.rows, shown_us = rows, monotonic_us()
         figures.set_text(
             f"{len(rows)} components   {status['ticks_per_s']:.1f} ticks/s   late {status['late']}   "
-            f"repeated {status['repeated']}   {status['run_dir']}"
+            f"repeated {status['repeated']}   {Path(status['run_dir']).name}"
         )
 
     frame.on_status(show)
