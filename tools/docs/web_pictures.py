@@ -5,9 +5,13 @@
 
 import argparse
 import shutil
+import socket
 from pathlib import Path
+from urllib.parse import urlsplit
 
 from playwright.sync_api import Page, sync_playwright
+
+from fwk.clock import monotonic_us, sleep_s
 
 PROGRAM = "chromium-headless-shell"
 PICTURES = {
@@ -41,6 +45,7 @@ def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> 
     program = shutil.which(PROGRAM)
     if program is None:
         raise FileNotFoundError(f"needs {PROGRAM}: apt install {PROGRAM}")
+    _wait_for(url)
     made = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
@@ -59,6 +64,20 @@ def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> 
             context.close()
         browser.close()
     return made
+
+
+def _wait_for(url: str) -> None:
+    """Waits until the console listens."""
+    address = urlsplit(url)
+    end_us = monotonic_us() + round(_WAIT_MS * 1000)
+    while True:
+        try:
+            socket.create_connection((str(address.hostname), address.port or 80)).close()
+            return
+        except ConnectionRefusedError:
+            if monotonic_us() > end_us:
+                raise
+            sleep_s(0.1)
 
 
 def _settle(page: Page) -> None:
