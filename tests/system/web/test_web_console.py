@@ -322,6 +322,7 @@ def test_pictures_of_the_documentation_can_be_taken(garden: Garden, tmp_path: Pa
 
 
 def test_recordings_are_shown_tick_by_tick(garden: Garden) -> None:
+    garden.run.until_true(lambda: garden.tick() > 60, "the file of the recording has tick 30")
     page = garden.open("/recordings?run=garden")
     page.get_by_role("cell", name=re.compile("-garden")).first.click()
     expect(page.locator("[data-name=tick]")).to_have_text("tick 1")
