@@ -4,12 +4,9 @@ from typing import Annotated
 
 import typer
 
-from fwk.bus.public import PublicBus
-from fwk.cli.look.public_messages import heard
+from fwk.cli.look.public_messages import listening
 from fwk.cli.output import FAILED
-from fwk.cli.recordings.user_folders import use_folders
-from fwk.cli.run_options import RunChoice, asking
-from fwk.control import client
+from fwk.cli.run_options import RunChoice
 from fwk.log_tools.export import INSTALL
 
 PORT = 8765
@@ -28,23 +25,15 @@ def foxglove(
     except ImportError as error:
         typer.echo(f"error: Foxglove needs another library: {INSTALL}", err=True)
         raise typer.Exit(FAILED) from error
-    with asking(), client.supervisor(chosen) as run:
-        about = run.ask("run")
-        for folder in about["folders"]:
-            use_folders([folder])
-        if not about["public_url"]:
-            typer.echo(f"error: {about['plan']} has no public bus; export its recording with fwk export", err=True)
-            raise typer.Exit(FAILED)
+    with listening(chosen, "export its recording with fwk export") as (about, messages):
         try:
             server = FoxgloveServer(about["name"], port)
         except (OSError, RuntimeError) as error:
             typer.echo(f"error: port {port} cannot be opened: {error}; choose another with --port", err=True)
             raise typer.Exit(FAILED) from error
-        bus = PublicBus(about["public_url"])
         typer.echo(f"{about['name']}: ws://127.0.0.1:{server.port} for Foxglove; Ctrl-C ends")
         try:
-            for message in heard(bus, run):
+            for message in messages:
                 server.show(*message)
         finally:
-            bus.close()
             server.close()

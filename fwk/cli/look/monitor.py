@@ -1,18 +1,17 @@
 """`fwk monitor SCRIPT.py`: a few lines of the user see the messages of a run or of a log."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
-from fwk.bus.public import PublicBus
 from fwk.cli.arguments import folder
-from fwk.cli.look.public_messages import heard
+from fwk.cli.look.public_messages import listening
 from fwk.cli.output import BAD_INPUT, FAILED
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.user_folders import use_folders
-from fwk.cli.run_options import RunChoice, asking
-from fwk.control import client
+from fwk.cli.run_options import RunChoice
 from fwk.lcm.event_log import LogReader
 from fwk.model.errors import hint
 from fwk.monitor.script import Script, ScriptError, templates
@@ -71,23 +70,12 @@ def _read(script: Script, log: Path, count: int | None) -> None:
 
 def _listen(script: Script, chosen: str | None, count: int | None) -> None:
     """Gives the messages on the public bus of a run to the script until the run ends, each with its logical time."""
-    with asking(), client.supervisor(chosen) as run:
-        about = run.ask("run")
-        for each in about["folders"]:
-            use_folders([each])
-        if not about["public_url"]:
-            _complain(f"{about['plan']} has no public bus; monitor its recording with --from", FAILED)
-        bus = PublicBus(about["public_url"])
-        taken = 0
-        try:
-            for message in heard(bus, run):
-                taken += script.hear(*message)
-                if taken == count:
-                    return
-        except KeyboardInterrupt:
-            return
-        finally:
-            bus.close()
+    taken = 0
+    with listening(chosen, "monitor its recording with --from") as (_, messages), suppress(KeyboardInterrupt):
+        for message in messages:
+            taken += script.hear(*message)
+            if taken == count:
+                return
 
 
 def _print_template(name: str) -> None:

@@ -2,9 +2,15 @@
 
 import select
 from collections.abc import Iterator
-from typing import NamedTuple
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import typer
 
 from fwk.bus.public import PublicBus
+from fwk.cli.output import FAILED
+from fwk.cli.recordings.user_folders import use_folders
+from fwk.cli.run_options import asking
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import client
 from fwk.control.client import ControlError
@@ -23,7 +29,27 @@ class Heard(NamedTuple):
     """Logical time of the message; 0: it has no header."""
 
 
-def heard(bus: PublicBus, run: client.Client) -> Iterator[Heard]:
+@contextmanager
+def listening(chosen: str | None, instead: str) -> Iterator[tuple[dict[str, Any], Iterator[Heard]]]:
+    """Opens the public bus of a run: yields facts about the run, and its messages from now on until it ends.
+
+    Ends the command if no run answers, or the run has no public bus; `instead` says what helps then.
+    """
+    with asking(), client.supervisor(chosen) as run:
+        about = run.ask("run")
+        for folder in about["folders"]:
+            use_folders([folder])
+        if not about["public_url"]:
+            typer.echo(f"error: {about['plan']} has no public bus; {instead}", err=True)
+            raise typer.Exit(FAILED)
+        bus = PublicBus(about["public_url"])
+        try:
+            yield about, _heard(bus, run)
+        finally:
+            bus.close()
+
+
+def _heard(bus: PublicBus, run: client.Client) -> Iterator[Heard]:
     """Yields messages from now on, until the run ends."""
     look_us = monotonic_us() + _LOOK_US
     while True:

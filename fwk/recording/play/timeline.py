@@ -9,12 +9,10 @@ from pathlib import Path
 
 from fwk.clock import US_PER_S
 from fwk.lcm.event_log import Event, LogError, LogReader
-from fwk.lcm.messages import fingerprint
 from fwk.lcm.type_registry import header_of
 from fwk.recording.log_contents import note_in
-from fwk.recording.versions import BROKEN, PLAN, RECORD
-from lcmtypes import core_v1
-from lcmtypes.core import tick_record_t
+from fwk.recording.ticks import tick_of
+from fwk.recording.versions import PLAN, RECORD
 
 WITHOUT_TICKS_US = 50_000
 """Logged time of one step in a log without ticks."""
@@ -166,7 +164,8 @@ class Timeline:
                 yield moment
                 begins = None
             if event.channel == RECORD:
-                begins = _tick_after(event.data)
+                tick = tick_of(event.channel, event.data)
+                begins = None if tick is None else tick + 1
             elif note := note_in(event.channel, event.data):
                 self._notes.append((note.text, moment))
             if event.channel != PLAN:  # the plan belongs to the first tick
@@ -195,12 +194,3 @@ class Timeline:
         if not times:  # one event fills the tail
             times = [event.time_us for event in LogReader(self.path)]
         return max(self.begin.time_us, times[-1])
-
-
-def _tick_after(record: bytes) -> int | None:
-    """Returns the tick that begins after a record; None: the record is damaged."""
-    kind = core_v1.tick_record_t if record[:8] == fingerprint(core_v1.tick_record_t) else tick_record_t
-    try:
-        return int(kind.decode(record).tick) + 1
-    except BROKEN:
-        return None
