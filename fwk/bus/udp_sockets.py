@@ -1,4 +1,4 @@
-"""What the kernel shows of this machine's UDP sockets, and of the processes that have them."""
+"""UDP sockets of this machine and the processes that have them, as the kernel shows them."""
 
 import os
 from collections.abc import Iterable, Iterator

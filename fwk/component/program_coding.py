@@ -21,7 +21,7 @@ _ITERATION = 1
 
 @dataclass(frozen=True)
 class ProgramRequest:
-    """What a program gets in one iteration."""
+    """Request to a program for one iteration."""
 
     stage: str
     """Stage of the iteration, `INIT` or `FINAL`."""

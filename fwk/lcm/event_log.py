@@ -157,7 +157,7 @@ class LogReader:
         self.path = path
         self.skipped_bytes = 0
         self.position = 0
-        """Where the newest event of the newest iteration ends, in bytes from the beginning of the file."""
+        """End of the newest event of the newest iteration, in bytes from the beginning of the file."""
         try:
             if not stat.S_ISREG(os.stat(path).st_mode):
                 raise LogError(f"{path}: not an ordinary file")

@@ -20,7 +20,7 @@ EVENTS_PER_CALL = 1000
 
 @dataclass
 class Cut:
-    """What was done."""
+    """Result of a cut."""
 
     log: Path
     out: Path

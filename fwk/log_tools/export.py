@@ -28,7 +28,7 @@ class Format(StrEnum):
 
 @dataclass
 class Exported:
-    """What was done."""
+    """Result of an export."""
 
     out: Path
     messages: int = 0
@@ -42,7 +42,7 @@ class Exported:
 
 @dataclass
 class Imported:
-    """What was done."""
+    """Result of an import."""
 
     out: Path
     events: int = 0

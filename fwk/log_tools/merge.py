@@ -17,7 +17,7 @@ _DAY_US = 24 * 3600 * US_PER_S
 
 @dataclass
 class Merged:
-    """What was done."""
+    """Result of a merge."""
 
     logs: list[Path]
     out: Path

@@ -12,7 +12,7 @@ from fwk.recording.versions import RECORD
 
 @dataclass
 class Repaired:
-    """What was done."""
+    """Result of a repair."""
 
     log: Path
     out: Path

@@ -36,7 +36,7 @@ class Series:
 
 
 class Wanted(NamedTuple):
-    """What a path such as `cyan*/odometry.x_m` names."""
+    """Channels and field that a path such as `cyan*/odometry.x_m` names."""
 
     channel: str
     """Name or pattern."""

@@ -122,7 +122,7 @@ class LogInfo:
     notes: list[Note] = field(default_factory=list)
     """Bookmarks, in their order."""
     excerpt: str = ""
-    """Which part of a recording the log is; empty: a whole recording, or a log of another program."""
+    """Part of a recording that the log is; empty: a whole recording, or a log of another program."""
     from_index: bool = False
     """Whether the log was not read: numbers of lost messages have no places, and no message was decoded."""
     changed: list[ChangedBytes] = field(default_factory=list)

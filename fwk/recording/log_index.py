@@ -38,7 +38,7 @@ class LogIndex:
 
     info: LogInfo
     mtime_ns: int
-    """When the log was written, by its file system."""
+    """Time at which the log was written, by its file system."""
     blocks: list[Block]
 
     @classmethod

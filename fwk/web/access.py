@@ -32,7 +32,7 @@ _HEADERS = [
 
 
 class Role(StrEnum):
-    """What a browser may do."""
+    """Rights of a browser."""
 
     STEER = "steer"
     READ = "read"
@@ -40,7 +40,7 @@ class Role(StrEnum):
 
 @dataclass(frozen=True)
 class Access:
-    """Who may use the console.
+    """Rules for access to the console.
 
     On a loopback address the kernel names the user of each connection, and only the console's own user and root are
     admitted. On other addresses a token is needed; it comes with the link and stays in a cookie.

@@ -1,4 +1,4 @@
-"""What all pages of a console share."""
+"""State that all pages of a console share."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,7 +16,7 @@ from fwk.web.shared import Shared
 
 @dataclass(frozen=True)
 class Console:
-    """What all pages of a console share.
+    """State that all pages of a console share.
 
     Args:
         runs: the runs of this machine.

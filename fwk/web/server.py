@@ -46,7 +46,7 @@ class ServeError(Exception):
 
 @dataclass(frozen=True)
 class Options:
-    """How the console is served."""
+    """Options of the console's server."""
 
     access: Access
     run: str = ""

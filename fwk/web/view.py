@@ -1,4 +1,4 @@
-"""What projects add to the console: views on a canvas, and pages; and what these may do with a run."""
+"""Views on a canvas and pages that projects add to the console, and their access to a run."""
 
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from typing import Any, Protocol
@@ -29,7 +29,7 @@ class View:
     members: Sequence[str] = ()
     """Only channels whose type has these members."""
     rate_hz = 20.0
-    """How often a browser shows it at most."""
+    """Highest rate at which a browser shows it."""
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
@@ -68,7 +68,7 @@ class OpenPage(Protocol):
 
 
 class RunAccess:
-    """What a page may do with the chosen run: read always, steer only in the role `STEER`."""
+    """Access of a page to the chosen run: a page always reads, and steers only in the role `STEER`."""
 
     def __init__(self, link: RunLink, role: Role) -> None:
         self.link = link

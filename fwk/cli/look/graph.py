@@ -22,7 +22,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 
 class Form(Enum):
-    """How the graph is written."""
+    """Form in which the graph is written."""
 
     TEXT = "text"
     MERMAID = "mermaid"

@@ -22,7 +22,7 @@ LOG = "log.lcm"
 
 @dataclass(frozen=True)
 class BranchRequest:
-    """What is asked of a branch."""
+    """Options of a branch."""
 
     to_tick: int
     """Last recorded tick that counts."""

@@ -43,13 +43,13 @@ class Player:
         self.messages = 0
         """Number of messages that were given out."""
         self.rounds = 0
-        """How often the log was played to its end."""
+        """Number of times that the log was played to its end."""
         self._start = start or timeline.begin
         self._end = end.position if end else None
         self._events: Iterator[tuple[Event, int]] = iter(())
         self._next: tuple[Event, int] | None = None
         self.position = 0
-        """Where the newest message given out ends, in bytes from the beginning of the log."""
+        """End of the newest message given out, in bytes from the beginning of the log."""
         self._newest = 0  # where that message begins
         self.time_us = 0
         """Time stamp of that message."""

@@ -18,7 +18,7 @@ class PluginError(Exception):
 
 
 class PlayPlugin(Protocol):
-    """What a plugin has: the patterns of its channels, and a method that gets each message of these channels."""
+    """Interface of a plugin: the patterns of its channels, and a method that gets each message of these channels."""
 
     channels: Sequence[str]
 

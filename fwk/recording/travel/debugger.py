@@ -27,7 +27,7 @@ _ENDED = "the component has failed; nothing comes after this iteration"
 
 @dataclass
 class Order:
-    """Where the replay stops next; survives going back."""
+    """Place where the replay stops next; survives going back."""
 
     iteration: int = _NOTHING
     """Iteration of the component, from 1, at which it stops."""
