@@ -66,6 +66,7 @@ class Forker:
         preload(self._plan)
         limit_opencv()
         gc.collect()
+        _forget_lookups()
         give_memory_back()  # things that a fork costs, and that hosts would fill with other contents
         gc.freeze()
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake this process
@@ -142,6 +143,15 @@ class Forker:
                 os.killpg(pid, signal.SIGKILL)  # programs that its components had started
             code = os.waitstatus_to_exitcode(status)
             self._connection.send(Ended(host, incarnation, pid, code, os.WCOREDUMP(status)))
+
+
+def _forget_lookups() -> None:
+    """Empties the cache of attribute lookups: a host that replaces an entry would copy the page of the name in it.
+
+    From Python 3.12 on names are never written to.
+    """
+    if sys.version_info < (3, 12):
+        sys._clear_type_cache()
 
 
 def _drain(source: socket.socket) -> None:
