@@ -1,28 +1,51 @@
-"""Campaigns: many seeded runs at the same time, each kept in a file, so that an interrupted campaign goes on."""
+"""Campaigns: many seeded runs at the same time, with a file for each result; an interrupted campaign resumes."""
 
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
+
+from fwk.lcm.type_registry import put_first, use_types_of
+from fwk.plan.classes import find_object
 
 Work = Callable[[str, float, int], Any]
-"""Plays a launch file for a logical time with a seed; returns what was measured, as plain values for JSON."""
-INSTALL = "pip install distributed"
+"""Plays a launch file for a logical time with a seed; returns the measurements as plain values for JSON."""
+INSTALL = "pip install 'fwk[eval]'"
+CONNECT_S = 5.0
+"""Longest time for the connection to a scheduler."""
 
 
 class CampaignError(RuntimeError):
     """A campaign that cannot be played."""
 
 
+@dataclass(frozen=True)
+class Evaluation:
+    """The evaluation of a launch file, found by its name in the process that plays the run."""
+
+    use: str
+    """`module:function`."""
+    folders: tuple[str, ...] = ()
+    """Folders of the launch file's modules and message types, besides the installed ones."""
+
+    def __call__(self, file: str, time_s: float, seed: int) -> Any:
+        """Plays a run and returns its measurements."""
+        for folder in self.folders:
+            use_types_of(Path(folder))
+        put_first(self.folders)
+        return cast(Work, find_object(self.use, self.folders))(file, time_s, seed)
+
+
 class Campaign:
     """Results of the runs of one launch file in a folder, a file a seed."""
 
     def __init__(self, folder: Path, about: Mapping[str, Any]) -> None:
-        """Opens or begins a campaign; `about` says what is played.
+        """Opens or begins a campaign; `about` states launch file, logical time and evaluation.
 
         Raises:
             CampaignError: the folder holds another campaign.
@@ -42,17 +65,34 @@ class Campaign:
         """Returns the results of the seeds that have one, in the order of the seeds."""
         return [json.loads(self._file(seed).read_text()) for seed in seeds if self._file(seed).exists()]
 
-    def play(self, work: Work, file: str, time_s: float, seeds: Iterable[int], executor: Executor) -> Iterator[int]:
+    def play(
+        self, work: Work, file: str, time_s: float, seeds: Iterable[int], executor: Executor
+    ) -> Generator[int, None, None]:
         """Plays what is missing; yields each seed as soon as its result is on the disk.
 
+        A caller that stops early cancels the runs that have not begun.
+
         Raises:
-            Exception: whatever a run raises; the results of the others stay.
+            CampaignError: runs failed; all others were played and have their results.
         """
         running = {executor.submit(work, file, time_s, seed): seed for seed in self.missing(seeds)}
-        for future in as_completed(running):
-            seed = running[future]
-            self._keep(seed, future.result())
-            yield seed
+        failures: dict[int, str] = {}
+        try:
+            for future in as_completed(running):
+                seed = running[future]
+                try:
+                    result = future.result()
+                except Exception as error:
+                    failures[seed] = f"{type(error).__name__}: {error}"
+                    continue
+                self._keep(seed, result)
+                yield seed
+        finally:
+            for future in running:
+                future.cancel()
+        if failures:
+            causes = "; ".join(f"seed {seed}: {cause}" for seed, cause in sorted(failures.items()))
+            raise CampaignError(f"{len(failures)} of {len(running)} runs failed: {causes}")
 
     def _keep(self, seed: int, result: Any) -> None:
         """Writes a result in one step: a file is whole or not there."""
@@ -66,7 +106,7 @@ class Campaign:
 
 @contextmanager
 def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
-    """Gives processes of this machine, or the workers of a Dask cluster by the address of its scheduler.
+    """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
 
     Raises:
         CampaignError: Dask is not installed, or there is no scheduler at that address.
@@ -78,9 +118,9 @@ def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
     try:
         dask: Any = import_module("distributed")
     except ImportError as error:
-        raise CampaignError(f"a cluster needs Dask, which is not installed: {INSTALL}") from error
+        raise CampaignError(f"a cluster needs Dask, which is not installed; type: {INSTALL}") from error
     try:
-        client = dask.Client(cluster, timeout=5)
+        client = dask.Client(cluster, timeout=CONNECT_S)
     except (OSError, ValueError) as error:
         raise CampaignError(f"no Dask scheduler at {cluster}: {error}") from error
     with client, client.get_executor(pure=False) as workers:

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 
 from fwk.testing import launch_plan, system_of
+from fwk.testing.campaign import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import piece_of
-from procs.evaluation.plots import plot
 from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, ratio, root_ratio, rows_of
 from procs.model.frames import Floats
 
@@ -24,11 +24,15 @@ def measured(file: str, time_s: float, seed: int) -> dict[str, list[float] | lis
 
 
 def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
-    """Writes table.csv, table.json and measures.png into the folder; returns the table."""
+    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table."""
     pieces: list[Samples] = [{name: _samples(values, name) for name, values in result.items()} for result in results]
     rows = rows_of(pieces)
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
+    try:
+        from procs.evaluation.plots import plot  # takes a second, which starts of a match would pay, too
+    except ImportError:
+        return f"{as_text(rows)}\nno picture: matplotlib is not installed; type: {INSTALL}"
     plot(rows, folder / "measures.png")
     return as_text(rows)
 

@@ -139,6 +139,12 @@ def as_csv(rows: Sequence[Row]) -> str:
 
 
 def as_json(rows: Sequence[Row]) -> str:
-    """Returns the table for programs; values without a number are null."""
-    plain = [{key: None if value != value else value for key, value in asdict(row).items()} for row in rows]
-    return json.dumps(plain, indent=1)
+    """Returns the table for programs; values that are infinite or no number are null, as JSON has neither."""
+    plain = [
+        {
+            key: None if isinstance(value, float) and not np.isfinite(value) else value
+            for key, value in asdict(row).items()
+        }
+        for row in rows
+    ]
+    return json.dumps(plain, indent=1, allow_nan=False)

@@ -13,7 +13,7 @@ from fwk.cli.output import BAD_INPUT
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
 from fwk.plan.load import load_plan
-from fwk.testing.campaign import Campaign, CampaignError, executor_of
+from fwk.testing.campaign import Campaign, CampaignError, Evaluation, executor_of
 
 
 def eval(  # noqa: A001 - the name of the command
@@ -30,6 +30,9 @@ def eval(  # noqa: A001 - the name of the command
 ) -> None:
     """Plays a launch file with many seeds and measures it; an interrupted evaluation goes on where it was.
 
+    FOLDER gets the result of each seed, and what the launch file's evaluation makes of them: tables, pictures.
+    A cluster needs: pip install 'fwk[eval]'; its workers need this project and the launch file at the same place.
+
     Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input.
     """
     try:
@@ -41,22 +44,34 @@ def eval(  # noqa: A001 - the name of the command
         typer.echo(f"error: {file} names no 'evaluation: module:function'", err=True)
         raise typer.Exit(BAD_INPUT)
     use_folders(plan.folders)
-    name, _, function = plan.evaluation.partition(":")
-    module, numbers = import_module(name), _numbers(seeds)
-    folder = out or Path(f"eval-{plan.name}")
+    numbers, folder = _numbers(seeds), out or Path(f"eval-{plan.name}")
     try:
         campaign = Campaign(folder, {"file": plan.file, "time_s": time_s, "by": plan.evaluation})
-        left = campaign.missing(numbers)
-        with (
-            executor_of(jobs or os.cpu_count() or 1, cluster) as executor,
-            typer.progressbar(length=len(left), label=f"{len(left)} of {len(numbers)} runs", file=sys.stderr) as bar,
-        ):
-            for _ in campaign.play(getattr(module, function), file, time_s, left, executor):
-                bar.update(1)
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(1) from error
-    typer.echo(module.report(campaign.results(numbers), folder))
+    failure = _play(campaign, Evaluation(plan.evaluation, plan.folders), file, time_s, numbers, jobs, cluster)
+    if results := campaign.results(numbers):
+        typer.echo(import_module(plan.evaluation.partition(":")[0]).report(results, folder))
+    if failure:
+        typer.echo(f"error: {failure}", err=True)
+        raise typer.Exit(1)
+
+
+def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds: range, jobs: int, cluster: str) -> str:
+    """Plays the runs that have no result yet; returns why runs have none, or an empty text."""
+    left = campaign.missing(seeds)
+    label = f"{len(left)} of {len(seeds)} runs"
+    try:
+        with (
+            executor_of(jobs or os.cpu_count() or 1, cluster) as executor,
+            typer.progressbar(length=len(left), label=label, file=sys.stderr) as bar,
+        ):
+            for _ in campaign.play(work, file, time_s, left, executor):
+                bar.update(1)
+    except CampaignError as error:
+        return str(error)
+    return ""
 
 
 def _numbers(text: str) -> range:

@@ -1,5 +1,6 @@
 """An evaluation that measures nothing but its own arguments, of a component that does nothing."""
 
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,10 +18,10 @@ class Idle(Component):
 
 
 def measured(file: str, time_s: float, seed: int) -> dict[str, Any]:
-    """Returns the arguments; seed 13 fails."""
+    """Returns the arguments and the number of the process; seed 13 fails."""
     if seed == 13:
         raise ValueError("an unlucky seed")
-    return {"time_s": time_s, "seed": seed}
+    return {"time_s": time_s, "seed": seed, "process": os.getpid()}
 
 
 def report(results: Sequence[dict[str, Any]], folder: Path) -> str:

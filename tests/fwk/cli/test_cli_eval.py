@@ -1,8 +1,13 @@
 """`fwk eval`: many seeded runs of a launch file, kept in a folder."""
 
 import json
-from concurrent.futures import ThreadPoolExecutor
+import os
+import re
+import sys
+from concurrent.futures import Executor, Future, ThreadPoolExecutor
+from importlib import import_module
 from pathlib import Path
+from typing import Any
 
 import pytest
 from typer.testing import CliRunner
@@ -36,13 +41,14 @@ def evaluated(*words: str) -> tuple[int, str, str]:
 def test_each_seed_is_measured_and_reported(launch: Path) -> None:
     assert evaluated(str(launch), "--seeds", "1..3", "--time", "2", "--jobs", "1")[:2] == (0, "1 2 3\n")
     kept = json.loads((launch.parent / "eval-it" / "seed-2.json").read_text())
-    assert kept == {"time_s": 2.0, "seed": 2}
+    assert (kept["time_s"], kept["seed"]) == (2.0, 2)
     assert (launch.parent / "eval-it" / "seeds.txt").read_text() == "1 2 3"
 
 
-def test_interrupted_evaluation_goes_on(launch: Path) -> None:
-    result = CliRunner().invoke(app, ["eval", str(launch), "--seeds", "12..13", "--jobs", "1"])
-    assert isinstance(result.exception, ValueError)
+def test_interrupted_evaluation_resumes(launch: Path) -> None:
+    code, table, said = evaluated(str(launch), "--seeds", "12..14", "--jobs", "1")
+    assert (code, table) == (1, "12 14\n")
+    assert "error: 1 of 3 runs failed: seed 13: ValueError: an unlucky seed" in said
     kept = launch.parent / "eval-it" / "seed-12.json"
     kept.write_text(kept.read_text().replace("12", "120"))  # it is not played again
     assert evaluated(str(launch), "--seeds", "12", "--jobs", "1")[:2] == (0, "120\n")
@@ -75,10 +81,13 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert "holds another campaign" in said
 
 
-def test_results_stay_when_a_later_run_fails(tmp_path: Path) -> None:
+def test_results_stay_when_another_run_fails(tmp_path: Path) -> None:
     first = Campaign(tmp_path, {"file": "it"})
-    with ThreadPoolExecutor(1) as executor, pytest.raises(ValueError, match="an unlucky seed"):
-        list(first.play(measured, "it", 1.0, [11, 12, 13], executor))
+    with (
+        ThreadPoolExecutor(1) as executor,
+        pytest.raises(CampaignError, match="1 of 3 runs failed: seed 13: ValueError"),
+    ):
+        list(first.play(measured, "it", 1.0, [11, 13, 12], executor))
     again = Campaign(tmp_path, {"file": "it"})
     assert again.missing([11, 12, 13, 14]) == [13, 14]
     assert [result["seed"] for result in again.results([11, 12, 13])] == [11, 12]
@@ -86,7 +95,49 @@ def test_results_stay_when_a_later_run_fails(tmp_path: Path) -> None:
         assert list(again.play(measured, "it", 1.0, [11, 12, 14], executor)) == [14]
 
 
-def test_without_dask_the_command_names_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(__import__("sys").modules, "distributed", None)
-    with pytest.raises(CampaignError, match=f"not installed: {campaign.INSTALL}"), executor_of(1, "tcp://127.0.0.1:9"):
+def test_early_stop_cancels_runs_that_did_not_begin(tmp_path: Path) -> None:
+    begun: list[int] = []
+    executor = Queue()
+    runs = Campaign(tmp_path, {"file": "it"}).play(lambda *words: begun.append(words[2]), "it", 1.0, range(5), executor)
+    next(runs)
+    runs.close()
+    assert (begun, [each.cancelled() for each in executor.futures]) == ([0], [False, True, True, True, True])
+
+
+class Queue(Executor):
+    """Runs the first call at once, and never the others."""
+
+    def __init__(self) -> None:
+        self.futures: list[Future[Any]] = []
+
+    def submit(self, work: Any, /, *words: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+        self.futures.append(future)
+        if len(self.futures) == 1:
+            future.set_result(work(*words, **named))
+        return future
+
+
+@pytest.mark.slow
+def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
+    distributed: Any = import_module("distributed")
+    with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+        address = client.scheduler.address
+        assert evaluated(str(launch), "--seeds", "1..4", "--cluster", address)[:2] == (0, "1 2 3 4\n")
+        code, _, said = evaluated(str(launch), "--seeds", "12..13", "--cluster", address)
+        assert (code, "seed 13: ValueError: an unlucky seed" in said) == (1, True)
+    results = [json.loads((launch.parent / f"eval-it/seed-{seed}.json").read_text()) for seed in (1, 2, 3, 4, 12)]
+    assert len({result["process"] for result in results} - {os.getpid()}) == 2
+
+
+def test_address_without_a_scheduler_is_named(launch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(campaign, "CONNECT_S", 0.1)
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--cluster", "tcp://127.0.0.1:9")
+    assert (code, "no Dask scheduler at tcp://127.0.0.1:9" in said) == (1, True)
+
+
+def test_missing_dask_is_named_with_the_line_to_type(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    right = "a cluster needs Dask, which is not installed; type: pip install 'fwk[eval]'"
+    with pytest.raises(CampaignError, match=re.escape(right)), executor_of(1, "tcp://127.0.0.1:9"):
         pass

@@ -2,12 +2,14 @@
 
 import csv
 import json
+import sys
 from pathlib import Path
 
 import cv2
 import pytest
 
 from procs.evaluation.match import measured, report
+from procs.evaluation.table import MEASURES
 
 SECONDS = 4.5
 
@@ -26,3 +28,11 @@ def test_report_of_two_short_pieces(tmp_path: Path) -> None:
     picture = cv2.imread(str(tmp_path / "measures.png"))
     assert picture is not None
     assert picture.std() > 1.0
+
+
+def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
+    monkeypatch.delitem(sys.modules, "procs.evaluation.plots", raising=False)
+    text = report([{each.name: [] for each in MEASURES}], tmp_path)
+    assert text.endswith("no picture: matplotlib is not installed; type: pip install 'fwk[eval]'")
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["table.csv", "table.json"]

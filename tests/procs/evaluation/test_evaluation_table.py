@@ -55,3 +55,8 @@ def test_single_piece_has_no_interval() -> None:
     rows = rows_of([{"error": np.array([4.0])}], [ERROR])
     assert as_text(rows).splitlines()[1].split() == ["error", "2.000", "1", "m", "<=", "1"]
     assert json.loads(as_json(rows))[0]["low"] is None
+
+
+def test_infinite_value_stays_valid_json() -> None:
+    rows = rows_of([{"delay": np.full(3, np.inf)}], [Measure("delay", median, "s", "<= 1")])
+    assert json.loads(as_json(rows), parse_constant=pytest.fail)[0]["value"] is None
