@@ -2,6 +2,7 @@
 
 import csv
 import json
+import subprocess
 import sys
 from pathlib import Path
 
@@ -36,3 +37,9 @@ def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkey
     text = report([{each.name: [] for each in MEASURES}], tmp_path)
     assert text.endswith("no picture: matplotlib is not installed; type: pip install 'fwk[eval]'")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["table.csv", "table.json"]
+
+
+def test_a_match_starts_without_the_drawing_library() -> None:
+    program = "import sys, procs.evaluation.match; print('matplotlib' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout == "False\n"
