@@ -1,4 +1,4 @@
-"""When a message that was not answered is repeated: ticks, dones, fetches."""
+"""Intervals at which messages without an answer are repeated: ticks, dones, fetches."""
 
 _MARGIN_US = 100
 _AT_FIRST_US = 20_000

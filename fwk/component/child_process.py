@@ -16,7 +16,7 @@ from fwk.model.parent_death import die_with_parent
 ANSWER_BYTES_MAX = 64 << 20
 _PIECE = 1 << 16
 _EXIT_S = 1.0
-"""How long a program may take to end after its last answer."""
+"""Time that a program has to end after its last answer."""
 
 
 class ProgramError(Exception):

@@ -30,7 +30,7 @@ class LineGroup:
         """Newest line of the group."""
         self.count = 1
         self.since_us = 0
-        """When the group began, in monotonic wall time."""
+        """Begin of the group, in monotonic wall time."""
         self.printed = 1
 
     @property

@@ -51,7 +51,7 @@ class Assignment:
     fresh_code: bool = False
     """Whether the process imports the application's modules anew."""
     marker: WorkMarker | None = None
-    """Where the host notes which of its components it executes."""
+    """Marker in which the host notes the component that it executes."""
     before: Mapping[str, Declaration] = field(default_factory=dict)
     """With fresh code: what the components' classes declared until then, by component."""
     further_stages: Sequence[int] = ()

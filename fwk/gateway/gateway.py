@@ -9,7 +9,6 @@ from typing import Any
 from fwk.bus import sync
 from fwk.bus.network import Network, Steps
 from fwk.bus.receiver import Complaints, Receiver
-from fwk.bus.retransmission import Backoff
 from fwk.bus.sender import Sender
 from fwk.clock import Clock
 from fwk.component.log import Logger, is_plausible
@@ -19,20 +18,18 @@ from fwk.gateway.dynamic_channels import FollowedChannels
 from fwk.gateway.fetch_server import FetchServer
 from fwk.gateway.ingress import Ingress
 from fwk.gateway.pacing import PacedPublisher
+from fwk.gateway.record_queue import RecordQueue
 from fwk.host.inputs import Inputs
 from fwk.lcm import messages
 from fwk.lcm.messages import Header, MessageError
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from lcmtypes.core import (
-    announcement_t,
     done_t,
-    fetch_records_t,
     fetch_t,
     gone_t,
     leaving_t,
     log_t,
-    protocol_t,
     recorded_t,
     status_t,
     taken_t,
@@ -55,8 +52,6 @@ FINISHING_US = 500_000
 """Wall time between two such packets."""
 IDLE_US = 100_000
 """Wall time without any event after which the supervisor may have lost a report."""
-SECOND_REQUEST_US = 5_000
-LONGEST_REQUEST_US = 20_000
 
 
 class Gateway:
@@ -81,14 +76,11 @@ class Gateway:
         """The dynamic channels."""
         self._ingress = Ingress(plan, sender, self._inputs, self.clock, complaints)
         self._fetches = FetchServer(plan, self._inputs, self._ingress, sender, self._give_up)
-        supervisor = (ports.supervisor,), "the supervisor's"
-        self._records = Receiver(network.group_socket(ports.record), *supervisor, "fwk/record", complaints)
-        self._status = Receiver(network.group_socket(ports.status), *supervisor, "fwk/status", complaints)
+        self._records = RecordQueue(plan, run, network, sender, complaints, self.dynamic, self._acknowledge)
+        status = network.group_socket(ports.status)
+        self._status = Receiver(status, (ports.supervisor,), "the supervisor's", "fwk/status", complaints)
         self._lines = Receiver(network.group_socket(ports.log), ports.members, "of this run", "fwk/log", complaints)
         self._own = Receiver(sender.socket, ports.members, "of this run", "fwk/fetch", complaints)
-        self._waiting: dict[int, tuple[tick_record_t, bytes]] = {}
-        self._next = 1  # tick whose record comes next
-        self._request: Backoff | None = None  # of the record that is missing
         self._open = True
         self._idle_us = 0
         self._handlers: dict[int, Callable[[], object]] = {
@@ -99,7 +91,7 @@ class Gateway:
         }
         if public:
             self._handlers[public.fileno()] = self._hear_outside
-        for descriptor in (*self._handlers, self._records.fileno()):
+        for descriptor in (*self._handlers, self._records.receiver.fileno()):
             network.watch(descriptor)
         self._overrun = ""  # listener that was reported last
         self.publisher = PacedPublisher(
@@ -134,7 +126,7 @@ class Gateway:
                 self._idle_us = self._network.now_us() + IDLE_US
             elif self._network.now_us() >= self._idle_us:
                 self._idle()
-            self._request_records()
+            self._records.request_missing()
         yield from self._finish()
 
     def take_in(self, channel: str, message: Any) -> int:
@@ -151,12 +143,11 @@ class Gateway:
     def _idle(self) -> None:
         """Repeats the last report if the supervisor may lack it."""
         self._idle_us = self._network.now_us() + IDLE_US
-        if self._ingress.marks or self._next == 1:
+        if self._ingress.marks or self._records.next == 1:
             self._acknowledge()
 
     def _wake_us(self) -> int:
-        due_us = self._request.due_us if self._request else self._idle_us
-        return min(self._idle_us, due_us, self._sender.due_us, self.publisher.due_us)
+        return min(self._idle_us, self._records.due_us, self._sender.due_us, self.publisher.due_us)
 
     def _send_due(self) -> None:
         """Sends delayed data: fragments, messages for the public bus, a request for missing records."""
@@ -177,12 +168,12 @@ class Gateway:
         for sink in self.sinks:
             sink.close()
         self._inputs.close()
-        for receiver in (self._records, self._lines, self._status, self._own):
+        for receiver in (self._records.receiver, self._lines, self._status, self._own):
             receiver.socket.close()
 
     def _publish_rest(self) -> Steps[None]:
         """Sends what waits for the public bus, at the pace of its listeners, as long as the supervisor lets it."""
-        for descriptor in (*self._handlers, self._records.fileno()):
+        for descriptor in (*self._handlers, self._records.receiver.fileno()):
             self._network.unwatch(descriptor)
         now_us = report_us = self._network.now_us()
         end_us = now_us + FINISH_US
@@ -198,46 +189,11 @@ class Gateway:
             self._publish_due()
 
     def _receive_records(self) -> Steps[None]:
-        for channel, data in self._records.messages(sync.RECORD, sync.ANNOUNCE):
-            try:
-                if channel == sync.ANNOUNCE:
-                    self._hear_announcement(sync.decode_announcement(data))
-                else:
-                    self._hear_record(sync.decode_record(data), data)
-            except (MessageError, ValueError) as error:
-                self._records.refuse(str(error))
-        while self._next in self._waiting:
-            record, data = self._waiting.pop(self._next)
-            if not (yield from self._take(record, data)):
+        self._records.receive()
+        while next_record := self._records.take():
+            if not (yield from self._take(*next_record)):
                 return
-            self._next += 1
-            self._request = None  # each record has waits of its own
-            self._acknowledge()
-
-    def _hear_announcement(self, announcement: announcement_t) -> None:
-        if announcement.run == self._run:
-            self.dynamic.announce(announcement.change)
-            self._acknowledge()
-
-    def _hear_record(self, record: tick_record_t, data: bytes) -> None:
-        if record.run != self._run:
-            return
-        self._check(record)
-        if record.tick >= self._next:
-            self._waiting[record.tick] = (record, data)
-        else:
-            self._acknowledge()
-
-    def _check(self, record: tick_record_t) -> None:
-        """Raises ValueError or MessageError for a record that names what the plan does not have."""
-        channels = len(self._plan.channels) + self._plan.spare_channels
-        named = [*record.channel, *(each.channel for each in record.voids)]
-        if record.version != protocol_t.VERSION:
-            raise MessageError(f"protocol version {record.version}, this gateway has {protocol_t.VERSION}")
-        if any(not 0 <= channel < channels for channel in named):
-            raise MessageError("a tick record with a channel that the plan does not have")
-        if record.channels:
-            self.dynamic.check(record.channels)
+            self._records.taken()
 
     def _take(self, record: tick_record_t, recorded: bytes) -> Steps[bool]:
         """Passes a tick on to the sinks; returns False if the supervisor closed the connection."""
@@ -270,7 +226,7 @@ class Gateway:
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
         """Fetches visible messages that are missing; during the wait only hosts and the supervisor are served."""
-        descriptors = (*self._handlers, self._records.fileno())
+        descriptors = (*self._handlers, self._records.receiver.fileno())
         others = [each for each in descriptors if each not in (self._own.fileno(), self._control.fileno())]
         for descriptor in others:
             self._network.unwatch(descriptor)
@@ -287,23 +243,10 @@ class Gateway:
     def _acknowledge(self) -> None:
         """Reports to the supervisor the newest recorded tick, the channels received, and the messages from outside."""
         recorded = recorded_t()
-        recorded.run, recorded.tick, recorded.change = self._run, self._next - 1, self.dynamic.announced
+        recorded.run, recorded.tick, recorded.change = self._run, self._records.next - 1, self.dynamic.announced
         marks = self._ingress.marks
         recorded.channel, recorded.sequence = list(marks), list(marks.values())
         self._sender.publish(sync.RECORDED, sync.encode_recorded(recorded), self._ports.sync)
-
-    def _request_records(self) -> None:
-        """Asks the supervisor for missing tick records, repeatedly until they come."""
-        if self._next in self._waiting or not self._waiting:
-            self._request = None
-            return
-        now_us = self._network.now_us()
-        self._request = self._request or Backoff(now_us, 0, LONGEST_REQUEST_US, SECOND_REQUEST_US)
-        if now_us >= self._request.due_us:
-            self._request.repeated(now_us)
-            fetch = fetch_records_t()
-            fetch.run, fetch.first_tick, fetch.last_tick = self._run, self._next, min(self._waiting) - 1
-            self._sender.send(sync.FETCH_RECORDS, fetch.encode(), self._ports.supervisor)
 
     def _pass_on(self, receiver: Receiver, kind: type) -> None:
         for channel, data in receiver.messages(receiver.topic.encode()):

@@ -16,7 +16,7 @@ _CONFIG: Any = {"extra": "forbid", "use_attribute_docstrings": True, "allow_inf_
 
 @dataclass(frozen=True)
 class RestartPolicy:
-    """When a component that ended is started again."""
+    """Condition for starting a component again that ended."""
 
     __pydantic_config__ = _CONFIG
     when: RestartWhen = "on-failure"

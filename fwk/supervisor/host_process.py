@@ -177,13 +177,13 @@ class HostProcess:
         return self.wanted and self.actual_run != self.desired_run and self._state in IDLE
 
     def not_ready_in_time(self, now_us: int) -> bool:
-        """Whether it has exceeded the time to become ready."""
+        """Returns whether it has exceeded the time to become ready."""
         limit_us = self.ready_timeout_us
         starting = self._state is HostState.STARTING and not self.held
         return starting and limit_us is not None and now_us - self.since_us > limit_us
 
     def not_stopped_in_time(self, now_us: int) -> bool:
-        """Whether it has exceeded the time to end."""
+        """Returns whether it has exceeded the time to end."""
         limit_us = self.stop_timeout_us
         return self._state is HostState.STOPPING and limit_us is not None and now_us - self.since_us > limit_us
 

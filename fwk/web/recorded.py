@@ -11,7 +11,7 @@ from fwk.recording.play.timeline import Timeline
 
 LOG = "log.lcm"
 _BEGIN_TICKS = 20
-"""What is written only at the beginning, such as the measures of a field, is known at every tick."""
+"""Channels that are written only at the beginning, such as the measures of a field; known at every tick."""
 _BACK_TICKS = 100
 """After a jump, what was not written in so many ticks is not known."""
 

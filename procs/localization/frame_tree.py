@@ -9,7 +9,7 @@ from procs.model.geometry import plausible
 
 
 class Mounting(Config):
-    """Where a part sits; turned about the x axis of its parent, then y, then z."""
+    """Place of a part; turned about the x axis of its parent, then y, then z."""
 
     parent: str = "base"
     """Frame that it is mounted on."""

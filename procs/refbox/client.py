@@ -15,7 +15,7 @@ _TIMEOUT_S = 1.0
 
 
 class ClientConfig(Config):
-    """Where the RefBox is."""
+    """Address of the RefBox."""
 
     host: str = "127.0.0.1"
     """Its address."""

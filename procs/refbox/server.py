@@ -14,7 +14,7 @@ _BACKLOG = 16
 
 
 class ServerConfig(Config):
-    """Where base stations find the server."""
+    """Address at which base stations find the server."""
 
     host: str = "127.0.0.1"
     """Address on which it listens; 0.0.0.0 lets other machines in."""

@@ -53,7 +53,7 @@ class SimulatorConfig(Config):
     errors: Changes = {}
     """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
     starts: dict[str, tuple[float, float, float]] = {}
-    """Where robots begin: name to x in m, y in m and heading in rad (world frame); others take the default place."""
+    """Starts of the robots: name to x in m, y in m and heading in rad (world frame); others take the default place."""
     period_s: float = Setting(0.0, ge=0.0)
     """Logical time of a tick; 0: the system's."""
     command_timeout_s: PositiveFloat = 0.25

@@ -51,7 +51,7 @@ class PlayerConfig(Config):
     crash_tick: int = 0
     """Tick in which the component fails, once; 0: none."""
     crash_in: str = "loop"
-    """Where it fails: init, loop or finalize."""
+    """Function in which the component fails: init, loop or finalize."""
     eager: float = 0.3
     """Probability of a request in an iteration."""
     early: bool = False

@@ -60,7 +60,7 @@ class ProcessStarter(Protocol):
         ...
 
     def debugs(self, host: int) -> bool:
-        """Whether the first process of a host runs under a debugger."""
+        """Returns whether the first process of a host runs under a debugger."""
         ...
 
     def component_at(self, host: int) -> int:

@@ -68,7 +68,7 @@ class Zygote:
         return self._progress.at(host)
 
     def debugs(self, host: int) -> bool:
-        """Whether the first process of a host runs under a debugger."""
+        """Returns whether the first process of a host runs under a debugger."""
         return host == self._debugged
 
     def start(self, host: int, start: Start, fresh_code: bool) -> None:

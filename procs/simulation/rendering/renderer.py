@@ -21,7 +21,7 @@ _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 
 @dataclass(frozen=True)
 class Pose:
-    """Where a robot stands in the world frame."""
+    """Pose of a robot in the world frame."""
 
     x_m: float
     y_m: float

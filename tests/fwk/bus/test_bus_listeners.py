@@ -1,4 +1,4 @@
-"""Which programs listen on a port, and whether they still process what they received."""
+"""Programs that listen on a port, and whether they keep up with what they receive."""
 
 import os
 import socket

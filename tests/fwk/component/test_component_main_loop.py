@@ -1,4 +1,4 @@
-"""What components see of the main loop, without processes."""
+"""The main loop as components see it, without processes."""
 
 import pytest
 

@@ -118,7 +118,7 @@ class MirrorConfig(Config):
 
 class MirroredConfig(Config):
     mirror: MirrorConfig = MirrorConfig()
-    """How the camera sees."""
+    """Settings of the camera."""
     gain: float = 1.0
     """Of its own."""
 

@@ -1,4 +1,4 @@
-"""What people type into pages, and what pages say."""
+"""Texts that people type into pages, and the answers of the pages."""
 
 from typing import Any
 

@@ -5,7 +5,7 @@ from lcmtypes.thing import thing_t
 
 
 class Level(Aspect):
-    """What components get that declare `level: Level`."""
+    """Object given to components that declare `level: Level`."""
 
     thing: Reads[thing_t]
 
@@ -18,7 +18,7 @@ class ThingConfig(Config):
     """Settings of the provider."""
 
     loss: float = 0.01
-    """What the level loses in each iteration."""
+    """Decrease of the level in each iteration."""
 
 
 class Thing(Component):
