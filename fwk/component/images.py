@@ -82,14 +82,17 @@ class Ring:
         pixels = np.frombuffer(self._memory, np.uint8, size, start + _PAGE).copy()
         return pixels if _MARKS.unpack_from(self._memory, start) == (number, number) else None
 
-    def newest(self) -> tuple[int, Frame] | None:
-        """Returns number and copy of the newest frame, for readers without announcements; None before the first."""
+    def newest(self, wanted: int = 0) -> tuple[int, Frame] | None:
+        """Returns number and copy of the newest frame, or of a wanted one if the ring still holds it.
+
+        For readers without announcements. None before the first frame.
+        """
         starts = [slot * (_PAGE + SLOT_BYTES) for slot in range(self.slots)]
         for _ in range(_TRIES):
             marks = [(*_MARKS.unpack_from(self._memory, start), start) for start in starts]
             whole = [(before, start) for before, after, start in marks if before == after > 0]
             if whole:
-                number, start = max(whole)
+                number, start = max(whole, key=lambda each: (each[0] == wanted, each[0]))
                 shape = shape_of(*_SHAPE.unpack_from(self._memory, start + _MARKS.size))
                 pixels = self.get(number, math.prod(shape))
                 if pixels is not None:

@@ -4,12 +4,14 @@ const TRAIL_MS = 2000;
 export default {
   template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
   props: { url: String, label: String, period: { type: Number, default: 50 }, hidden: { type: Array, default: () => [] },
-           drags: Boolean },
+           drags: Boolean, images: String },
   mounted() {
     this.canvas = this.$el.firstChild;
     this.scale = 0; // pixels a metre; 0: not chosen yet
     this.trails = new Map();
     this.drawing = null;
+    this.image = null;
+    this.up = 1; // y points up; over an image down
     this.layers = "";
     this.open = true;
     this.frames = 0;
@@ -30,12 +32,26 @@ export default {
       const began = performance.now();
       try {
         const answer = await fetch(this.url);
-        if (answer.ok) this.take(await answer.json());
+        if (answer.ok) {
+          const drawing = await answer.json();
+          if (drawing.picture) await this.load(drawing.picture);
+          this.take(drawing);
+        }
       } catch (error) { /* the console restarts; the next request finds out */ }
       setTimeout(() => requestAnimationFrame(this.ask), Math.max(0, this.period - (performance.now() - began)));
     },
+    async load(picture) {
+      const url = `${this.images}&channel=${encodeURIComponent(picture.camera)}&frame=${picture.frame}`;
+      if (url === this.loaded) return;
+      const answer = await fetch(url);
+      if (!answer.ok) return;
+      this.image = await createImageBitmap(await answer.blob());
+      this.loaded = url;
+      this.canvas.dataset.picture = picture.frame;
+    },
     take(drawing) {
       this.drawing = drawing;
+      this.up = drawing.picture ? -1 : 1;
       this.frames += 1;
       this.canvas.dataset.frames = this.frames;
       const now = performance.now();
@@ -78,7 +94,10 @@ export default {
       pen.fillStyle = this.drawing.background || getComputedStyle(document.body).backgroundColor;
       pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
       const s = this.scale * dots;
-      pen.setTransform(s, 0, 0, -s, (width * dots) / 2 - this.middle[0] * s, (height * dots) / 2 + this.middle[1] * s);
+      pen.setTransform(s, 0, 0, -s * this.up, (width * dots) / 2 - this.middle[0] * s,
+                       (height * dots) / 2 + this.middle[1] * s * this.up);
+      if (this.drawing.picture && this.image)
+        pen.drawImage(this.image, -0.5, -0.5, this.drawing.picture.width, this.drawing.picture.height);
       pen.lineCap = "round"; pen.lineJoin = "round";
       const shown = this.drawing.shapes.filter((shape) => !this.hidden.includes(shape.l));
       for (const shape of shown) if (shape.trail) this.paintTrail(pen, shape);
@@ -110,7 +129,7 @@ export default {
     },
     paintText(pen, shape) {
       pen.save();
-      pen.translate(shape.x, shape.y); pen.scale(0.01, -0.01);
+      pen.translate(shape.x, shape.y); pen.scale(0.01, -0.01 * this.up);
       pen.font = `${Math.max(shape.h * 100, 900 / this.scale)}px system-ui, sans-serif`;
       pen.textAlign = "center"; pen.textBaseline = "middle"; pen.fillStyle = shape.fill;
       pen.fillText(shape.s, 0, 0);
@@ -119,7 +138,7 @@ export default {
     at(event) {
       const [width, height] = [this.canvas.clientWidth, this.canvas.clientHeight];
       return [this.middle[0] + (event.offsetX - width / 2) / this.scale,
-              this.middle[1] - (event.offsetY - height / 2) / this.scale];
+              this.middle[1] - (this.up * (event.offsetY - height / 2)) / this.scale];
     },
     hit(x, y, what) {
       let best = null, least = Infinity;
@@ -161,7 +180,7 @@ export default {
         this.paint();
       } else {
         this.middle = [this.middle[0] - (event.offsetX - last[0]) / this.scale,
-                       this.middle[1] + (event.offsetY - last[1]) / this.scale];
+                       this.middle[1] + (this.up * (event.offsetY - last[1])) / this.scale];
         this.paint();
       }
     },
@@ -181,7 +200,8 @@ export default {
     key(event) {
       const [x, y] = [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2];
       const step = 40 / (this.scale || 1);
-      const moves = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] };
+      const up = step * this.up;
+      const moves = { ArrowLeft: [-step, 0], ArrowRight: [step, 0], ArrowUp: [0, up], ArrowDown: [0, -up] };
       if (event.key === "+") this.zoom(1.2, x, y);
       else if (event.key === "-") this.zoom(1 / 1.2, x, y);
       else if (event.key === "0") { this.scale = 0; this.paint(); }

@@ -14,20 +14,22 @@ class Canvas(Element, component="canvas.js"):
         label: what a screen reader says.
         period_s: least time from drawing to drawing.
         drags: whether shapes can be dragged.
+        images: where the images of cameras come from; the canvas adds camera and frame.
     """
 
-    def __init__(self, url: str, label: str, period_s: float, drags: bool) -> None:
+    def __init__(self, url: str, label: str, period_s: float, drags: bool = False, images: str = "") -> None:
         super().__init__()
-        self._props.update({"url": url, "label": label, "period": round(period_s * 1000), "drags": drags, "hidden": []})
+        self._props.update({"url": url, "label": label, "period": round(period_s * 1000)})
+        self._props.update({"drags": drags, "hidden": [], "images": images})
 
     def hide(self, layers: Sequence[str]) -> None:
         """Hides layers; shows all others."""
         self._props["hidden"] = list(layers)
         self.update()
 
-    def show(self, url: str) -> None:
-        """Asks another address for drawings."""
-        self._props["url"] = url
+    def show(self, url: str, images: str = "") -> None:
+        """Asks other addresses for drawings and images."""
+        self._props.update({"url": url, "images": images})
         self.update()
 
     def on_pick(self, take: Callable[[str], Any]) -> None:

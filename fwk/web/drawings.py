@@ -20,6 +20,7 @@ from fwk.display.graph_svg import svg
 from fwk.lcm.event_log import LogError
 from fwk.recording.play.timeline import MomentError
 from fwk.web.console import Console
+from fwk.web.device_view import DeviceView
 from fwk.web.general_view import GeneralView
 from fwk.web.rates import Rates
 from fwk.web.scene import Newest, Scene
@@ -34,27 +35,26 @@ def add_drawings(app: FastAPI, console: Console) -> None:
     """Adds the addresses `/drawing` and `/image`."""
 
     async def drawing(request: Request) -> Response:
-        run, number = request.query_params.get("run", ""), request.query_params.get("view", "0")
+        run, number, device = (request.query_params.get(key, "") for key in ("run", "view", "device"))
 
         async def draw() -> bytes:
-            link = console.runs.link(run)
-            views = await views_of(console, run)
-            view = views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
-            newest = await link.newest(view.channels, view.members)
+            view = chosen(await views_of(console, run), number, device)
+            newest = await console.runs.link(run).newest(view.channels, view.members)
             return await asyncio.to_thread(drawn, view, newest)
 
         try:
-            data = await console.shared.get(("drawing", run, number), _DRAWING_AGE_S, draw)
+            data = await console.shared.get(("drawing", run, number, device), _DRAWING_AGE_S, draw)
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
         return Response(data, 200, _NO_STORE, "application/json")
 
     async def image(request: Request) -> Response:
-        run, channel = request.query_params.get("run", ""), request.query_params.get("channel", "")
+        run, channel, frame = (request.query_params.get(key, "") for key in ("run", "channel", "frame"))
+        number = int(frame) if frame.isdecimal() else 0
         try:
             pid = (await console.runs.link(run).about())["pid"]
-            key = ("image", pid, channel)
-            data = await console.shared.get(key, _IMAGE_AGE_S, lambda: asyncio.to_thread(_image, pid, channel))
+            key = ("image", pid, channel, number)
+            data = await console.shared.get(key, _IMAGE_AGE_S, lambda: asyncio.to_thread(_image, pid, channel, number))
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
         if data is None:
@@ -76,16 +76,15 @@ def add_drawings(app: FastAPI, console: Console) -> None:
         return Response(svg(found.around([around]) if around else found), 200, _NO_STORE, "image/svg+xml")
 
     async def recorded(request: Request) -> Response:
-        name, number, tick = (request.query_params.get(key, "") for key in ("log", "view", "tick"))
+        name, number, device, tick = (request.query_params.get(key, "") for key in ("log", "view", "device", "tick"))
         try:
             run = console.recorded(name)
-            views = views_of_recording(console, name)
-            view = views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
+            view = chosen(views_of_recording(console, name), number, device)
             newest = await asyncio.to_thread(run.newest, int(tick) if tick.isdecimal() else 1)
         except (LogError, MomentError) as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
-        chosen = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
-        return Response(await asyncio.to_thread(drawn, view, chosen), 200, _NO_STORE, "application/json")
+        wanted = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
+        return Response(await asyncio.to_thread(drawn, view, wanted), 200, _NO_STORE, "application/json")
 
     app.add_route("/graph.svg", graph_svg)
     app.add_route("/recorded", recorded)
@@ -108,6 +107,13 @@ def views_of_recording(console: Console, name: str) -> list[View]:
     return [*console.extensions.views_for(console.recorded(name).info.channels), GeneralView()]
 
 
+def chosen(views: list[View], number: str, device: str) -> View:
+    """Returns the view that an address names: that of a device, or one of the list; otherwise the first."""
+    if device:
+        return DeviceView(device, views)
+    return views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
+
+
 def wants(view: View, channel: str, value: Any) -> bool:
     """Tells whether a view draws a message."""
     named = any(fnmatchcase(channel, pattern) for pattern in view.channels)
@@ -125,11 +131,11 @@ def drawn(view: View, newest: dict[str, Any]) -> bytes:
     return scene.encoded()
 
 
-def _image(pid: int, channel: str) -> bytes | None:
-    """Returns the newest frame of a camera as JPEG."""
+def _image(pid: int, channel: str, number: int) -> bytes | None:
+    """Returns a frame of a camera as JPEG: that of the number if it is kept still, otherwise the newest."""
     ring = Ring.of_process(pid, channel)
-    newest = ring.newest() if ring else None
-    if newest is None:
+    pixels = ring.newest(number) if ring else None
+    if pixels is None:
         return None
-    done, data = cv2.imencode(".jpg", newest[1])
+    done, data = cv2.imencode(".jpg", pixels[1])
     return data.tobytes() if done else None

@@ -20,6 +20,7 @@ PAGES = {
     "/": ("System", "account_tree"),
     "/view": ("View", "map"),
     "/board": ("Blackboard", "dashboard"),
+    "/devices": ("Devices", "sensors"),
     "/graph": ("Graph", "hub"),
     "/plots": ("Plots", "show_chart"),
     "/settings": ("Settings", "tune"),

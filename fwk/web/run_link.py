@@ -103,6 +103,16 @@ class RunLink:
         rows: list[dict[str, Any]] = answer["settings"]
         return rows
 
+    async def types(self, patterns: Sequence[str] = ("*",)) -> dict[str, Any]:
+        """Returns the message types of channels as far as they are known here, by channel."""
+        await self._use_types()
+        found: dict[str, Any] = {}
+        for row in await self.channels():
+            if any(fnmatchcase(row["channel"], each) for each in patterns):
+                with contextlib.suppress(messages.MessageError):
+                    found[row["channel"]] = messages.type_named(row["type"])
+        return found
+
     async def newest(self, patterns: Sequence[str], members: Sequence[str] = ()) -> dict[str, Any]:
         """Returns the newest messages of channels, decoded, by channel; those that do not decode are left out.
 
@@ -110,13 +120,8 @@ class RunLink:
             patterns: the channels.
             members: only channels whose type has all of these.
         """
-        await self._use_types()
-        types: dict[str, Any] = {}
-        for row in await self.channels():
-            if any(fnmatchcase(row["channel"], each) for each in patterns):
-                with contextlib.suppress(messages.MessageError):
-                    types[row["channel"]] = messages.type_named(row["type"])
-        types = {channel: kind for channel, kind in types.items() if {*members} <= {*kind.__slots__}}
+        found = await self.types(patterns)
+        types = {channel: kind for channel, kind in found.items() if {*members} <= {*kind.__slots__}}
         await self._take_newest(sorted(types))
         made = {}
         for channel in self._raw.keys() & types.keys():

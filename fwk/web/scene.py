@@ -39,8 +39,14 @@ class Scene:
         """Colour behind everything; empty: that of the page."""
         self.headline = ""
         """Line of text above the drawing."""
+        self._picture: dict[str, Any] | None = None
         self._layer = ""
         self._shapes: list[dict[str, Any]] = []
+
+    def picture(self, camera: str, frame: int, width_px: int, height_px: int) -> None:
+        """Draws over the newest image of a camera: lengths are then in pixels, and y points down."""
+        self._picture = {"camera": camera, "frame": frame, "width": width_px, "height": height_px}
+        self.bounds = (-0.5, -0.5, width_px - 0.5, height_px - 0.5)
 
     def layer(self, name: str) -> None:
         """Names the layer of the shapes that follow."""
@@ -87,7 +93,8 @@ class Scene:
     def encoded(self) -> bytes:
         """Returns the drawing for the browser; shapes at positions that are not numbers are left out."""
         shapes = [shape for shape in self._shapes if _finite(shape)]
-        made = {"shapes": shapes, "bounds": self.bounds, "background": self.background, "headline": self.headline}
+        about = {"bounds": self.bounds, "background": self.background, "headline": self.headline}
+        made = {"shapes": shapes, **about, "picture": self._picture}
         return json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
 
     def _add(self, kind: str, where: dict[str, Any], **look: Any) -> None:

@@ -20,7 +20,7 @@ from fwk.web.drawings import add_drawings
 from fwk.web.extensions import Extensions
 from fwk.web.layout import Frame
 from fwk.web.log_tail import LogTails
-from fwk.web.pages import board, graph, log, plots, recordings, settings, system, view
+from fwk.web.pages import board, devices, graph, log, plots, recordings, settings, system, view
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
 
@@ -32,6 +32,7 @@ _BUILDERS: dict[str, Callable[[Frame], None]] = {
     "/": system.build,
     "/view": view.build,
     "/board": board.build,
+    "/devices": devices.build,
     "/graph": graph.build,
     "/plots": plots.build,
     "/settings": settings.build,
@@ -135,7 +136,7 @@ def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> N
         else:
             ui.label("nothing runs on this machine; start something with: fwk-launch FILE").classes("q-pa-md")
 
-    ui.page(path)(made)
+    ui.page(path, response_timeout=_RECONNECT_S)(made)
 
 
 async def _own_pages(console: Console, frame: Frame) -> dict[str, tuple[str, str]]:

@@ -28,12 +28,17 @@ class View:
     """Patterns of the channels whose newest messages `draw` gets."""
     members: Sequence[str] = ()
     """Only channels whose type has these members."""
+    sees: Sequence[str] = ()
+    """Channels beside a camera, without their namespace, whose newest messages `sight` gets."""
     rate_hz = 20.0
     """Highest rate at which a browser shows it."""
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
         raise NotImplementedError
+
+    def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
+        """Draws over an image of a camera what was found in it; lengths are in pixels, y points down."""
 
     async def moved(self, run: "RunAccess", name: str, x_m: float, y_m: float) -> None:
         """Takes the new position of a shape that was drawn with `drag=name` and that a person has dragged."""

@@ -4,13 +4,16 @@ import math
 from collections.abc import Sequence
 
 from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
-from lcmtypes.soccer import ground_truth_t, true_robot_t, world_model_t
+from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import RADIUS_M as BALL_RADIUS_M
 from procs.model.field import SIDES, Field, field_of
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_of, team_of
+from procs.view.camera_sight import SEES, draw_sight
 from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
+MIND = ("pose", "world_model", "drive_target", "role", "skill_status")
+"""Channels of a robot that show what it believes, wants and does."""
 _UNKNOWN = "#787878"
 _GRASS = "#30803c"
 _SURROUND = "#245c30"
@@ -24,7 +27,8 @@ class MatchView(View):
 
     title = "Match"
     needs = (TRUTH,)
-    channels = (TRUTH, MEASURES, GAME_STATE, "*/world_model", "*/drive_target", "*/role", "*/skill_status")
+    channels = (TRUTH, MEASURES, GAME_STATE, *(f"*/{name}" for name in MIND))
+    sees = SEES
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
@@ -43,6 +47,10 @@ class MatchView(View):
         _draw_ball(scene, truth)
         for robot in truth.robots:
             _draw_mind(scene, newest, robot)
+
+    def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
+        """Draws over an image of a robot's camera what its detectors found there."""
+        draw_sight(camera, newest, scene)
 
     async def moved(self, run: RunAccess, name: str, x_m: float, y_m: float) -> None:
         """Puts ball or robot to another place."""
@@ -144,11 +152,16 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
     """Draws where a robot believes itself and the ball to be, where it drives, and its role and skill."""
     colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
     model: world_model_t | None = newest(f"{robot.name}/world_model")
+    pose: pose_t | None = newest(f"{robot.name}/pose")
     if model is not None:
         scene.layer("beliefs")
         if model.localized:
             scene.circle(model.x_m, model.y_m, 0.28, stroke=colour, width_m=0.03)
+            scene.line([(robot.x_m, robot.y_m), (model.x_m, model.y_m)], colour, 0.03)
+            if pose is not None:
+                scene.ellipse(pose.x_m, pose.y_m, pose.covariance, colour)
         if model.ball.known:
+            scene.circle(model.ball.x_m, model.ball.y_m, 0.05, fill=colour)
             scene.ellipse(model.ball.x_m, model.ball.y_m, model.ball.covariance, colour)
     target = newest(f"{robot.name}/drive_target")
     if target is not None and not target.stop:

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from fwk import Clock, Component, Config, Logger, Reads, Serves, VisionMaster, Writes, channel
 from lcmtypes.garden import place_t, visit_t, wish_t
+from lcmtypes.robot import joystick_t, laser_scan_t
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\"><script>document.title='broken in'</script>"
 
@@ -70,3 +71,24 @@ class Eye(Component):
 
     def loop(self) -> None:
         self.image.publish(np.tile(np.arange(64, dtype=np.uint8), (48, 1)))
+
+
+class Probe(Component):
+    """A laser that sees a round wall, and says how a joystick is pushed."""
+
+    stage = "sensor_acquire"
+    log: Logger
+    scan: Writes[laser_scan_t]
+    stick: Reads[joystick_t] = channel("garden/stick")
+
+    def init(self) -> None:
+        self.axes: list[float] = []
+
+    def loop(self) -> None:
+        scan = self.scan.value
+        scan.n_ranges, scan.ranges_m = 90, [3.0] * 90
+        scan.angle_step_rad, scan.range_max_m = math.tau / 90, 10.0
+        self.scan.write()
+        if self.stick.refreshed and list(self.stick.value.axes) != self.axes:
+            self.axes = list(self.stick.value.axes)
+            self.log.info(f"stick {self.axes}")

@@ -2,7 +2,7 @@
 
 from tests.harness.components import sources
 
-CROWD = 101
+CROWD = 100
 LAUNCH = """
 name: garden
 period_s: 0.1
@@ -10,9 +10,10 @@ components:
   a/mower: {{ use: "garden_parts:Mower" }}
   a/eye: {{ use: "garden_parts:Eye" }}
   a/watcher: {{ use: "garden_parts:Watcher" }}
+  a/probe: {{ use: "garden_parts:Probe" }}
   b/later: {{ use: "garden_parts:Watcher", start: false }}
 {crowd}
-outside: {{ garden/wish: garden.wish_t }}
+outside: {{ garden/wish: garden.wish_t, garden/stick: robot.joystick_t }}
 hosts: {{ crowd: [{names}] }}
 public_url: "{public_url}"
 """

@@ -7,10 +7,11 @@ from nicegui import ui
 from fwk.web.canvas import Canvas
 from fwk.web.drawings import views_of
 from fwk.web.layout import Frame, body
+from fwk.web.pages.devices import show_device
 from fwk.web.view import View
 
-FRAME_TYPE = "core.frame_t"
-_IMAGE_S = 0.2
+CAMERA_TYPE = "core.frame_t"
+_LAYERS_MAX = 12
 
 
 def build(frame: Frame) -> None:
@@ -59,11 +60,12 @@ async def _show(frame: Frame, views: list[View], number: int) -> None:
 
     async def pick(name: str) -> None:
         chosen.clear()
-        cameras = [row["channel"] for row in await link.channels() if row["type"] == FRAME_TYPE] if name else []
+        cameras = [row["channel"] for row in await link.channels() if row["type"] == CAMERA_TYPE] if name else []
         with chosen:
             for channel in cameras:
                 if channel.partition("/")[0] == name.partition("/")[0]:
-                    _camera(frame, channel)
+                    with ui.column().classes("fwk-camera gap-0"):
+                        await show_device(frame, channel)
 
     canvas.on_layers(show_layers)
     canvas.on_headline(headline.set_text)
@@ -71,22 +73,5 @@ async def _show(frame: Frame, views: list[View], number: int) -> None:
     canvas.on_moved(lambda name, x_m, y_m: frame.do(view.moved(access, name, x_m, y_m)))
 
 
-_LAYERS_MAX = 12
-
-
 def _other(frame: Frame, number: int) -> None:
     ui.navigate.to(frame.address("/view", view=str(number)))
-
-
-def _camera(frame: Frame, channel: str) -> None:
-    """Shows the images of a camera as long as the page is open and visible."""
-    url = f"/image?{urlencode({'run': frame.run, 'channel': channel})}"
-    with ui.column().classes("gap-0"):
-        ui.label(channel).classes("text-caption")
-        image = ui.element("img").classes("fwk-camera")
-        image.props["src"], image.props["alt"] = url, channel
-    image.on(
-        "load",
-        js_handler=f"(e) => {{ const i = e.target; setTimeout(() => requestAnimationFrame(() => "
-        f"i.src = '{url}&n=' + Date.now()), {round(_IMAGE_S * 1000)}) }}",
-    )

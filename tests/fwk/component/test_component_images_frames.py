@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from fwk import Component, VisionMaster
-from fwk.component.images import SLOTS, FrameError
+from fwk.component.images import SLOTS, FrameError, Ring
 from fwk.testing import Bench
 
 
@@ -40,3 +40,14 @@ def test_ring_holds_no_more_frames_than_readers_could_see() -> None:
         bench.component.image.publish(np.zeros((2, 2), np.uint8))
     with pytest.raises(FrameError, match=f"robot/image: at most {SLOTS - 1} frames in one iteration"):
         bench.component.image.publish(np.zeros((2, 2), np.uint8))
+
+
+def test_readers_without_announcements_find_a_frame_by_number() -> None:
+    ring = Ring.create("a/image")
+    assert ring.newest() is None
+    for number in range(1, 7):
+        ring.put(number, np.full((2, 3), number, np.uint8))
+    found = {wanted: ring.newest(wanted) for wanted in (0, 2, 4)}
+    assert {wanted: each[0] for wanted, each in found.items() if each} == {0: 6, 2: 6, 4: 4}
+    assert found[4] is not None
+    assert found[4][1].tolist() == [[4] * 3] * 2

@@ -9,6 +9,7 @@ from lcmtypes.soccer import (
     drive_target_t,
     game_state_t,
     ground_truth_t,
+    pose_t,
     role_t,
     skill_status_t,
     true_robot_t,
@@ -26,6 +27,8 @@ def match() -> dict[str, Any]:
     model.localized, model.x_m, model.y_m = True, 1.1, 2.1
     model.ball.known, model.ball.x_m, model.ball.y_m = True, 3.2, -1.1
     model.ball.covariance = [[0.25, 0.0, 0.0, 0.0], [0.0, 0.01, 0.0, 0.0], [0.0] * 4, [0.0] * 4]
+    pose = pose_t()
+    pose.x_m, pose.y_m, pose.covariance = 1.1, 2.1, [[0.09, 0.0, 0.0], [0.0, 0.04, 0.0], [0.0] * 3]
     target = drive_target_t()
     target.x_m, target.y_m = 2.0, 0.0
     role, skill = role_t(), skill_status_t()
@@ -34,6 +37,7 @@ def match() -> dict[str, Any]:
         "world/ground_truth": truth,
         "world/game_state": game_state_t(),
         "cyan1/world_model": model,
+        "cyan1/pose": pose,
         "cyan1/drive_target": target,
         "cyan1/role": role,
         "cyan1/skill_status": skill,
@@ -55,8 +59,11 @@ def test_robots_and_ball_lie_where_they_truly_are() -> None:
 
 def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:
     shapes = drawn(match())["shapes"]
-    ring, ellipse = [shape for shape in shapes if shape["l"] == "beliefs"]
+    ring, error, own, dot, ellipse = [shape for shape in shapes if shape["l"] == "beliefs"]
     assert (ring["x"], ring["stroke"]) == (1.1, COLOURS["cyan"])
+    assert error["p"] == [[1.0, 2.0], [1.1, 2.1]]
+    assert (own["x"], own["a"], own["b"]) == (1.1, 0.6, 0.4)
+    assert (dot["x"], dot["y"]) == (3.2, -1.1)
     assert (ellipse["x"], ellipse["a"], ellipse["b"]) == (3.2, 1.0, 0.2)
     (path,) = [shape for shape in shapes if shape["l"] == "targets"]
     assert path["p"] == [[1.0, 2.0], [2.0, 0.0]]

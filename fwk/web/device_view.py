@@ -1,0 +1,47 @@
+"""The view of one device: its instrument, and in images of a camera what views of projects say was found there."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from fwk.web.instruments import CAMERA, Instrument, instrument_of
+from fwk.web.scene import Newest, Scene
+from fwk.web.view import View
+
+
+class DeviceView(View):
+    """Draws the newest message of one channel with the instrument of its type.
+
+    Args:
+        channel: the channel of the device.
+        views: views whose `sight` is drawn over images.
+    """
+
+    def __init__(self, channel: str, views: Sequence[View] = ()) -> None:
+        self.title = channel
+        self._sights = [view for view in views if view.sees]
+        space = channel.rpartition("/")[0]
+        named = [name for view in self._sights for name in view.sees]
+        self.channels = [channel, *(f"{space}/{name}" if space else name for name in named)]
+        self._channel = channel
+
+    def draw(self, newest: Newest, scene: Scene) -> None:
+        """Draws the newest messages."""
+        message = newest(self._channel)
+        if message is None:
+            scene.headline = f"{self._channel}: never written"
+            return
+        instrument = instrument_of(message.__slots__)
+        if instrument is None:
+            scene.headline = f"{self._channel}: no instrument shows its type"
+            return
+        instrument.draw(message, scene)
+        if instrument is CAMERA:
+            scene.picture(self._channel, message.frame, message.width_px, message.height_px)
+            for view in self._sights:
+                view.sight(self._channel, newest, scene)
+
+
+def devices_of(types: dict[str, Any]) -> dict[str, Instrument]:
+    """Returns the channels that have an instrument, from the types of all channels."""
+    found = {channel: instrument_of(kind.__slots__) for channel, kind in types.items() if "@" not in channel}
+    return {channel: instrument for channel, instrument in found.items() if instrument}

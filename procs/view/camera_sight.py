@@ -1,0 +1,114 @@
+"""What a robot's detectors found, drawn over the images of its cameras in the web console.
+
+The calibration is that of the robots in the launch files: the default of the mirror and of the stereo pair.
+"""
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+from fwk.web import Newest, Scene
+from lcmtypes.core import frame_t
+from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
+from procs.model.algebra import Floats
+from procs.model.ball import RADIUS_M
+from procs.vision.calibration import MirrorConfig
+from procs.vision.stereo_rig import StereoRig
+
+SEES = ("ball_percept", "obstacle_percepts", "line_points", "stereo_obstacles")
+"""Channels beside a camera that say what was found in its images."""
+_BALL = "#ffee58"
+_OBSTACLE = "#ff4081"
+_LINE = "#00e5ff"
+_STEPS = 24
+
+
+class _Lens(Protocol):
+    """Maps points of the robot frame to pixels of an image."""
+
+    def project(self, points_m: Floats) -> Floats:
+        """Returns the pixels (n, 2) of points (n, 3); NaN where the image does not show them."""
+
+
+class _StereoLens:
+    """The left image of the stereo pair, which is the left half of the frame."""
+
+    def __init__(self, rig: StereoRig, width_px: int) -> None:
+        self._rig = rig
+        self._scale = width_px / (2 * rig.width_px)
+
+    def project(self, points_m: Floats) -> Floats:
+        rig = self._rig
+        ahead_m = points_m[:, 0] - rig.forward_m
+        ahead_m = np.where(ahead_m > 0.05, ahead_m, np.nan)
+        columns = (rig.width_px - 1) / 2 + rig.focal_px * (rig.baseline_m / 2 - points_m[:, 1]) / ahead_m
+        rows = (rig.height_px - 1) / 2 + rig.focal_px * (rig.height_m - points_m[:, 2]) / ahead_m
+        columns = np.where((columns >= 0) & (columns < rig.width_px), columns, np.nan)
+        return np.asarray(np.column_stack((columns, rows)) * self._scale)
+
+
+class _MirrorLens:
+    """The omnidirectional camera, whose image is the central square of the frame."""
+
+    def __init__(self, width_px: int, height_px: int) -> None:
+        size_px = min(width_px, height_px)
+        self.mirror = MirrorConfig(size_px=size_px).mirror()
+        self.shift_px = np.array(((width_px - size_px) // 2, (height_px - size_px) // 2), np.float64)
+
+    def project(self, points_m: Floats) -> Floats:
+        return np.asarray(self.mirror.project(points_m) + self.shift_px)
+
+
+def draw_sight(camera: str, newest: Newest, scene: Scene) -> None:
+    """Draws ball, obstacles and points of lines over an image."""
+    space, _, name = camera.rpartition("/")
+    frame: frame_t | None = newest(camera)
+    if frame is None:
+        return
+    if name == "stereo_image":
+        obstacles: obstacle_percepts_t | None = newest(f"{space}/stereo_obstacles")
+        _draw_obstacles(obstacles, _StereoLens(StereoRig(), frame.width_px), scene)
+        return
+    lens = _MirrorLens(frame.width_px, frame.height_px)
+    _draw_lines(newest(f"{space}/line_points"), lens, scene)
+    _draw_obstacles(newest(f"{space}/obstacle_percepts"), lens, scene)
+    _draw_ball(newest(f"{space}/ball_percept"), lens, scene)
+
+
+def _draw_ball(ball: ball_percept_t | None, lens: _MirrorLens, scene: Scene) -> None:
+    scene.layer("ball")
+    if ball is None or not ball.visible:
+        return
+    column, row, radius_px = lens.mirror.sphere((ball.x_m, ball.y_m, RADIUS_M), RADIUS_M)
+    x_px, y_px = column + lens.shift_px[0], row + lens.shift_px[1]
+    scene.circle(x_px, y_px, radius_px + 2.0, stroke=_BALL, width_m=1.5)
+    words = f"ball {math.hypot(ball.x_m, ball.y_m):.1f} m, {ball.confidence:.0%}"
+    scene.text(x_px, y_px - radius_px - 10.0, words, _BALL, 10.0)
+
+
+def _draw_obstacles(found: obstacle_percepts_t | None, lens: _Lens, scene: Scene) -> None:
+    scene.layer("obstacles")
+    for obstacle in found.obstacles if found else ():
+        outline = lens.project(_foot(obstacle))
+        points = [(float(x), float(y)) for x, y in outline]
+        if np.isfinite(outline).all():
+            scene.polygon(points, stroke=_OBSTACLE, width_m=1.5)
+            distance_m = math.hypot(obstacle.x_m, obstacle.y_m)
+            scene.text(*points[0], f"{distance_m:.1f} m", _OBSTACLE, 9.0)
+
+
+def _draw_lines(found: line_points_t | None, lens: _Lens, scene: Scene) -> None:
+    scene.layer("lines")
+    if found and found.n:
+        points_m = np.column_stack((found.x_m, found.y_m, np.zeros(found.n)))
+        for x_px, y_px in lens.project(points_m):
+            scene.circle(float(x_px), float(y_px), 1.2, fill=_LINE)
+
+
+def _foot(obstacle: obstacle_t) -> Floats:
+    """Returns the circle (n, 3) on which an obstacle stands."""
+    angles = np.linspace(0.0, math.tau, _STEPS, endpoint=False)
+    x_m = obstacle.x_m + obstacle.radius_m * np.cos(angles)
+    y_m = obstacle.y_m + obstacle.radius_m * np.sin(angles)
+    return np.column_stack((x_m, y_m, np.zeros(_STEPS)))

@@ -1,0 +1,65 @@
+"""What robots found, drawn over the images of their cameras."""
+
+import json
+from typing import Any
+
+import pytest
+
+from fwk.web import Newest, Scene
+from lcmtypes.core import frame_t
+from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
+from procs.view.web import MatchView
+from procs.vision.calibration import MirrorConfig
+
+
+def frame(width_px: int, height_px: int) -> frame_t:
+    made = frame_t()
+    made.width_px, made.height_px = width_px, height_px
+    return made
+
+
+def obstacles(*places: tuple[float, float]) -> obstacle_percepts_t:
+    made = obstacle_percepts_t()
+    for x_m, y_m in places:
+        each = obstacle_t()
+        each.x_m, each.y_m, each.radius_m = x_m, y_m, 0.25
+        made.obstacles.append(each)
+    made.n = len(places)
+    return made
+
+
+def sight(camera: str, **found: Any) -> list[dict[str, Any]]:
+    scene = Scene()
+    MatchView().sight(camera, Newest({f"cyan1/{name}": value for name, value in found.items()}), scene)
+    shapes: list[dict[str, Any]] = json.loads(scene.encoded())["shapes"]
+    return shapes
+
+
+@pytest.mark.parametrize(("width_px", "height_px"), [(400, 400), (640, 480)])
+def test_ball_and_lines_lie_over_their_pixels(width_px: int, height_px: int) -> None:
+    ball = ball_percept_t()
+    ball.visible, ball.x_m, ball.y_m = True, 2.0, 0.0
+    lines = line_points_t()
+    lines.n, lines.x_m, lines.y_m = 1, [0.0], [2.0]
+    shapes = sight("cyan1/image", image=frame(width_px, height_px), ball_percept=ball, line_points=lines)
+    (point,) = [shape for shape in shapes if shape["l"] == "lines"]
+    ring, _ = [shape for shape in shapes if shape["l"] == "ball"]
+    middle = (width_px - 1) / 2, (height_px - 1) / 2
+    assert (ring["x"], point["y"]) == pytest.approx(middle, abs=0.6)
+    away_px = MirrorConfig(size_px=min(width_px, height_px)).mirror().radius_px(2.0)
+    assert middle[0] - point["x"] == pytest.approx(away_px, abs=1.0)
+    assert 0 < middle[1] - ring["y"] < away_px * 1.1
+
+
+def test_unseen_balls_are_not_drawn() -> None:
+    assert sight("cyan1/image", image=frame(400, 400), ball_percept=ball_percept_t()) == []
+    assert sight("cyan1/image") == []
+
+
+def test_obstacles_of_the_stereo_pair_lie_in_its_left_image() -> None:
+    found = obstacles((3.0, 0.0), (3.0, 20.0), (-3.0, 0.0))
+    shapes = sight("cyan1/stereo_image", image=frame(800, 200), stereo_image=frame(800, 200), stereo_obstacles=found)
+    outline, words = shapes
+    assert words["s"] == "3.0 m"
+    columns = [x for x, _ in outline["p"]]
+    assert 0 <= min(columns) < 200 < max(columns) < 400
