@@ -11,6 +11,8 @@ from typer.core import TyperCommand
 from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 
 _MANY = ("--only", "--without")
+_PART_MAX = 100_000.0
+"""Largest limit of the parts of a recording, in any unit."""
 _LAUNCH_FILES = (".yaml", ".yml")
 
 
@@ -63,6 +65,21 @@ def seconds(text: str) -> float:
     return _number(text, 0.001, SECONDS_MAX, meaning)
 
 
+def record_parts(text: str) -> dict[str, float]:
+    """Returns the limit of the parts of a recording: `split_mb` for `200MB`, `split_s` for `60s`.
+
+    Raises:
+        BadParameter: the text is neither.
+    """
+    meaning = (
+        f"a limit of parts; use a size such as 200MB or 1.5GB, or a time such as 60s; both from 0.001 to {_PART_MAX:g}"
+    )
+    for unit, key, factor in (("MB", "split_mb", 1.0), ("GB", "split_mb", 1000.0), ("s", "split_s", 1.0)):
+        if text.endswith(unit):
+            return {key: factor * _number(text.removesuffix(unit), 0.001, _PART_MAX, meaning, text)}
+    raise typer.BadParameter(f"'{text}' is not {meaning}")
+
+
 def new_file(text: str) -> Path:
     """Returns the absolute path of a file that can be written, in a folder that exists or can be created.
 
@@ -101,11 +118,12 @@ def folder(text: str) -> Path:
     return Path(text)
 
 
-def _number(text: str, least: float, greatest: float, meaning: str) -> float:
+def _number(text: str, least: float, greatest: float, meaning: str, whole: str = "") -> float:
+    """Returns a number within limits; `whole` is the text as it was given, if `text` is a part of it."""
     try:
         number = float(text)
     except ValueError:
         number = -1.0
     if not least <= number <= greatest:
-        raise typer.BadParameter(f"'{text}' is not {meaning}")
+        raise typer.BadParameter(f"'{whole or text}' is not {meaning}")
     return number

@@ -39,6 +39,7 @@ MODULES = {
     **dict.fromkeys(("cut", "filter"), "recordings.cut"),
     "merge": "recordings.merge",
     "repair": "recordings.repair",
+    "compress": "recordings.compress",
     **dict.fromkeys(("export", "import"), "recordings.export"),
     "plot": "recordings.plot",
     "runs": "recordings.runs",

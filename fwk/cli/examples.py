@@ -89,6 +89,7 @@ EXAMPLES = {
         "fwk filter log.lcm --type 'robot.*' --out robots.lcm",
     ),
     "fwk merge": ("fwk merge log.lcm heard.lcm --align --out both.lcm",),
+    "fwk compress": ("fwk compress log.lcm", "fwk compress RUN"),
     "fwk repair": ("fwk repair log.lcm --out whole.lcm",),
     "fwk export": (
         "fwk export log.lcm --out log.mcap",

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fwk.clock import US_PER_S, monotonic_us
+from fwk.lcm.log_parts import exists
 from fwk.supervisor.options import RunOptions
 
 
@@ -19,7 +20,7 @@ class RunFiles:
         self.deleted = ""
         """The deleted one, as text; empty: both exist."""
         self._watched: list[tuple[str, Path]] = [("run directory", options.run_dir)]
-        if options.record and options.record.exists():
+        if options.record and exists(options.record):
             self._watched.append(("recording", options.record))
         self._report = report
         self._look_us = 0
@@ -50,7 +51,7 @@ def _is_gone(path: Path) -> bool:
     try:
         path.stat()
     except FileNotFoundError:
-        return True
+        return not exists(path)  # a recording may have been compressed
     except OSError:  # it cannot be seen from here, for example for lack of rights
         return False
     return False

@@ -1,24 +1,22 @@
 """LCM event logs, the files of lcm-logger and lcm-logplayer; damaged files stay readable."""
 
-import os
-import stat
+import fcntl
 import struct
 from collections.abc import Callable, Iterator
+from io import FileIO
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Self
 
 from fwk.lcm.disk import has_room
+from fwk.lcm.log_parts import SYNC, LogBytes, LogError, locked, part_path, remove_parts
+
+__all__ = ["SYNC", "Event", "LogError", "LogReader", "LogWriter"]
 
 _HEAD = struct.Struct(">IqqII")  # sync word, event number, time in µs, length of the channel, length of the data
-SYNC = (0xEDA1DA01).to_bytes(4, "big")
 _CHANNEL_MAX = 999  # the limit of LCM's own reader; on the wire it is 63
 _DATA_MAX = 256 << 20  # LCM's largest message
 _WINDOW_BYTES = 1 << 20
-
-
-class LogError(Exception):
-    """A log cannot be opened or holds nothing usable; the text names the file and the reason."""
 
 
 class Event(NamedTuple):
@@ -35,7 +33,7 @@ class Event(NamedTuple):
 
 
 class LogWriter:
-    """Writes a log that lcm-logplayer plays; an existing file is replaced.
+    """Writes a log that lcm-logplayer plays; an existing log is replaced, with all its parts.
 
     While the disk is full, events are dropped and counted in `dropped`; `report` gets a message when this begins and
     when writing continues, so a recording never stops the run. However the writer ends, the file is readable up to the
@@ -55,12 +53,15 @@ class LogWriter:
         self._buffer = bytearray()
         self._buffered = 0
         self._buffer_bytes = buffer_bytes
-        self._good_bytes = 0  # length of the file up to its last whole event
+        self._good_bytes = 0  # length of the newest part up to its last whole event
+        self._earlier_bytes = 0  # of the parts before
+        self._parts = 1
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             if path.is_fifo():  # opening it would block until a program reads
                 raise LogError(f"{path}: cannot write a log there: a pipe cannot be read again; use a file")
-            self._file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by close()
+            remove_parts(path)
+            self._file = _opened(path)
         except OSError as error:
             raise LogError(f"{path}: cannot write a log there: {error.strerror}") from error
 
@@ -92,9 +93,36 @@ class LogWriter:
         else:
             self._write(data, events)
 
+    def split(self) -> Path | None:
+        """Ends the newest part and begins the next one; returns the finished file.
+
+        Without room for a further file, the newest goes on, and None is returned.
+        """
+        self.flush()
+        try:
+            following = _opened(part_path(self.path, self._parts))
+        except OSError:
+            return None
+        self._file.close()
+        self._file = following
+        self._earlier_bytes += self._good_bytes
+        self._good_bytes = 0
+        self._parts += 1
+        return part_path(self.path, self._parts - 2)
+
+    @property
+    def newest_part(self) -> Path:
+        """The file that is written."""
+        return part_path(self.path, self._parts - 1)
+
     @property
     def size_bytes(self) -> int:
         """Size of the log with the events that have not reached the file yet, without dropped ones."""
+        return self._earlier_bytes + self.part_bytes
+
+    @property
+    def part_bytes(self) -> int:
+        """Size of the newest part, likewise."""
         return self._good_bytes + len(self._buffer)
 
     def written(self, data: bytearray) -> None:
@@ -143,37 +171,44 @@ class LogWriter:
             )
 
 
+def _opened(path: Path) -> FileIO:
+    """Opens a file of a log for writing, with a lock that tells other programs so."""
+    file = open(path, "wb", buffering=0)  # noqa: SIM115 - closed by the writer
+    locked(file.fileno(), fcntl.LOCK_SH)
+    return file
+
+
 class LogReader:
-    """Iterates over the events of any LCM log, any number of times.
+    """Iterates over the events of any LCM log and all its parts, any number of times.
 
     Damage costs only the events that it touches: an event counts if another event or the end of the file follows it.
     Reading continues at the next whole event, and `skipped_bytes` counts the bytes that the newest iteration skipped.
 
     Raises:
-        LogError: the file does not exist or is not an ordinary file.
+        LogError: the log does not exist, is not an ordinary file, or cannot be read.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.skipped_bytes = 0
         self.position = 0
-        """End of the newest event of the newest iteration, in bytes from the beginning of the file."""
-        try:
-            if not stat.S_ISREG(os.stat(path).st_mode):
-                raise LogError(f"{path}: not an ordinary file")
-            with open(path, "rb"):
-                pass
-        except OSError as error:
-            raise LogError(f"{path}: cannot read: {error.strerror}") from error
+        """End of the newest event of the newest iteration, in bytes from the beginning of the log."""
+        LogBytes(path).close()  # raises if it cannot be read
+
+    @property
+    def size_bytes(self) -> int:
+        """Size of all parts of the log together, as it is now."""
+        with LogBytes(self.path) as log:
+            return log.size_bytes
 
     def __iter__(self) -> Iterator[Event]:
         return self.events_from(0)
 
     def events_from(self, position: int) -> Iterator[Event]:
-        """Yields the events from a byte of the file on, such as a former `position`."""
+        """Yields the events from a byte of the log on, such as a former `position`."""
         self.skipped_bytes = 0
-        with open(self.path, "rb") as file:
-            window = _Window(file.fileno())
+        with LogBytes(self.path) as log:
+            window = _Window(log)
             while position < window.file_bytes:
                 found = self._event(window, position)
                 if found:
@@ -204,11 +239,11 @@ class LogReader:
 
 
 class _Window:
-    """Reads a file through a buffer that moves forward; looking far ahead does not move it."""
+    """Reads a log through a buffer that moves forward; looking far ahead does not move it."""
 
-    def __init__(self, descriptor: int) -> None:
-        self.file_bytes = os.fstat(descriptor).st_size
-        self._descriptor = descriptor
+    def __init__(self, log: LogBytes) -> None:
+        self.file_bytes = log.size_bytes
+        self._log = log
         self._start = 0
         self._bytes = b""
 
@@ -216,18 +251,18 @@ class _Window:
         begin = offset - self._start
         if begin < 0 or begin + size > len(self._bytes):
             self._start, begin = offset, 0
-            self._bytes = os.pread(self._descriptor, max(size, _WINDOW_BYTES), offset)
+            self._bytes = self._log.read(offset, max(size, _WINDOW_BYTES))
         return self._bytes[begin : begin + size]
 
     def peek(self, offset: int) -> bytes:
-        """Returns the next four bytes, fewer at the end of the file."""
+        """Returns the next four bytes, fewer at the end of the log."""
         begin = offset - self._start
         if begin + 4 <= len(self._bytes):
             return self._bytes[begin : begin + 4]
-        return os.pread(self._descriptor, 4, offset)
+        return self._log.read(offset, 4)
 
     def find_sync(self, offset: int) -> int:
-        """Returns the position of the next sync word, or the end of the file."""
+        """Returns the position of the next sync word, or the end of the log."""
         while offset < self.file_bytes:
             if len(self.read(offset, 4)) < 4:
                 break

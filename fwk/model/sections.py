@@ -79,6 +79,12 @@ class RecordPlan:
     """Channels of these that are not recorded."""
     size_gb: float = 0.0
     """Size at which the recording ends, after a whole tick, while the run goes on; 0: no limit."""
+    split_mb: float = 0.0
+    """Size at which a part of the recording ends and the next one begins, after a whole tick; 0: no limit."""
+    split_s: float = 0.0
+    """Logical time after which the same happens; 0: no limit."""
+    compress: bool = False
+    """Whether finished parts are compressed."""
 
     @property
     def has_all_channels(self) -> bool:

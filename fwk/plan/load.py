@@ -58,6 +58,8 @@ class LaunchOptions:
     """Patterns of the channels that are recorded; empty: as in the launch file."""
     record_exclude: Sequence[str] = ()
     """Patterns of the channels that are not recorded."""
+    record_parts: Mapping[str, float] = field(default_factory=dict)
+    """Parts of the recording: `split_mb` or `split_s`, and `compress`; what is missing is as in the launch file."""
 
 
 def load_plan(file: str, options: LaunchOptions = LaunchOptions(), notice: Callable[[str], None] | None = None) -> Plan:
@@ -114,7 +116,7 @@ class _Loading:
         check_left_out(names, kept, granted, options.without, problems)
         shared = self._shared()
         choice = {"channels": options.record_channels, "exclude": options.record_exclude}
-        recorded = record_of(files, whole.channels, choice, problems)
+        recorded = record_of(files, whole.channels, choice, options.record_parts, problems)
         problems.stop_if_any()
         if len(kept) < len(components):
             # All components are right, so a missing writer was left out on purpose.

@@ -20,6 +20,7 @@ _URL = "udpm://"
 _BUFFER = "recv_buf_size"
 _PUBLIC_PORT = 7667
 _PORTS = range(1024, 65536)
+_LIMITS = ("split_mb", "split_s")
 
 
 def last(files: Files, key: str, default: Any) -> Any:
@@ -135,7 +136,11 @@ def runs_of(files: Files) -> RunsPlan:
 
 
 def record_of(
-    files: Files, channels: Sequence[ChannelPlan], options: Mapping[str, Sequence[str]], problems: Problems
+    files: Files,
+    channels: Sequence[ChannelPlan],
+    options: Mapping[str, Sequence[str]],
+    parts: Mapping[str, float],
+    problems: Problems,
 ) -> RecordPlan:
     """Returns what is recorded.
 
@@ -143,18 +148,34 @@ def record_of(
         files: the launch file and what it includes.
         channels: those of the whole system.
         options: patterns of the command line, which come before those of the files: `channels` and `exclude`.
+        parts: what the command line says about parts, before the files: `split_mb` or `split_s`, and `compress`.
         problems: takes the mistakes.
     """
     cameras = [channel.name for channel in channels if channel.images]
     frames = _patterns(files, "frames", (), cameras, problems)
     names = [channel.name for channel in channels]
-    sizes = [layer.content.record.size_gb for layer in files.layers if layer.content.record.size_gb is not None]
+    has_limit = any(key in parts for key in _LIMITS)
+    limits = {key: parts.get(key, 0.0) if has_limit else _last(files, key) for key in _LIMITS}
     return RecordPlan(
         frames=tuple(name for name in cameras if any(matches(name, pattern) for pattern in frames)),
         channels=_patterns(files, "channels", options["channels"], names, problems),
         exclude=_patterns(files, "exclude", options["exclude"], names, problems),
-        size_gb=sizes[-1] if sizes else 0.0,
+        size_gb=_last(files, "size_gb"),
+        split_mb=limits["split_mb"],
+        split_s=limits["split_s"],
+        compress=bool(parts.get("compress")) or _is_compressed(files),
     )
+
+
+def _last(files: Files, key: str) -> float:
+    """Returns the limit of the last layer that sets it; 0: none does."""
+    limits = [getattr(layer.content.record, key) for layer in files.layers]
+    return next((float(limit) for limit in reversed(limits) if limit is not None), 0.0)
+
+
+def _is_compressed(files: Files) -> bool:
+    choices = [layer.content.record.compress for layer in files.layers]
+    return next((choice for choice in reversed(choices) if choice is not None), False)
 
 
 def _patterns(

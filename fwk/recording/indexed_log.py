@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import LogWriter
+from fwk.lcm.log_parts import LogBytes
 from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import stamp_in
 from fwk.recording.log_contents import (
@@ -91,8 +92,8 @@ class IndexedLogWriter(LogWriter):
             return
         if self._end > self._begin:
             self._end_block()
-        found = self.path.stat()
-        LogIndex(self._info(found.st_size), found.st_mtime_ns, self._blocks).write()
+        with LogBytes(self.path) as log:
+            LogIndex(self._info(log.size_bytes), log.mtime_ns, self._blocks).write()
 
     def _take_stamps(self, messages: _Messages) -> None:
         """Keeps the first and the newest stamp of each channel."""

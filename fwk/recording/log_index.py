@@ -11,6 +11,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
+from fwk.lcm.log_parts import LogBytes, LogError, uncompressed_name
 from fwk.recording.log_contents import ChangedBytes, ChannelInfo, LogInfo, Note
 
 VERSION = 1
@@ -24,7 +25,7 @@ class Block(NamedTuple):
     """Part of a log with a check sum, from the end of the block before it."""
 
     end: int
-    """Position in the file behind the block, in bytes."""
+    """Position in the log behind the block, in bytes."""
     crc32: int
     tick: int
     """Newest tick whose record the log holds up to the end of the block; 0: none."""
@@ -38,7 +39,7 @@ class LogIndex:
 
     info: LogInfo
     mtime_ns: int
-    """Time at which the log was written, by its file system."""
+    """Time at which the newest part of the log was written, by its file system."""
     blocks: list[Block]
 
     @classmethod
@@ -74,19 +75,20 @@ class LogIndex:
     def is_current(self) -> bool:
         """Returns whether the log is the one that was indexed: by size and time, or else by all check sums."""
         try:
-            found = self.info.file.stat()
-            if found.st_size != self.info.size_bytes:
-                return False
-            return found.st_mtime_ns == self.mtime_ns or not any(self.changes())
-        except OSError:
+            with LogBytes(self.info.file) as log:
+                if log.size_bytes != self.info.size_bytes:
+                    return False
+                is_untouched = log.mtime_ns == self.mtime_ns
+            return is_untouched or not any(self.changes())
+        except (OSError, LogError):
             return False
 
     def changes(self) -> Iterator[ChangedBytes]:
         """Reads the log and yields the blocks whose bytes are not those that were written."""
         begin, tick = 0, 0
-        with open(self.info.file, "rb") as file:
+        with LogBytes(self.info.file) as log:
             for block in self.blocks:
-                data = file.read(block.end - begin)
+                data = log.read(begin, block.end - begin)
                 missing = len(data) < block.end - begin
                 if missing or zlib.crc32(data) != block.crc32:
                     first = begin + len(data) if missing else begin
@@ -95,8 +97,8 @@ class LogIndex:
 
 
 def index_path(log: Path) -> Path:
-    """Returns the path of a log's index: `log.lcm.index`."""
-    return log.with_name(f"{log.name}.index")
+    """Returns the path of a log's index: `log.lcm.index`, also for a compressed log."""
+    return log.with_name(f"{uncompressed_name(log).name}.index")
 
 
 def changed(log: Path) -> list[ChangedBytes]:

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fwk.lcm.event_log import LogError
+from fwk.lcm.log_parts import is_later_part
 from fwk.lcm.stamped_log import StampedLog
 from fwk.recording.log_contents import ChannelInfo, LogInfo, excerpt_in, note_in
 from fwk.recording.log_index import LogIndex, changed
@@ -34,12 +35,12 @@ def log_info(path: Path, check: bool = False, progress: Callable[[int], None] = 
 def _read(reader: StampedLog, progress: Callable[[int], None]) -> LogInfo:
     """Reads a log from beginning to end and decodes every message."""
     info, channels = LogInfo(reader.path), dict[str, ChannelInfo]()
-    following = 0
+    following: int | None = None if is_later_part(reader.path) else 0
     for event in reader:
         info.first_us = min(info.first_us, event.time_us) if info.events else event.time_us
         info.last_us = max(info.last_us, event.time_us) if info.events else event.time_us
         info.events += 1
-        info.dropped += max(0, event.number - following) if not reader.skipped_bytes else 0
+        info.dropped += max(0, event.number - following) if following is not None and not reader.skipped_bytes else 0
         following = event.number + 1
         channels.setdefault(event.channel, ChannelInfo()).add(event)
         info.excerpt = excerpt_in(event.channel, event.data) or info.excerpt
@@ -47,7 +48,7 @@ def _read(reader: StampedLog, progress: Callable[[int], None]) -> LogInfo:
             info.notes.append(note)
         if not info.events % _EVENTS_PER_CALL:
             progress(reader.position)
-    info.size_bytes, info.damaged_bytes = reader.path.stat().st_size, reader.skipped_bytes
+    info.size_bytes, info.damaged_bytes = reader.size_bytes, reader.skipped_bytes
     if info.damaged_bytes and not info.events:
         raise LogError(f"{reader.path}: not an LCM log: no event in {info.damaged_bytes} bytes")
     info.channels = dict(sorted(channels.items()))

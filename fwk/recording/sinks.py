@@ -15,9 +15,11 @@ from fwk.model.plan_document import document_of
 from fwk.model.sections import RecordPlan, choice_in_words
 from fwk.model.selection import matches
 from fwk.recording.indexed_log import IndexedLogWriter
+from fwk.recording.part_compressor import PartCompressor
 from fwk.recording.versions import EXCERPT, PLAN, excerpt
 from lcmtypes.core import plan_t, protocol_t
 
+_MB = 1_000_000
 _GB = 1_000_000_000
 DISPLAY_PERIOD_US = US_PER_S // 4
 
@@ -36,6 +38,10 @@ class Recorder:
         self._report = report
         self._due_us = 0
         self._limit_bytes = round(plan.record.size_gb * _GB)
+        self._part_bytes = round(plan.record.split_mb * _MB)
+        self._part_us = round(plan.record.split_s * US_PER_S)
+        self._part_began_us = self._time_us = 0
+        self._compressor = PartCompressor(report) if plan.record.compress else None
         self._after_end = 0
         self._is_full = False
 
@@ -44,13 +50,19 @@ class Recorder:
         if self._is_full:
             self._after_end += 1
         else:
+            self._time_us = time_us
             self._writer.append(channel, data, time_us)
 
     def tick(self) -> None:
-        """Flushes the file once a second, so that a killed run leaves a log; ends the recording at its limit."""
+        """Flushes the file once a second, so that a killed run leaves a log; ends parts and the recording."""
         if self._limit_bytes and not self._is_full and self._writer.size_bytes >= self._limit_bytes:
             self._is_full = True
             self._report(f"{self._writer.path}: the recording ends: it has reached record.size_gb; the run goes on")
+        elif self._is_part_full():
+            self._part_began_us = self._time_us
+            finished = self._writer.split()
+            if finished and self._compressor:
+                self._compressor.add(finished)
         if monotonic_us() >= self._due_us:
             self._due_us = monotonic_us() + US_PER_S
             self._writer.flush()
@@ -58,10 +70,20 @@ class Recorder:
     def close(self) -> None:
         """Finishes the log."""
         self._writer.close()
+        if self._compressor:
+            self._compressor.add(self._writer.newest_part)
+            self._compressor.close()
         if self._writer.dropped:
             self._report(f"{self._writer.path}: {self._writer.dropped} messages are missing in the recording")
         if self._after_end:
             self._report(f"{self._writer.path}: {self._after_end} messages came after the end of the recording")
+
+    def _is_part_full(self) -> bool:
+        if self._is_full:
+            return False
+        if self._part_bytes and self._writer.part_bytes >= self._part_bytes:
+            return True
+        return bool(self._part_us) and self._time_us - self._part_began_us >= self._part_us
 
 
 class ChosenChannels:

@@ -8,7 +8,7 @@ from pathlib import Path
 import typer
 
 from fwk.cli.run.run_directory import named
-from fwk.lcm.event_log import SYNC, LogError
+from fwk.lcm.log_parts import LogError, is_later_part, is_log
 from fwk.lcm.typegen import TypeGenerationError
 
 
@@ -31,13 +31,13 @@ def find_log(path: Path) -> Path:
     path = named(path)
     if not os.path.isdir(path):  # also False for text that cannot be a path, and without permission
         return path
-    found = [file for file in sorted(path.iterdir()) if file.is_file() and _is_log(file)]
+    found = [file for file in sorted(path.iterdir()) if _begins_log(file)]
     if len(found) != 1:
         names = ", ".join(file.name for file in found) or "none"
         raise LogError(f"{path}: a run directory holds one LCM log, this one: {names}; name the file itself")
     return found[0]
 
 
-def _is_log(file: Path) -> bool:
-    with open(file, "rb") as opened:
-        return opened.read(len(SYNC)) == SYNC
+def _begins_log(file: Path) -> bool:
+    """Returns whether a file is a log, and not a later part of one."""
+    return file.is_file() and is_log(file) and not is_later_part(file)

@@ -13,6 +13,7 @@ from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.progress import progress_of
 from fwk.clock import US_PER_S
 from fwk.display.table import Column, Table
+from fwk.lcm.log_parts import parts_of
 from fwk.lcm.type_registry import use_types_of
 from fwk.recording.log_contents import ChannelInfo, LogInfo
 from fwk.recording.log_info import log_info as read_info
@@ -51,13 +52,16 @@ def _plain(info: LogInfo) -> dict[str, Any]:
         name: {**{key: value for key, value in asdict(made).items() if key[0] != "_"}, "rate_hz": made.rate_hz}
         for name, made in info.channels.items()
     }
-    derived = {"file": str(info.file), "duration_s": info.duration_s, "ticks": info.ticks}
+    files = [str(file) for file in parts_of(info.file)]
+    derived = {"file": str(info.file), "files": files, "duration_s": info.duration_s, "ticks": info.ticks}
     named = {"notes": [note._asdict() for note in info.notes], "changed": [part._asdict() for part in info.changed]}
     return {**asdict(info), **derived, **named, "channels": channels}
 
 
 def _summary(info: LogInfo) -> list[str]:
-    made = [f"{info.file}: {info.size_bytes} bytes, {info.events} events on {len(info.channels)} channels"]
+    files = len(parts_of(info.file))
+    size = f"{info.size_bytes} bytes" + (f" in {files} files" if files > 1 else "")
+    made = [f"{info.file}: {size}, {info.events} events on {len(info.channels)} channels"]
     ticks = f", ticks {info.ticks[0]} to {info.ticks[1]}" if info.ticks else ""
     made.append(f"duration {info.duration_s:.3f} s{ticks}")
     if info.excerpt:

@@ -1,10 +1,11 @@
 """Progress bar of commands that read whole logs."""
 
-import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+from fwk.lcm.log_parts import LogBytes, LogError
 
 _SMALL_BYTES = 20 << 20  # read within a moment
 
@@ -15,7 +16,7 @@ Progress = Callable[[int], None]
 @contextmanager
 def progress_of(verb: str, *logs: Path) -> Iterator[Progress]:
     """Shows a bar on a terminal while large logs are read; the bar disappears at the end."""
-    total = sum(os.path.getsize(log) for log in logs if os.path.isfile(log))
+    total = sum(map(_size_bytes, logs))
     if total < _SMALL_BYTES or not sys.stderr.isatty():
         yield lambda _: None
         return
@@ -27,3 +28,12 @@ def progress_of(verb: str, *logs: Path) -> Iterator[Progress]:
     with Bar(*columns, console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(verb, total=total)
         yield lambda done: bar.update(task, completed=done)
+
+
+def _size_bytes(file: Path) -> int:
+    """Returns the size of a log with all its parts, or of another file; 0 if it cannot be read."""
+    try:
+        with LogBytes(file) as log:
+            return log.size_bytes
+    except LogError:
+        return 0

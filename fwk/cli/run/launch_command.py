@@ -6,12 +6,12 @@ import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from fwk.bus.port_lock import PortLock
-from fwk.cli.arguments import Hosting, SeveralNames, new_file, seconds, video_file
+from fwk.cli.arguments import Hosting, SeveralNames, new_file, record_parts, seconds, video_file
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
 from fwk.cli.examples import epilog
@@ -30,6 +30,7 @@ from fwk.display.summary import introduction, summary
 from fwk.launcher.machine import MachineError, advice, check_machine
 from fwk.launcher.run import DebuggerMissingError, PortsInUseError, ProfilerMissingError, RunOptions, run
 from fwk.lcm.event_log import LogError
+from fwk.lcm.log_parts import check_compression
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -76,6 +77,15 @@ def launch(
         list[str] | None,
         typer.Option(metavar="PATTERN", help="record all but these channels, without a replay; repeatable"),
     ] = None,
+    record_split: Annotated[
+        Any,
+        typer.Option(
+            parser=record_parts, metavar="SIZE|TIME", help="record in parts of this size (200MB) or time (60s)"
+        ),
+    ] = None,
+    record_compress: Annotated[
+        bool, typer.Option("--record-compress", help="compress finished parts, and the rest at the end")
+    ] = False,
     sets: Annotated[
         list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
     ] = None,
@@ -128,6 +138,8 @@ def launch(
         raise typer.BadParameter("--record and --no-record exclude each other; keep one")
     if video and no_record:
         raise typer.BadParameter("--video is made from the recording; leave out --no-record")
+    if no_record and (record_split or record_compress):
+        raise typer.BadParameter("--record-split and --record-compress need a recording; leave out --no-record")
     if web:
         check_library()
     if debugpy and not debug:
@@ -144,11 +156,14 @@ def launch(
         bus_port=bus_port,
         record_channels=tuple(record_channels or ()),
         record_exclude=tuple(record_exclude or ()),
+        record_parts={**(record_split or {}), **({"compress": True} if record_compress else {})},
     )
     with _ending():
         plan = load_plan(file, launch_options, notice)
         _check_names(plan, {"--debug": debug, "--profile": profile})
         _check_video(plan, video)
+        if plan.record.compress and not no_record:
+            check_compression()
         name = _checked_name(run_name, plan)
         if run_name and bus_port is None:
             plan = on_free_ports(plan)

@@ -132,6 +132,12 @@ class RecordEntry(_Entry):
     """Channels of these that are not recorded."""
     size_gb: float | None = Field(None, ge=0.0, le=1e6)
     """Size at which the recording ends while the run goes on; 0: no limit."""
+    split_mb: float | None = Field(None, ge=0.0, le=1e6)
+    """Size at which the recording goes on in a further file; 0: no limit."""
+    split_s: float | None = Field(None, ge=0.0, le=SECONDS_MAX)
+    """Logical time after which the recording goes on in a further file; 0: no limit."""
+    compress: bool | None = None
+    """Whether finished files of the recording are compressed."""
 
 
 class HostFile(_Entry):

@@ -1,6 +1,5 @@
 """Moments of a log: where its ticks begin, found by tick, by time or by the text of a bookmark."""
 
-import os
 import re
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator
@@ -28,7 +27,7 @@ class Moment:
     """Place between two events of a log where a tick begins."""
 
     position: int
-    """In bytes from the beginning of the file."""
+    """In bytes from the beginning of the log."""
     tick: int | None
     """None: the log names no tick until there."""
     time_us: int
@@ -189,7 +188,7 @@ class Timeline:
 
     def _last_time_us(self) -> int:
         """Returns the time stamp of the last event, from the end of the file."""
-        start = max(0, os.path.getsize(self.path) - _TAIL_BYTES)
+        start = max(0, self._reader.size_bytes - _TAIL_BYTES)
         times = [event.time_us for event in LogReader(self.path).events_from(start)]
         if not times:  # one event fills the tail
             times = [event.time_us for event in LogReader(self.path)]

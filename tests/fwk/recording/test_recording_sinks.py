@@ -8,6 +8,7 @@ import pytest
 
 from fwk import Component, Writes, channel
 from fwk.lcm.event_log import LogReader
+from fwk.lcm.log_parts import is_compressed, parts_of
 from fwk.logs.rotating import RotatingFile
 from fwk.logs.text_file import TextLog
 from fwk.model.sections import RecordPlan
@@ -88,6 +89,27 @@ def test_a_recording_ends_at_its_limit_after_a_tick(tmp_path: Path) -> None:
         f"{tmp_path}/a.lcm: {81 - len(events)} messages came after the end of the recording",
     ]
     assert log_info(tmp_path / "a.lcm").from_index
+
+
+@pytest.mark.parametrize(
+    ("limit", "parts"), [(RecordPlan(split_s=0.5, compress=True), 4), (RecordPlan(split_mb=0.001, compress=True), 5)]
+)
+def test_a_recording_in_parts_is_the_same_log(tmp_path: Path, limit: RecordPlan, parts: int) -> None:
+    for name, record in (("whole.lcm", RecordPlan()), ("parts.lcm", limit)):
+        recorder = Recorder(replace(PLAN, record=record), tmp_path / name, pytest.fail)
+        for tick in range(40):
+            for part in (b"first of", b"last of"):
+                recorder.message("world/truth", part + b" %d" % tick, tick * 50_000)
+            recorder.tick()
+        recorder.close()
+    (_, *whole), (_, *split) = LogReader(tmp_path / "whole.lcm"), LogReader(tmp_path / "parts.lcm")
+    assert split == whole
+    files = parts_of(tmp_path / "parts.lcm")
+    assert len(files) == parts
+    assert all(is_compressed(file) for file in files)
+    assert all(next(iter(LogReader(file))).data.startswith(b"first of") for file in files[1:])
+    info = log_info(tmp_path / "parts.lcm")
+    assert (info.from_index, info.events, log_info(tmp_path / "parts.lcm", check=True).changed) == (True, 81, [])
 
 
 def test_the_first_ticks_reach_the_file_before_the_end(tmp_path: Path) -> None:

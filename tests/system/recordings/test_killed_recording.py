@@ -1,4 +1,4 @@
-"""A recording whose gateway is killed in a run with a choice of channels, and the tools on what it leaves."""
+"""A recording in parts whose gateway is killed in a run with a choice of channels, and the tools on its rest."""
 
 import json
 import os
@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from fwk.clock import US_PER_S
+from fwk.lcm.log_parts import is_compressed, parts_of
 from fwk.recording.log_info import log_info
 from tests.harness.fixtures import Launch
 from tests.harness.runs import PortBlock, fwk
@@ -20,7 +21,8 @@ LOST_S = 1.5  # the recorder flushes once a second
 
 def test_a_killed_recorder_leaves_all_but_the_last_second(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_system(tmp_path, ports)
-    run = Steered(launch("small.yaml", "--speed", "1", "--record-exclude", "r/seen", "--record", "log.lcm"), ports)
+    parts = ("--record", "log.lcm", "--record-split", "0.4s", "--record-compress")
+    run = Steered(launch("small.yaml", "--speed", "1", "--record-exclude", "r/seen", *parts), ports)
     run.fwk("note", "here it begins")
     period_us = run.ask("run")["period_us"]
     run.ticks_pass(2 * US_PER_S // period_us)
@@ -29,6 +31,8 @@ def test_a_killed_recorder_leaves_all_but_the_last_second(launch: Launch, tmp_pa
     os.kill(run.launched.gateway(), signal.SIGKILL)
     assert run.launched.wait() != 0
     assert "recorded, without a replay: without r/seen" in run.launched.text
+    assert is_compressed(parts_of(tmp_path / "log.lcm")[0])
+    assert len(parts_of(tmp_path / "log.lcm")) >= 4
     told = json.loads(fwk(tmp_path, "repair", "log.lcm", "--out", "whole.lcm", "--json"))
     assert told["last_tick"] >= tick - LOST_S * US_PER_S / period_us
     assert told["lost_events"] == 0
