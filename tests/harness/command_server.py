@@ -28,7 +28,8 @@ MARK_CHARACTERS = 32
 REQUEST_BYTES = 1 << 17
 _PROGRAMS = {"fwk": "fwk.cli.main", "fwk-launch": "fwk.cli.launch"}
 _LIBRARIES = ("cv2",)
-_NOT_IMPORTED = ("fwk.packaging", "fwk.testing")
+_NOT_IMPORTED = ("fwk.log_tools", "fwk.packaging", "fwk.scaffold", "fwk.testing", "fwk.web")
+"""Packages that few commands need, with libraries that take longer to import than all others together."""
 
 
 class Server:
