@@ -1,5 +1,6 @@
 """The wheel in an empty environment far from any checkout: complete, and sufficient to run a user's systems."""
 
+import email
 import os
 import shlex
 import shutil
@@ -8,9 +9,11 @@ import sys
 import venv
 import zipfile
 from collections.abc import Callable
+from importlib.metadata import distribution
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 from tests.fwk.cli.cli_processes import PROCS, write_files
 from tests.harness.pages import Page, shows
@@ -45,12 +48,12 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Runs commands of a fresh environment with the wheel, its dependencies, pytest and mypy, in a user's folder."""
     folder = tmp_path_factory.mktemp("installed")
     environment = folder / "env"
-    venv.create(environment, with_pip=True)
+    venv.create(environment, symlinks=True)
     binaries = environment / "bin"
-    pip = [str(binaries / "python"), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    # Only the modules that the commands import are compiled, when they do: most of the libraries is never imported.
-    install = [*pip, "--no-compile", str(wheel), "pytest", "mypy"]
-    subprocess.run(install, check=True, timeout=2 * INSTALL_TIMEOUT_S)
+    pip = [sys.executable, "-m", "pip", "--python", str(binaries / "python"), "--disable-pip-version-check"]
+    install = [*pip, "install", "--quiet", "--no-deps", "--no-compile", str(wheel)]
+    subprocess.run(install, check=True, timeout=INSTALL_TIMEOUT_S)
+    link_libraries(wheel, environment, "pytest", "mypy")
     user = folder / "user"
     write_files(user, PROCS)
     variables = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
@@ -69,6 +72,34 @@ def installed(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Run:
         )
 
     return run
+
+
+def link_libraries(wheel: Path, environment: Path, *programs: str) -> None:
+    """Links into an environment what the wheel's metadata and these programs require, and nothing else.
+
+    They are the libraries of this environment, so pip need not install them anew.
+    """
+    (site,) = environment.glob("lib/python*/site-packages")
+    name = next(name for name in zipfile.ZipFile(wheel).namelist() if name.endswith(".dist-info/METADATA"))
+    metadata = email.message_from_bytes(zipfile.ZipFile(wheel).read(name))
+    needed, known = [*metadata.get_all("Requires-Dist", []), *programs], set[str]()
+    while needed:
+        requirement = Requirement(needed.pop())
+        if requirement.name in known or (requirement.marker and not requirement.marker.evaluate({"extra": ""})):
+            continue
+        known.add(requirement.name)
+        library = distribution(requirement.name)
+        assert requirement.specifier.contains(library.version), f"{requirement}, but there is {library.version}"
+        needed += library.requires or []
+        for top in {file.parts[0] for file in library.files or []} - {"..", "__pycache__"}:
+            if not (site / top).exists():
+                (site / top).symlink_to(str(library.locate_file(top)))
+        for script in library.entry_points.select(group="console_scripts") if library.name in programs else ():
+            program = environment / "bin" / script.name
+            program.write_text(
+                f"#!{environment}/bin/python\nfrom {script.module} import {script.attr}\n{script.attr}()\n"
+            )
+            program.chmod(0o755)
 
 
 def test_the_wheel_holds_code_types_and_launch_files(wheel: Path) -> None:
