@@ -1,16 +1,22 @@
 """lcm-spy on a virtual screen, and the table that its window shows."""
 
+import atexit
 import csv
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 
 from tests.clients.bus import Bus, process
 
 FWK_SPY = "import typer; from fwk.cli.look.spy import spy; typer.run(spy)"
+_SHORT = "-XX:TieredStopAtLevel=1 -XX:+UseSerialGC"
+"""Options of Java with which a program that ends soon uses less processor time."""
 Table = dict[str, dict[str, str]]
 """Rows of the window by channel."""
 
@@ -28,12 +34,11 @@ def screen() -> Iterator[str]:
 def lcm_spy(bus: Bus, display: str, folder: Path) -> Iterator[Path]:
     """Starts lcm-spy and waits until it listens; returns the folder for `read_table`."""
     (folder / "seen").mkdir()
-    (folder / "agent").mkdir()
     environment = {
         **os.environ,
         "DISPLAY": display,
-        "XDG_CACHE_HOME": str(folder / "cache"),
-        "LCM_JVM_OPT": f"-Xmx256m -javaagent:{_build_agent(folder / 'agent')}={folder / 'seen'}",
+        "XDG_CACHE_HOME": str(_workshop() / "cache"),
+        "LCM_JVM_OPT": f"-Xmx256m {_SHORT} -javaagent:{_agent()}={folder / 'seen'}",
     }
     with process([sys.executable, "-c", FWK_SPY, "--url", bus.url], environment):
         bus.publish_until(lambda: "fwk/probe" in read_table(folder / "seen"))
@@ -49,9 +54,20 @@ def read_table(folder: Path) -> Table:
         return {row["Channel"]: row for row in csv.DictReader(file, delimiter="\t")}
 
 
-def _build_agent(folder: Path) -> Path:
+@cache
+def _workshop() -> Path:
+    """Returns a folder for what all tests of a process need to build only once."""
+    folder = Path(tempfile.mkdtemp(prefix="lcm-spy-"))
+    atexit.register(shutil.rmtree, folder, ignore_errors=True)
+    return folder
+
+
+@cache
+def _agent() -> Path:
+    folder = _workshop() / "agent"
+    folder.mkdir()
     source = Path(__file__).with_name("SpyTable.java")
-    subprocess.run(["javac", "-d", folder, source], check=True)
+    subprocess.run(["javac", *(f"-J{option}" for option in _SHORT.split()), "-d", folder, source], check=True)
     (folder / "manifest").write_text("Premain-Class: SpyTable\n")
     subprocess.run(["jar", "cfm", folder / "agent.jar", folder / "manifest", "-C", folder, "."], check=True)
     return folder / "agent.jar"
