@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 
 import libcst as cst
-from libcst import matchers
 
 from fwk.scaffold.source import Source, dotted, imports
 
@@ -50,10 +49,14 @@ def remove_unused(source: Source, full: str) -> None:
 
 def _used(module: cst.Module, statement: cst.ImportFrom, name: str) -> bool:
     """Returns whether a name occurs outside of an import statement, also in a text such as that of `__all__`."""
-    here = len(matchers.findall(statement, matchers.Name(name)))
-    texts = matchers.findall(module, matchers.SimpleString())
-    words = [str(cst.ensure_type(each, cst.SimpleString).raw_value) for each in texts]
-    return len(matchers.findall(module, matchers.Name(name))) > here or name in words
+    return _count(module, name) > _count(statement, name)
+
+
+def _count(node: cst.CSTNode, name: str) -> int:
+    """Returns how often a name occurs in a node, also as a text."""
+    own = isinstance(node, cst.Name) and node.value == name
+    own |= isinstance(node, cst.SimpleString) and node.raw_value == name
+    return own + sum(_count(child, name) for child in node.children)
 
 
 def _replace(source: Source, old: cst.ImportFrom, new: cst.ImportFrom | None) -> None:

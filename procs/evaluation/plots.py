@@ -5,13 +5,14 @@ from itertools import groupby
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from procs.evaluation.table import Row
 
 
 def plot(rows: Sequence[Row], file: Path) -> None:
     """Draws the measures that have a finite value, a panel for each unit, as PNG."""
+    from matplotlib.figure import Figure
+
     known = sorted((row for row in rows if np.isfinite(row.value)), key=lambda row: row.unit)
     panels = [list(group) for _, group in groupby(known, key=lambda row: row.unit)]
     if not panels:

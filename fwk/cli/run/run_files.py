@@ -1,6 +1,7 @@
 """Files of a run directory with which a run can be understood and repeated: plan, settings, versions, types."""
 
 import json
+import os
 import platform
 import shutil
 from importlib.metadata import PackageNotFoundError, version
@@ -42,13 +43,20 @@ def _settings(plan: Plan) -> list[str]:
 
 
 def _versions() -> dict[str, str]:
-    found = {"python": platform.python_version(), "system": platform.platform()}
+    found = {"python": platform.python_version(), "system": _system()}
     for library in LIBRARIES:
         try:
             found[library] = version(library)
         except PackageNotFoundError:
             found[library] = "not installed as a package"
     return found
+
+
+def _system() -> str:
+    """Returns what `platform.platform()` does, for which that starts a program."""
+    system = os.uname()
+    library = os.confstr("CS_GNU_LIBC_VERSION") if "CS_GNU_LIBC_VERSION" in os.confstr_names else None
+    return "-".join([system.sysname, system.release, system.machine, f"with-{library or 'another libc'}"])
 
 
 def _sources(plan: Plan) -> list[Path]:
