@@ -47,13 +47,13 @@ def wrong(what: str, tick: int = 5, again: bool = False) -> list[str]:
 def test_a_failing_component_is_named_and_restarted(
     launch: Launch, faulty: Path, after: Aftermath, what: str, says: str
 ) -> None:
-    run = launch(*RUN, "--ticks", "60", *wrong(what))
+    run = launch(*RUN, "--ticks", "20", *wrong(what))
     run.until_ticks("a/player", 2)
     after.note(run)
     recording = after.check(run, tracebacks=True)
     assert says in run.text
     assert "d/player runs again, incarnation 2" in run.text
-    assert len(recording.messages["d/note"]) == 60
+    assert len(recording.messages["d/note"]) == 20
     assert recording.gaps() == {}
 
 

@@ -38,8 +38,9 @@ def test_every_layout_of_processes_gives_the_same_messages(tmp_path: Path, ports
     replayed(tmp_path, "--only", "b/trader", log="process.log")
 
 
-@pytest.mark.parametrize("clock", ["lockstep", "real time"])
-@pytest.mark.parametrize("hosts", ["", GROUPS], ids=["process", "groups"])
+@pytest.mark.parametrize(
+    ("clock", "hosts"), [("lockstep", GROUPS), ("real time", "")], ids=["lockstep-groups", "real time-process"]
+)
 def test_a_restart_closes_dynamic_channels_and_replays(
     tmp_path: Path, ports: PortBlock, launch: Launch, clock: str, hosts: str
 ) -> None:

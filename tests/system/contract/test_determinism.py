@@ -18,7 +18,7 @@ from tests.programs.orchestra import GROUPS, PLAYERS, orchestra
 
 pytestmark = pytest.mark.system
 
-TICKS = 40
+TICKS = 25
 RUN = ("launch/orchestra.yaml", "--ticks", str(TICKS), "--seed", "7")
 RECORD = ("--record", "log.lcm")
 

@@ -14,12 +14,13 @@ from tests.programs.orchestra import orchestra
 pytestmark = pytest.mark.system
 
 
-@pytest.fixture
-def recorded(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A folder with the recording of 40 ticks of the orchestra."""
+    folder = tmp_path_factory.mktemp("orchestra")
     options = ("--ticks", "40", "--speed", "max", "--record", "log.lcm")
-    played(tmp_path, orchestra, "launch/orchestra.yaml", *options)
-    return tmp_path
+    played(folder, orchestra, "launch/orchestra.yaml", *options)
+    return folder
 
 
 def debugged(folder: Path, name: str, *words: str) -> Terminal:
