@@ -65,7 +65,10 @@ _FIRST = np.array((0.3, 0.3, 0.15, 0.2, 0.05))
 
 
 class BallFilter:
-    """Mixture of the models; `state` and `covariance` are those of the mixture."""
+    """Mixture of the models; `state` and `covariance` are those of the mixture.
+
+    A shallow copy is independent: no method changes an array that a copy can have.
+    """
 
     def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
@@ -130,9 +133,9 @@ class BallFilter:
             self._x[:, :2] = np.clip(self._x[:, :2], -limits_m, limits_m)
             self._x[:, 2:][beyond] *= -_BOUNCE
 
-    def see(self, position_m: Floats, covariance_m2: Floats, age_s: float = 0.0) -> bool:
-        """Takes a sighting (2) with its covariance (2, 2), captured `age_s` ago; returns False if it does not fit."""
-        found = innovation(self._x, self._p, position_m, covariance_m2, age_s)
+    def see(self, position_m: Floats, covariance_m2: Floats) -> bool:
+        """Takes a sighting (2) with its covariance (2, 2); returns False if it does not fit."""
+        found = innovation(self._x, self._p, position_m, covariance_m2, 0.0)
         likely = self._weights * np.exp(-found.surprises / 2) / (2 * math.pi * np.sqrt(found.determinants))
         evidence = float(likely.sum())
         if evidence < _CLUTTER_1_M2:
@@ -147,7 +150,7 @@ class BallFilter:
 
         The error of a robot's pose stays from tick to tick, so several ticks tell no more than one.
         """
-        self._x[:], self._p[:] = state, covariance
+        self._x, self._p = np.tile(state, (_MODES, 1)), np.tile(covariance, (_MODES, 1, 1))
         self._become(Mode.HANDLED)
         self._rolls_below_m_s = 0.0
 
@@ -157,8 +160,7 @@ class BallFilter:
         along = velocity_m_s / max(speed_m_s, 1e-9)
         across = np.array((-along[1], along[0]))
         position_m, covariance_m2 = self.state[:2], self.covariance[:2, :2]
-        self._x[:, :2], self._x[:, 2:] = position_m, velocity_m_s
-        self._p[:] = 0.0
+        self._x, self._p = np.tile((*position_m, *velocity_m_s), (_MODES, 1)), np.zeros((_MODES, 4, 4))
         self._p[:, :2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
         self._p[:, 2:, 2:] = (
             np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2

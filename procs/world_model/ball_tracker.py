@@ -1,67 +1,56 @@
-"""One ball from the sightings of several robots, with rules for sightings that contradict each other.
+"""One ball from the sightings of several robots, each of which counts at the time of its exposure.
 
-Order of the sources:
-
-1. The light barrier in the robot's own mouth: while it holds the ball, other sightings do not count.
-2. The robot's own camera. Mates' sightings that fit are fused, each by its covariance.
-3. Mates, when the robot does not see the ball itself; among them the more precise.
-
-A sighting that does not fit the track is dropped if a better source has confirmed the track since its exposure.
-Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
-track: the ball was kicked, bounced or was placed elsewhere.
+Messages of mates arrive later than frames of the own camera. A track that was taken to now cannot go back over a kick
+or a bounce, so the tracker keeps the tracks of the last moments: a late input changes the moment of its exposure, and
+the later inputs are taken again.
 """
 
-from dataclasses import dataclass, replace
-
-import numpy as np
+from bisect import bisect_left
+from collections.abc import Callable
+from dataclasses import dataclass, field
 
 from procs.model.frames import Floats
+from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
+from procs.world_model.ball_track import BallTrack, Sighting, Step, Walls
 from procs.world_model.seen import Seen
 
-_SECOND_SIGHT_S = 0.3
-_FASTEST_M_S = 13.0
-_OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
-_OBSERVER_S = 0.5
-_NOTICED_SHARE = 0.15  # a track whose velocity differs less from a kick's has noticed the kick
-_HELD_M = 0.02  # deviation of a held ball's place in the mouth
-_HELD_M_S = 0.1
+__all__ = ["BallTracker", "Sighting"]
+
+_KEPT_US = 400_000  # older inputs are not used
+_LONGEST_STEP_US = 100_000
+_OBSERVER_US = 500_000
+_BY_OWN_CAMERA, _BY_MATE, _HELD, _KICKED = range(4)  # order of the inputs of one moment
+
+_Input = Callable[[BallTrack], None]
 
 
-@dataclass(frozen=True)
-class Sighting:
-    """Position of the ball as a robot saw it: world frame, captured `age_s` ago."""
+@dataclass
+class _Moment:
+    """The inputs of one time, and the track after them."""
 
-    robot: str
-    own: bool
-    position_m: Floats
-    covariance_m2: Floats
-    age_s: float = 0.0
-
-    @property
-    def weakness(self) -> float:
-        """Rank of the source: the smaller, the better."""
-        return float(np.trace(self.covariance_m2)) / (_OWN_BONUS if self.own else 1.0)
+    track: BallTrack
+    inputs: list[tuple[int, _Input]] = field(default_factory=list)
+    """Ranks and inputs."""
 
 
 class BallTracker:
-    """Track of the ball: `advance` once a tick, then the sightings of the tick, own ones first."""
+    """Track of the ball: `advance` once a tick, then the inputs of the tick."""
 
-    def __init__(self) -> None:
-        self._rolling_m_s2 = 0.0
-        self._track: BallFilter | None = None
-        self._now_s = 0.0
-        self._doubts: list[tuple[float, Sighting]] = []
-        self._confirmed: dict[str, tuple[float, float]] = {}
-        """Robot to (exposure of its newest sighting in the track, weakness)."""
-        self._seen_s = -np.inf
-        self._held_s = -np.inf
-        self._moved_s = -np.inf  # a known kick, or a ball in the own mouth: exposures before it tell nothing
+    def __init__(self, walls: Walls | None = None) -> None:
+        """Starts without a ball, inside `walls` if there are any."""
+        self._walls = walls
+        self._now_us = 0
+        self._steps: list[tuple[int, Step]] = []
+        """Ends of the last ticks, and their conditions."""
+        self._moments = [_Moment(BallTrack(-_KEPT_US))]
+        self._sound = 1  # number of moments whose tracks contain all inputs
+        self._current: BallTrack | None = None
 
     @property
     def known(self) -> bool:
         """True if the ball was seen within the time-out."""
-        return self._track is not None
+        return self._at_now().filter is not None
 
     @property
     def track(self) -> BallFilter:
@@ -70,131 +59,99 @@ class BallTracker:
         Raises:
             ValueError: the ball is not known.
         """
-        if self._track is None:
+        found = self._at_now().filter
+        if found is None:
             raise ValueError("the ball is not known; ask 'known' first")
-        return self._track
+        return found
 
     @property
     def age_s(self) -> float:
         """Time since the newest sighting."""
-        return self._now_s - self._seen_s
+        return (self._now_us - self._at_now().seen_us) / US_PER_S
 
     @property
     def observers(self) -> int:
         """Number of robots with a sighting in the last half second."""
-        return sum(self._now_s - seen_s < _OBSERVER_S for seen_s, _ in self._confirmed.values())
+        return sum(self._now_us - seen_us < _OBSERVER_US for seen_us, _ in self._at_now().confirmed.values())
 
     def advance(self, duration_s: float, timeout_s: float, rolling_m_s2: float, contact: bool = False) -> None:
         """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
 
-        `contact` says that a robot or a wall is near the ball.
+        Args:
+            duration_s: time since the last call.
+            timeout_s: longest time without a sighting.
+            rolling_m_s2: deceleration of the rolling ball.
+            contact: a robot or a wall is near the ball.
         """
-        self._rolling_m_s2 = rolling_m_s2
-        self._now_s += duration_s
-        self._doubts = [doubt for doubt in self._doubts if self._now_s - doubt[0] <= _SECOND_SIGHT_S]
-        if self._track is not None:
-            self._track.predict(duration_s, rolling_m_s2, contact)
-            if self.age_s > timeout_s:
-                self.forget()
+        self._now_us += round(duration_s * US_PER_S)
+        self._current = None
+        oldest_us = self._now_us - _KEPT_US
+        self._steps = [step for step in self._steps if step[0] >= oldest_us]
+        self._steps.append((self._now_us, Step(rolling_m_s2, contact, round(timeout_s * US_PER_S))))
+        self._settle()
+        while len(self._moments) > 1 and self._moments[1].track.time_us <= oldest_us:
+            del self._moments[0]
+        if self._moments[0].track.time_us < oldest_us:
+            self._moments[0] = _Moment(self._moved(self._moments[0].track, oldest_us))
+        self._sound = len(self._moments)
 
-    def see(self, sighting: Sighting) -> bool:
-        """Takes a sighting; returns False if it does not fit."""
-        if self._now_s == self._held_s or self._now_s - sighting.age_s < self._moved_s - 1e-6:
-            return False
-        if self._track is None:
-            self._begin(sighting)
-            return True
-        if self._track.see(sighting.position_m, sighting.covariance_m2, sighting.age_s):
-            self._confirm(sighting)
-            return True
-        if self._overruled(sighting):
-            return False
-        return self._doubt(sighting)
+    def see(self, sighting: Sighting) -> None:
+        """Takes a sighting."""
+        rank = _BY_OWN_CAMERA if sighting.own else _BY_MATE
+        self._take(rank, sighting.age_s, lambda track: track.see(sighting, self._steps[-1][1].rolling_m_s2))
 
     def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
-        """Takes a ball in the own mouth.
+        """Takes a ball in the own mouth; other sightings do not count at the same time.
 
         Args:
             robot: name of the robot.
             state: (4) of the ball: x, y, vx, vy, world frame.
             covariance: (4, 4) that the own pose and velocity add to it.
         """
-        if self._track is None or np.hypot(*(self._track.state[:2] - state[:2])) > 0.3:
-            self._track = BallFilter(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
-        self._track.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
-        self._confirmed = {robot: (self._now_s, 0.0)}
-        self._seen_s = self._held_s = self._moved_s = self._now_s
-        self._doubts = []
+        self._take(_HELD, 0.0, lambda track: track.hold(robot, state, covariance))
 
     def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.
-
-        A kick of a mate that the track already shows changes nothing.
 
         Args:
             velocity_m_s: (2), world frame.
             age_s: time since the kick.
             mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
         """
-        if self._track is not None:
-            surprise_m_s = np.hypot(*(self._track.state[2:] - velocity_m_s))
-            if age_s and surprise_m_s < _NOTICED_SHARE * np.hypot(*velocity_m_s):
-                return
-        for position_m, covariance_m2 in zip(mouth.positions_m, mouth.covariances_m2, strict=True):
-            self._track = BallFilter(position_m, covariance_m2)
-            self._seen_s = max(self._seen_s, self._now_s - age_s)
-        if self._track is not None:
-            self._track.kick(velocity_m_s)
-            self._track.predict(age_s, self._rolling_m_s2)
-        self._moved_s = self._now_s - age_s
-        self._confirmed = {}
-        self._doubts = []
+        self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, mouth))
 
-    def forget(self) -> None:
-        """Drops the track and all sightings."""
-        self._track = None
-        self._doubts = []
-        self._confirmed = {}
+    def _take(self, rank: int, age_s: float, taken: _Input) -> None:
+        """Keeps an input at its time, unless that is too long ago."""
+        time_us = self._now_us - round(age_s * US_PER_S)
+        times_us = [moment.track.time_us for moment in self._moments]
+        place = bisect_left(times_us, time_us)
+        if place == 0 and time_us < times_us[0]:
+            return
+        if place == len(times_us) or times_us[place] != time_us:
+            self._moments.insert(place, _Moment(BallTrack(time_us)))
+        self._moments[place].inputs.append((rank, taken))
+        self._sound = min(self._sound, place)
+        self._current = None
 
-    def _overruled(self, sighting: Sighting) -> bool:
-        """Returns whether a better source has confirmed the track since the sighting's exposure."""
-        exposed_s = self._now_s - sighting.age_s
-        return any(
-            robot != sighting.robot and seen_s >= exposed_s - 1e-6 and weakness < sighting.weakness
-            for robot, (seen_s, weakness) in self._confirmed.items()
-        )
+    def _at_now(self) -> BallTrack:
+        if self._current is None:
+            self._settle()
+            self._current = self._moved(self._moments[-1].track, self._now_us)
+        return self._current
 
-    def _doubt(self, sighting: Sighting) -> bool:
-        """Keeps a sighting that does not fit; begins a new track from two that fit each other."""
-        exposed_s = self._now_s - sighting.age_s
-        for other_s, other in reversed(self._doubts):
-            between_s = exposed_s - other_s
-            spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
-            if np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * abs(between_s) + spread_m:
-                self._confirmed = {}
-                aged = replace(other, age_s=self._now_s - other_s)
-                older, newer = (aged, sighting) if between_s > 0 else (sighting, aged)
-                self._begin(older, newer, abs(between_s))
-                return True
-        self._doubts.append((exposed_s, sighting))
-        return False
+    def _settle(self) -> None:
+        """Takes the inputs of all moments from the first one that changed."""
+        for place in range(self._sound, len(self._moments)):
+            moment = self._moments[place]
+            moment.track = self._moved(self._moments[place - 1].track, moment.track.time_us)
+            for _, taken in sorted(moment.inputs, key=lambda each: each[0]):
+                taken(moment.track)
+        self._sound = len(self._moments)
 
-    def _begin(self, first: Sighting, second: Sighting | None = None, between_s: float = 0.0) -> None:
-        """Begins a track from one sighting, or from two with `between_s` from the older to the newer exposure."""
-        track = self._track = BallFilter(first.position_m, first.covariance_m2)
-        last = first
-        if second is not None:
-            track.predict(between_s, self._rolling_m_s2)
-            track.see(second.position_m, second.covariance_m2)
-            last = second
-        track.predict(last.age_s, self._rolling_m_s2)
-        self._doubts = []
-        self._confirm(last)
-
-    def _confirm(self, sighting: Sighting) -> None:
-        exposed_s = self._now_s - sighting.age_s
-        self._confirmed[sighting.robot] = (exposed_s, sighting.weakness)
-        self._seen_s = max(self._seen_s, exposed_s)
-        self._doubts = [
-            doubt for doubt in self._doubts if doubt[0] > exposed_s or doubt[1].weakness <= sighting.weakness
-        ]
+    def _moved(self, track: BallTrack, time_us: int) -> BallTrack:
+        """Returns a track at a later time, through the conditions of the ticks between."""
+        while track.time_us < time_us:
+            end_us = min(time_us, track.time_us + _LONGEST_STEP_US)
+            step = next((step for until_us, step in self._steps if until_us >= end_us), Step())
+            track = track.moved(end_us, step, self._walls)
+        return track

@@ -21,6 +21,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
+from procs.model.frames import Floats
 from procs.model.geometry import plausible
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
@@ -94,21 +95,23 @@ class WorldModel(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._ball = BallTracker()
+        self._ball = BallTracker(self._arena_m)
         self._opponents = RobotTracks()
         self._team = Team()
+        self._view: OwnView | None = None
         self._kicks = 0
         self._mates_kicks: dict[str, int] = {}
         self._last_us = 0
-        self._sent_us = 0
+        self._sent_us = -US_PER_S  # the first message is due at once
         self._untold_ball = self._untold_obstacles = Seen.NOTHING  # own sightings since the last message
-        self._untold_frame = False
 
     def loop(self) -> None:
         config, now_s = self.config, self.clock.now_s
         passed_s = self.clock.since_s(self._last_us) if self._last_us else self.clock.period_s
         self._last_us = self.clock.now_us
-        view = OwnView(self.pose.value, self.odometry.value, self.pose.refreshed, config.shake_s_m)
+        known = self.pose.refreshed
+        view = OwnView(self.pose.value, self.odometry.value, known, config.shake_s_m, self._view, passed_s)
+        self._view = view
         told = self._listen(now_s)
         mates = self._team.localized(now_s, config.mate_timeout_s)
         self._follow_ball(view, mates, told, passed_s)
@@ -143,15 +146,12 @@ class WorldModel(Component):
         self._take_mates_kicks(told)
         contact = self._in_contact(view, mates)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact)
-        if self._ball.known:
-            self._ball.track.stay_within(*self._arena_m())
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
         if self.ball_percept.refreshed:
             percept = self.ball_percept.value
             age_s = self._age_s(percept.capture_us)
             seen = self._untold_ball = view.ball(percept, age_s)
-            self._untold_frame = True
             self.team_message.value.ball_capture_us = percept.capture_us or self.clock.now_us
             self._see(self._robot, seen.widened(config.sight_correlation, config.pose_correlation), age_s)
         for message, mate in told:
@@ -160,11 +160,10 @@ class WorldModel(Component):
             held = held_ball_of(message, mate, self._mouth_m)
             self._see(mate.name, held, self.clock.since_s(message.header.time_us))
 
-    def _arena_m(self) -> tuple[float, float]:
-        """Returns how far along x and y the middle of the ball can get: to the wall, or to the net of a goal."""
-        radius_m = self.config.ball.radius_m
-        field, (_, y_m) = self.config.field, self._ball.track.state[:2]
-        depth_m = field.goal_depth_m if abs(y_m) < field.goal_width_m / 2 else field.border_m
+    def _arena_m(self, ball_m: Floats) -> tuple[float, float]:
+        """Returns how far along x and y the middle of a ball (2) can get: to the wall, or to the net of a goal."""
+        field, radius_m = self.config.field, self.config.ball.radius_m
+        depth_m = field.goal_depth_m if abs(ball_m[1]) < field.goal_width_m / 2 else field.border_m
         return field.half_length_m + depth_m - radius_m, field.half_width_m + field.border_m - radius_m
 
     def _in_contact(self, view: OwnView, mates: list[Mate]) -> bool:
@@ -241,14 +240,14 @@ class WorldModel(Component):
     def _message_due(self) -> bool:
         """Returns whether to send now: about once a period, and rather in a tick with a new sighting.
 
-        Half a tick early is nearer to the period than half a tick late. A message without a sighting waits one tick for
-        the camera; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
+        Half a tick early is nearer to the period than half a tick late. A tick without a frame of the camera waits one
+        tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
         if self.team_message.value.kick_us == self.clock.now_us:
             return True  # mates have to know of a kick at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
-        if not self._untold_frame:
+        if not self.ball_percept.refreshed:
             passed_s -= self.clock.period_s
         return passed_s >= self.config.message_period_s
 
@@ -261,7 +260,6 @@ class WorldModel(Component):
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
         self._untold_ball = self._untold_obstacles = Seen.NOTHING
-        self._untold_frame = False
         self._sent_us = self.clock.now_us
         self.team_message.write()
 

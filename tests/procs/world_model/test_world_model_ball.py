@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from procs.model.ball import SLIDING_M_S2
 from procs.model.frames import rotation
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_tracker import BallTracker, Sighting
@@ -107,7 +108,8 @@ def test_own_kick_is_believed_before_any_sighting() -> None:
     tracker.kick(np.array((8.0, 0.0)))
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.1)
-    assert tracker.see(Sighting("a", True, np.array((0.73, 0.0)), np.eye(2) * 0.02**2))
+    tracker.see(Sighting("a", True, np.array((0.73, 0.0)), np.eye(2) * 0.02**2))
+    assert tracker.age_s == 0.0, "the sighting fits"
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.25)
 
 
@@ -171,8 +173,8 @@ def test_phantom_seen_once_changes_nothing() -> None:
     for frame in range(20):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
         place = (5.0, 5.0) if frame == 15 else (1.0, 1.0)
-        fits = tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
-        assert fits == (frame != 15)
+        tracker.see(Sighting("a", True, np.array(place), np.eye(2) * 0.02**2))
+        assert (tracker.age_s == 0.0) == (frame != 15)
     assert tracker.track.state[:2] == pytest.approx((1.0, 1.0), abs=0.02)
 
 
@@ -214,6 +216,40 @@ def test_old_sighting_is_used_for_its_own_time() -> None:
     assert abs(np.mean(errors)) < 0.05, "0.4 m behind without the age"
 
 
+def test_late_sighting_from_before_a_kick_changes_nothing_after_it() -> None:
+    """An opponent kicks a resting ball; the own camera sees it fly, a mate's sightings come 0.15 s late."""
+    tracker = BallTracker()
+    places_m = [max(0.0, 7.0 * (frame - 12) * PERIOD_S) for frame in range(20)]
+    for frame, x_m in enumerate(places_m):
+        tracker.advance(PERIOD_S, 2.0, 0.0, contact=True)
+        tracker.see(Sighting("me", True, np.array((x_m, 0.0)), np.eye(2) * 0.02**2))
+        if frame >= 3:
+            late_m = np.array((places_m[frame - 3], 0.0))
+            tracker.see(Sighting("mate", False, late_m, np.eye(2) * 0.02**2, age_s=3 * PERIOD_S))
+        if frame >= 14:
+            assert tracker.track.state[:2] == pytest.approx((x_m, 0.0), abs=0.06)
+            assert tracker.track.state[2:] == pytest.approx((7.0, 0.0), abs=0.9)
+
+
+def test_order_of_arrival_does_not_matter() -> None:
+    def state(late: bool) -> Floats:
+        tracker, rng = BallTracker(), np.random.default_rng(3)
+        held: list[Sighting] = []
+        for frame in range(16):
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+            noise_m = 0.02 * rng.standard_normal((2, 2))
+            tracker.see(Sighting("me", True, np.array((0.1 * frame, 0.0)) + noise_m[0], np.eye(2) * 0.02**2))
+            held = [Sighting(one.robot, False, one.position_m, one.covariance_m2, one.age_s + PERIOD_S) for one in held]
+            held.append(Sighting("mate", False, np.array((0.1 * frame, 0.0)) + noise_m[1], np.eye(2) * 0.03**2))
+            if not late or frame % 4 == 3:
+                for one in held:
+                    tracker.see(one)
+                held = []
+        return tracker.track.state
+
+    assert state(late=True) == pytest.approx(state(late=False), abs=1e-9)
+
+
 def test_ball_is_forgotten_after_the_timeout() -> None:
     tracker = BallTracker()
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
@@ -233,8 +269,8 @@ def test_held_ball_is_in_the_mouth_whatever_the_cameras_say() -> None:
     for frame in range(5):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
         tracker.hold("me", np.array((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0)), np.zeros((4, 4)))
-        assert not tracker.see(Sighting("mate", False, np.array((3.0, 3.0)), np.eye(2) * 0.01**2))
-    assert tracker.track.state == pytest.approx((0.53, 0.0, 1.0, 0.0), abs=0.06)
+        tracker.see(Sighting("mate", False, np.array((3.0, 3.0)), np.eye(2) * 0.01**2))
+        assert tracker.track.state == pytest.approx((0.33 + frame * PERIOD_S, 0.0, 1.0, 0.0), abs=0.06)
 
 
 def test_cameras_outrank_the_kickers_old_sighting() -> None:
@@ -340,7 +376,7 @@ def test_covariance_stays_symmetric_and_positive() -> None:
     track = BallFilter(np.zeros(2), np.eye(2) * 0.01)
     for _ in range(400):
         track.predict(PERIOD_S, ROLLING_M_S2, contact=True)
-        track.see(rng.standard_normal(2) * 0.1, np.diag(rng.uniform(1e-6, 0.1, 2)), age_s=0.15)
+        track.see(rng.standard_normal(2) * 0.1, np.diag(rng.uniform(1e-6, 0.1, 2)))
         assert (np.linalg.eigvalsh(track.covariance) > 0).all()
         assert track.covariance == pytest.approx(track.covariance.T, abs=1e-12)
 
@@ -374,7 +410,9 @@ def test_kick_of_a_mate_begins_at_its_mouth() -> None:
     tracker = BallTracker()
     for frame in range(8):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=True)
-        tracker.see(Sighting("me", True, np.array((0.2 * max(0, frame - 5), 0.0)), np.eye(2) * 0.05**2))
+        flight_s = max(0, frame - 5) * PERIOD_S
+        ball_m = np.array((8.0 * flight_s - SLIDING_M_S2 / 2 * flight_s**2, 0.0))
+        tracker.see(Sighting("me", True, ball_m, np.eye(2) * 0.05**2))
     mouth = Seen.of([(0.0, 0.0)], [np.eye(2) * 0.03**2], [0.0])
     tracker.kick(np.array((8.0, 0.0)), 0.1, mouth)
     assert tracker.track.state[0] == pytest.approx(0.8, abs=0.03)

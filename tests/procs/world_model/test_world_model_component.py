@@ -339,8 +339,38 @@ def test_frames_of_every_second_tick_reach_the_message(parity: int) -> None:
     assert len(told) == 10
     assert sum(message.ball_visible for message in told) >= 9
     assert sum(len(message.obstacles) == 1 for message in told) >= 9
-    ages_us = {message.header.time_us - message.ball_capture_us for message in told if message.ball_visible}
-    assert ages_us <= {0, round(PERIOD_S * 1e6)}
+    ages_us = [message.header.time_us - message.ball_capture_us for message in told if message.ball_visible]
+    assert set(ages_us) <= {0, round(PERIOD_S * 1e6)}
+    assert set(ages_us[2:]) == {0}, "messages keep the camera's pace"
+
+
+def test_message_out_of_step_with_the_camera_finds_its_pace_again() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for tick in range(20):
+        robot.sense(np.array((2.0, 1.0)), [])
+        if tick % 2:
+            robot.bench.port("ball_percept").waiting.clear()
+        if tick == 9:  # a kick is told at once, between two frames
+            robot.bench.port("kicker_state").put(ball_held=False, kicks=1, kick_speed_m_s=8.0)
+        robot.bench.iterate()
+    told = robot.bench.port("team_message").sent
+    assert {message.header.time_us - message.ball_capture_us for message in told[-3:]} == {0}
+
+
+def test_slipping_wheels_do_not_turn_what_the_robot_sees() -> None:
+    """In a scrum the wheels turn at 3 rad/s; the gyro, and so the pose, knows that the robot does not."""
+    robot, ball_m = Robot("cyan1", (0.0, 0.0, 0.0), seed=1), np.array((4.0, 0.0))
+    for _ in range(20):
+        robot.sense(ball_m, [])
+        robot.bench.port("ball_percept").waiting.clear()
+        robot.bench.port("odometry").put(omega_rad_s=3.0)
+        captured_us = max(1, robot.bench.time_us + round(PERIOD_S * 1e6) - 35_000)
+        covariance_m2 = [[1e-4, 0.0], [0.0, 1e-4]]
+        robot.bench.port("ball_percept").put(
+            visible=True, x_m=4.0, confidence=1.0, covariance_m2=covariance_m2, capture_us=captured_us
+        )
+        robot.bench.iterate()
+    assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((4.0, 0.0), abs=0.1), "0.4 m with the wheels"
 
 
 def test_mates_sight_counts_from_its_exposure() -> None:

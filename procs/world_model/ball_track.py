@@ -1,0 +1,152 @@
+"""State of the ball track at one time, from inputs in the order of their times.
+
+Order of the sources of sightings:
+
+1. The light barrier in the robot's own mouth, which replaces whatever the track says.
+2. The robot's own camera. Mates' sightings that fit are fused, each by its covariance.
+3. Mates, when the robot does not see the ball itself; among them the more precise.
+
+A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
+Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
+track: the ball was kicked, bounced or was placed elsewhere.
+"""
+
+import copy
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from procs.model.frames import Floats
+from procs.model.units import US_PER_S
+from procs.world_model.ball_filter import BallFilter
+from procs.world_model.seen import Seen
+
+_SECOND_SIGHT_US = 300_000
+_FASTEST_M_S = 13.0
+_OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
+_NEVER_US = -(1 << 60)
+_HELD_M = 0.02  # deviation of a held ball's place in the mouth
+_HELD_M_S = 0.1
+
+Walls = Callable[[Floats], tuple[float, float]]
+"""Position (2) of the ball to the largest |x| and |y| in metres that its middle can reach."""
+
+
+@dataclass(frozen=True)
+class Sighting:
+    """Position of the ball as a robot saw it: world frame, captured `age_s` ago."""
+
+    robot: str
+    own: bool
+    position_m: Floats
+    covariance_m2: Floats
+    age_s: float = 0.0
+
+    @property
+    def weakness(self) -> float:
+        """Rank of the source: the smaller, the better."""
+        return float(np.trace(self.covariance_m2)) / (_OWN_BONUS if self.own else 1.0)
+
+
+@dataclass(frozen=True)
+class Step:
+    """Conditions of the motion during a tick."""
+
+    rolling_m_s2: float = 0.0
+    """Deceleration of the rolling ball."""
+    contact: bool = False
+    """A robot or a wall is near the ball."""
+    timeout_us: int = 2 * US_PER_S
+    """The ball is forgotten after that time without a sighting."""
+
+
+@dataclass
+class BallTrack:
+    """Filter of the ball with the memory that judges sightings; all times in logical microseconds."""
+
+    time_us: int
+    filter: BallFilter | None = None
+    """None while the ball is not known."""
+    seen_us: int = _NEVER_US
+    """Exposure of the newest sighting."""
+    confirmed: dict[str, tuple[int, float]] = field(default_factory=dict)
+    """Robot to exposure and weakness of its newest sighting in the track."""
+    doubts: tuple[tuple[int, Sighting], ...] = ()
+    """Exposures and sightings that did not fit."""
+
+    def moved(self, time_us: int, step: Step, walls: Walls | None) -> "BallTrack":
+        """Returns the track at a later time; this one stays as it is."""
+        track = copy.copy(self)
+        track.time_us, track.confirmed = time_us, dict(self.confirmed)
+        track.doubts = tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
+        if self.filter is None:
+            return track
+        if time_us - self.seen_us > step.timeout_us:
+            track.filter, track.confirmed, track.doubts = None, {}, ()
+            return track
+        track.filter = copy.copy(self.filter)
+        track.filter.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
+        if walls is not None:
+            track.filter.stay_within(*walls(track.filter.state[:2]))
+        return track
+
+    def see(self, sighting: Sighting, rolling_m_s2: float) -> None:
+        """Takes a sighting that was captured at the time of the track."""
+        if self.filter is None:
+            self._begin(sighting)
+        elif self.filter.see(sighting.position_m, sighting.covariance_m2):
+            self._confirm(sighting)
+        elif not self._overruled(sighting):
+            self._doubt(sighting, rolling_m_s2)
+
+    def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
+        """Takes a ball in the own mouth; see `BallTracker.hold`."""
+        if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > 0.3:
+            self.filter = BallFilter(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
+        self.filter.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
+        self.confirmed = {robot: (self.time_us, 0.0)}
+        self.seen_us = self.time_us
+        self.doubts = ()
+
+    def kick(self, velocity_m_s: Floats, mouth: Seen) -> None:
+        """Takes a kick at the time of the track; see `BallTracker.kick`."""
+        for position_m, covariance_m2 in zip(mouth.positions_m, mouth.covariances_m2, strict=True):
+            self.filter = BallFilter(position_m, covariance_m2)
+            self.seen_us = self.time_us
+        if self.filter is not None:
+            self.filter.kick(velocity_m_s)
+        self.confirmed = {}
+        self.doubts = ()
+
+    def _overruled(self, sighting: Sighting) -> bool:
+        """Returns whether a better source has confirmed the track at the sighting's exposure."""
+        return any(
+            robot != sighting.robot and seen_us >= self.time_us and weakness < sighting.weakness
+            for robot, (seen_us, weakness) in self.confirmed.items()
+        )
+
+    def _doubt(self, sighting: Sighting, rolling_m_s2: float) -> None:
+        """Keeps a sighting that does not fit; begins a new track from two that fit each other."""
+        for exposed_us, other in reversed(self.doubts):
+            between_s = (self.time_us - exposed_us) / US_PER_S
+            spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
+            if np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m:
+                self.confirmed = {}
+                self._begin(other)
+                assert self.filter is not None
+                self.filter.predict(between_s, rolling_m_s2)
+                self.filter.see(sighting.position_m, sighting.covariance_m2)
+                self._confirm(sighting)
+                return
+        self.doubts = (*self.doubts, (self.time_us, sighting))
+
+    def _begin(self, sighting: Sighting) -> None:
+        self.filter = BallFilter(sighting.position_m, sighting.covariance_m2)
+        self.doubts = ()
+        self._confirm(sighting)
+
+    def _confirm(self, sighting: Sighting) -> None:
+        self.confirmed[sighting.robot] = (self.time_us, sighting.weakness)
+        self.seen_us = self.time_us
+        self.doubts = tuple(doubt for doubt in self.doubts if doubt[1].weakness <= sighting.weakness)
