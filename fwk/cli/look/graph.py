@@ -1,7 +1,7 @@
 """`fwk graph` and `fwk who`: how the components of a system are connected."""
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict
 from enum import Enum
 from fnmatch import fnmatchcase
@@ -54,6 +54,7 @@ def graph(
 
     Exit codes: 0 shown; 1 no run answers; 2 bad input.
     """
+    _refuse_launch_files(names or (), file)
     found = _graph(file, chosen)
     if names:
         known = [node.name for node in found.nodes]
@@ -84,6 +85,7 @@ def who(
 
     Exit codes: 0 shown; 1 no run answers; 2 bad input.
     """
+    _refuse_launch_files(channels, file)
     rows = _rows(file, chosen)
     known = [row["channel"] for row in rows]
     for pattern in channels:
@@ -98,6 +100,13 @@ def who(
         typer.echo(f"{row['channel']} ({row['type']}{rate})")
         typer.echo(f"  written by  {row['writer'] or 'no component'}")
         typer.echo(f"  read by     {', '.join(row['readers']) or 'no component'}")
+
+
+def _refuse_launch_files(names: Sequence[str], file: str) -> None:
+    """Names the option that a launch file among the arguments needs."""
+    for name in names:
+        if name.endswith((".yaml", ".yml")) and not file:
+            _refuse(f"'{name}' is a launch file; write: --file {name}")
 
 
 def _graph(file: str, chosen: str | None) -> Graph:

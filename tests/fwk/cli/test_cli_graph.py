@@ -47,6 +47,11 @@ def test_unknown_names_are_answered_with_near_ones(tmp_path: Path) -> None:
     assert (code, "cannot be written: No such file or directory" in text) == (2, True)
 
 
+@pytest.mark.parametrize("command", ["graph", "who"])
+def test_a_launch_file_without_its_option_is_recognised(command: str) -> None:
+    assert said(command, "robots.yaml") == (2, "error: 'robots.yaml' is a launch file; write: --file robots.yaml\n")
+
+
 def test_field_is_found_by_its_path() -> None:
     value = {"pose": {"x_m": 1.5}, "robots": [{"y_m": 2.0}], "xs": [4, 5]}
     assert [field_of(value, path) for path in ("pose.x_m", "robots[0].y_m", "xs[1]")] == [1.5, 2.0, 5]
