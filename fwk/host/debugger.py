@@ -77,8 +77,36 @@ def debug(
     return 0
 
 
+class SingleLines:
+    """Input that takes one line at a time from a descriptor, so that another process can read the next one."""
+
+    def __init__(self, descriptor: int) -> None:
+        self._descriptor = descriptor
+
+    def readline(self) -> str:
+        """Returns the next line; empty at the end."""
+        line = bytearray()
+        while not line.endswith(b"\n") and (character := os.read(self._descriptor, 1)):
+            line += character
+        return line.decode(errors="replace")
+
+
 class QuietPdb(pdb.Pdb):
-    """pdb that stops at breakpoints only, never in the code of the framework before them."""
+    """pdb that stops at breakpoints only, never in the code of the framework before them.
+
+    Commands may come from a pipe, also if several processes take them in turns.
+    """
+
+    def __init__(self, **options: Any) -> None:
+        if not os.isatty(0):
+            options |= {"stdin": SingleLines(0), "stdout": sys.stdout}
+        super().__init__(**options)
+        self._silent = False
+
+    def message(self, msg: str) -> None:
+        """Prints a message, unless it tells that the temporary breakpoint is gone."""
+        if not self._silent:
+            super().message(msg)
 
     def begin_at(self, file: str, line: int, wanted: Callable[[Any], bool]) -> None:
         """Stops once at this line, when `wanted` accepts the object whose method is running."""
@@ -92,7 +120,11 @@ class QuietPdb(pdb.Pdb):
             if not self._wanted(frame.f_locals[frame.f_code.co_varnames[0]]):
                 return False
             self._wanted = lambda _: True
-        return bool(super().break_here(frame))
+        self._silent = True
+        try:
+            return bool(super().break_here(frame))
+        finally:
+            self._silent = False
 
     def run_quietly(self, work: Callable[[], None]) -> None:
         self.reset()

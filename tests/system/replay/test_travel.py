@@ -1,6 +1,7 @@
 """Time travel in a replay under pdb: back, goto, until, and back until, with exactly the inputs of the run."""
 
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -112,3 +113,11 @@ def test_an_iteration_back_takes_less_than_a_second(recorded: Path) -> None:
     assert monotonic_us() - began_us < 1_000_000
     stopped.type("q")
     assert stopped.end() == 0
+
+
+def test_commands_may_come_from_a_pipe(recorded: Path) -> None:
+    asked = "p ('at', self.clock.tick)\nback 3\np ('at', self.clock.tick)\ngoto 25\np ('at', self.clock.tick)\nq\n"
+    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "20"]
+    done = subprocess.run(command, cwd=recorded, input=asked, capture_output=True, text=True, timeout=60)
+    assert re.findall(r"\('at', (\d+)\)", done.stdout) == ["20", "17", "25"]
+    assert "Deleted breakpoint" not in done.stdout
