@@ -30,6 +30,8 @@ PAGES = {
 """Address of a page to its title and icon."""
 SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}
 _REFRESH_S = 0.5
+_STATUS_S = 2.0
+"""Age of the state of all components where a page needs it for its head alone."""
 _OTHER_THEME = f"""() => {{
     const dark = !document.body.classList.contains('body--dark');
     setDark(dark);
@@ -139,9 +141,9 @@ class Frame:
             )
 
     async def _pause_or_resume(self) -> None:
-        status = await self.do(self.link.status())
-        if status:
-            await self.do(self.access.clock("resume" if status["paused"] else "pause"))
+        clock = await self.do(self.link.ask("speed"))
+        if clock:
+            await self.do(self.access.clock("resume" if clock["paused"] else "pause"))
 
     async def _speed(self, value: str) -> None:
         if value:
@@ -157,7 +159,8 @@ class Frame:
                 ui.navigate.reload()
             return
         try:
-            status = await self.link.status()
+            about = await (self.link.status() if self._on_status else self.link.status(_STATUS_S))
+            status = {**about, **await self.link.clock()}
         except ControlError as error:
             self._say(f"{error}; this page goes on when it is started again")
             self._state.set_text("ended")

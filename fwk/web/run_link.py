@@ -16,8 +16,10 @@ from fwk.lcm.typegen import TypeGenerationError
 from fwk.web.shared import Shared
 
 _LOOK_AGE_S = 1.0
-_STATUS_AGE_S = 0.4
-_CHANNELS_AGE_S = 0.8
+_CLOCK_AGE_S = 0.4
+_STATUS_AGE_S = 1.0
+_CHANNELS_AGE_S = 1.9
+_SETTINGS_AGE_S = 4.0
 _SHOW_AGE_S = 0.2
 _TIMES_AGE_S = 1.5
 _FRAME_AGE_S = 0.04
@@ -55,7 +57,8 @@ class Runs:
 class RunLink:
     """Asks one run, found by its name each time: a run that starts again under that name is found again.
 
-    Answers are shared between browsers and have a least age, so the work that a run has with a console is bounded.
+    Answers are shared between browsers and have a least age, so the work that a run has with a console is bounded:
+    dear answers, such as the settings of all components, are asked for more rarely than cheap ones.
     """
 
     def __init__(self, name: str, runs: Runs, shared: Shared) -> None:
@@ -79,9 +82,13 @@ class RunLink:
             raise NotRunningError(f"'{self.name}' does not run")
         return found
 
-    async def status(self) -> dict[str, Any]:
-        """Returns the state of the run and of its components."""
-        return await self._kept("status", _STATUS_AGE_S)
+    async def clock(self) -> dict[str, Any]:
+        """Returns tick, logical time, desired speed, and whether the run is paused."""
+        return await self._kept("speed", _CLOCK_AGE_S)
+
+    async def status(self, age_s: float = _STATUS_AGE_S) -> dict[str, Any]:
+        """Returns the state of the run and of its components, at most so old."""
+        return await self._kept("status", age_s)
 
     async def times(self) -> dict[str, Any]:
         """Returns histograms of the times of ticks, stages and components."""
@@ -97,9 +104,9 @@ class RunLink:
         """Returns the newest message of a channel as plain data."""
         return await self._kept("show", _SHOW_AGE_S, of_gateway=True, channel=channel)
 
-    async def settings(self, names: Sequence[str] = ()) -> list[dict[str, Any]]:
+    async def settings(self, names: Sequence[str] = (), age_s: float = _SETTINGS_AGE_S) -> list[dict[str, Any]]:
         """Returns the settings of components."""
-        answer = await self._kept("settings", _CHANNELS_AGE_S, names=tuple(names))
+        answer = await self._kept("settings", age_s, names=tuple(names))
         rows: list[dict[str, Any]] = answer["settings"]
         return rows
 

@@ -49,7 +49,7 @@ def build(frame: Frame) -> None:
             return
         wanted = {each: parted(each) for each in fields}
         newest = await frame.link.newest(sorted({channel for channel, _ in wanted.values()}))
-        time_us = (await frame.link.status())["time_us"]
+        time_us = (await frame.link.clock())["time_us"]
         for each, (channel, field) in wanted.items():
             message = newest.get(channel)
             header = getattr(message, "header", None)

@@ -8,6 +8,9 @@ from nicegui import ui
 from fwk.control.client import ControlError
 from fwk.web.layout import Frame, body
 
+_TREE_S = 5.0
+_FRESH_S = 0.5
+
 
 def build(frame: Frame) -> None:
     """Makes the page."""
@@ -29,7 +32,9 @@ def build(frame: Frame) -> None:
 
     async def choose(name: str) -> None:
         chosen["name"] = name
-        rows = [row for row in await frame.do(link.settings()) or [] if matches(row, name, wanted.value or "")]
+        rows = [
+            row for row in await frame.do(link.settings(age_s=_FRESH_S)) or [] if matches(row, name, wanted.value or "")
+        ]
         rows_area.clear()
         with rows_area:
             for row in rows:
@@ -38,7 +43,7 @@ def build(frame: Frame) -> None:
                 ui.label("no setting matches")
 
     wanted.on_value_change(lambda: choose(chosen["name"]))
-    frame.every(2.0, refresh_tree)
+    frame.every(_TREE_S, refresh_tree)
     if chosen["name"]:
         ui.timer(0.1, lambda: choose(chosen["name"]), once=True)
 

@@ -2,93 +2,21 @@
 
 import math
 import re
-import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
 import pytest
-from playwright.sync_api import Locator, Page, expect
+from playwright.sync_api import Page, expect
 
-from fwk.control.address import gateway_address, supervisor_address
+from fwk.control.address import supervisor_address
 from fwk.control.client import Client
-from tests.harness.browser import CHROMIUM, Chromium, Console
-from tests.harness.runs import Launched, PortBlock, write_files
-from tests.programs.garden_system import CROWD, garden_system
+from tests.harness.browser import Console
+from tests.harness.garden import ROWS, Garden, row
+from tests.programs.garden_system import CROWD
 
 pytestmark = pytest.mark.system
-
-
-ROWS = "tbody:not(.q-virtual-scroll__padding) tr"
-"""Rows of a table with content: long tables have others that keep the place of rows out of sight."""
-
-
-@dataclass
-class Garden:
-    """A run, a console and a browser that the tests of this module share."""
-
-    folder: Path
-    ports: PortBlock
-    run: Launched
-    console: Console
-    browser: Chromium
-
-    @property
-    def name(self) -> str:
-        """Returns the name of the run, which no other run on this machine has."""
-        return f"garden{self.ports.bus}"
-
-    def open(self, path: str = "/?run=garden", **look: object) -> Page:
-        own = path.replace("run=garden", f"run={self.name}")
-        return self.browser.open(f"{self.console.url}{own}", **look)  # type: ignore[arg-type]
-
-    def state(self, component: str) -> str:
-        with Client(supervisor_address(self.ports.bus)) as run:
-            (found,) = run.ask("status", names=[component])["components"]
-        return str(found["state"])
-
-    def tick(self) -> int:
-        with Client(supervisor_address(self.ports.bus)) as run:
-            return int(run.ask("status", names=["a/mower"])["tick"])
-
-    def launch(self) -> None:
-        self.run = Launched(self.folder, self.ports, ("garden.yaml", "--run", self.name), {})
-
-
-@pytest.fixture(scope="module")
-def garden(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Garden]:
-    program = shutil.which(CHROMIUM)
-    if not program:
-        pytest.skip(f"needs {CHROMIUM}: apt install {CHROMIUM}")
-    folder = tmp_path_factory.mktemp("garden")
-    with PortBlock(2) as ports, Chromium(program) as browser:
-        write_files(folder, garden_system(ports.public_url))
-        name = f"garden{ports.bus}"
-        run = Launched(folder, ports, ("garden.yaml", "--run", name), {})
-        console = Console(folder, "--view", "garden_web", "--run", name)
-        made = Garden(folder, ports, run, console, browser)
-        yield made
-        assert browser.outside == []
-        assert browser.mistakes == []
-        assert console.end() == 0, console.text
-        made.run.end()
-        assert "Traceback" not in console.text
-
-
-@pytest.fixture(autouse=True)
-def close_pages(garden: Garden) -> Iterator[None]:
-    """Closes the pages of a test, and resumes the run that it may have paused."""
-    yield
-    garden.browser.close_pages()
-    with Client(supervisor_address(garden.ports.bus)) as run:
-        run.ask("resume")
-
-
-def row(page: Page, text: str) -> Locator:
-    return page.locator(ROWS).filter(has=page.get_by_text(text, exact=True))
 
 
 def choose(page: Page, name: str) -> None:
@@ -247,7 +175,7 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     page.get_by_role("checkbox", name="mower").click()
     page.get_by_role("button", name="pause or resume").click()
     expect(page.locator("[data-name=state]")).to_have_text("paused")
-    place = _place(garden)
+    place = garden.place()
     box = canvas.bounding_box()
     assert box
     scale = min(box["width"], box["height"]) / 10.0
@@ -257,12 +185,6 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     expect(page.locator("[data-name='canvas a/image'] canvas")).to_have_attribute("data-picture", re.compile(r"\d+"))
     page.get_by_role("button", name="pause or resume").click()
     expect(page.locator("[data-name=state]")).to_have_text("running")
-
-
-def _place(garden: Garden) -> tuple[float, float]:
-    with Client(gateway_address(garden.ports.bus)) as run:
-        value = run.ask("show", channel="a/place")["value"]
-    return value["x_m"], value["y_m"]
 
 
 def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:
