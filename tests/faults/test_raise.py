@@ -14,7 +14,7 @@ from tests.faults.aftermath import Aftermath
 from tests.faults.conftest import RUN, TICKS
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
-from tests.harness.runs import TIMEOUT_S, PortBlock, write_files
+from tests.harness.runs import TIMEOUT_S, UNHURRIED, PortBlock, write_files
 
 pytestmark = pytest.mark.system
 
@@ -58,7 +58,7 @@ def test_a_failing_component_is_named_and_restarted(
 
 
 def test_a_child_program_ends_with_its_killed_component(launch: Launch, faulty: Path, after: Aftermath) -> None:
-    run = launch(*RUN, *wrong("loop:child and die"))
+    run = launch(*RUN, *UNHURRIED, *wrong("loop:child and die"))
     run.until("d/player runs again, incarnation 2")
     after.note(run)
     child = int((faulty / "child").read_text())
@@ -72,7 +72,7 @@ def alive(pid: int) -> bool:
 
 
 def test_a_spinning_component_in_lockstep_lets_the_run_end(launch: Launch, faulty: Path, after: Aftermath) -> None:
-    run = launch(*RUN, *wrong("loop:spin"))
+    run = launch(*RUN, *UNHURRIED, *wrong("loop:spin"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player spins")
     after.note(run)
     run.signal(signal.SIGINT)
@@ -98,7 +98,7 @@ def test_a_component_spinning_in_finalize_is_killed_and_named(launch: Launch, fa
 
 
 def test_status_is_published_while_the_run_waits(launch: Launch, faulty: Path, ports: PortBlock) -> None:
-    run = launch(*RUN, *wrong("loop:wait"))
+    run = launch(*RUN, *UNHURRIED, *wrong("loop:wait"))
     run.until_true(lambda: (faulty / "trouble-d_player").exists(), "d/player waits")
     ears = multicast_receiver(Ports(ports.bus, 0, 0).status)
     for state in range(3):

@@ -16,7 +16,7 @@ from tests.faults.conftest import RUN, TICKS
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import Launched, PortBlock, pause, write_files
+from tests.harness.runs import UNHURRIED, Launched, PortBlock, pause, write_files
 from tests.programs.control_system import Steered
 
 pytestmark = pytest.mark.system
@@ -48,7 +48,7 @@ def test_a_stopped_process_in_lockstep_leaves_no_trace(
 
 
 def test_lockstep_waits_for_a_stopped_component(launch: Launch, traced: Path, after: Aftermath) -> None:
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     run.until_ticks("f/player", 5)
     after.note(run)
     os.kill(run.host("d/player"), signal.SIGSTOP)
@@ -63,7 +63,7 @@ def test_lockstep_waits_for_a_stopped_component(launch: Launch, traced: Path, af
 
 
 def test_status_names_a_stopped_gateway(launch: Launch, folder: Path, ports: PortBlock) -> None:
-    run = Steered(launch(*RUN), ports)
+    run = Steered(launch(*RUN, *UNHURRIED), ports)
     gateway = run.launched.gateway()
     os.kill(gateway, signal.SIGSTOP)
     run.launched.until_true(lambda: run.ask("status")["waits_for"] == ["gateway"], "that the gateway is waited for")
@@ -95,7 +95,7 @@ def test_real_time_goes_on_without_a_stopped_process(launch: Launch, wall: Path,
 
 @pytest.mark.parametrize("who", ["a component", "the gateway", "the zygote"])
 def test_a_stopped_process_is_woken_to_end_cleanly(launch: Launch, traced: Path, after: Aftermath, who: str) -> None:
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     run.until_ticks("f/player", 5)
     after.note(run)
     os.kill(WHO[who](run), signal.SIGSTOP)

@@ -19,6 +19,8 @@ from tests.harness.command_server import MARK
 from tests.harness.commands import BIN
 
 TIMEOUT_S = 60.0  # generous for a busy machine; no command takes that long in normal operation
+UNHURRIED = ("--speed", "2")
+"""Option of a run that goes on until its test has done something: at full speed it would take all processors."""
 _BLOCK = 192
 _BASES = range(21_120, 32_000, _BLOCK)  # first lock block of ports
 

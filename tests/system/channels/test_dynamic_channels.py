@@ -12,7 +12,7 @@ from fwk.model.tick_events import ChannelsChanged, HostLost
 from fwk.recording.compare import compare
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import PortBlock, fwk, pause, replayed, write_files
+from tests.harness.runs import UNHURRIED, PortBlock, fwk, pause, replayed, write_files
 from tests.programs.control_system import Steered
 from tests.programs.dynamic_channels_system import brief, market
 
@@ -48,7 +48,7 @@ def test_a_restart_closes_dynamic_channels_and_replays(
     if clock == "real time":
         files["launch/market.yaml"] = files["launch/market.yaml"].replace("speed: max", "clock: wall")
     write_files(tmp_path, files)
-    run = Steered(launch("market.yaml", "--record", "log.lcm"), ports)
+    run = Steered(launch("market.yaml", "--record", "log.lcm", *(UNHURRIED if clock == "lockstep" else ())), ports)
     luck = random.Random(4)
     for _ in range(20):
         run.ticks_pass(luck.randrange(2, 12))

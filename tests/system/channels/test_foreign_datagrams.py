@@ -27,7 +27,7 @@ from tests.programs.orchestra import orchestra
 pytestmark = pytest.mark.system
 
 HOSTS, CHANNELS = 9, 14  # of the orchestra
-RUN = ("launch/orchestra.yaml", "--ticks", "60", "--seed", "7", "--record", "log.lcm")
+RUN = ("launch/orchestra.yaml", "--ticks", "40", "--seed", "7", "--record", "log.lcm")
 
 UNHURRIED = ("--speed", "1")  # foreign processes that share its processors get time before it ends
 

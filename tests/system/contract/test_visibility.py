@@ -11,7 +11,7 @@ from fwk.model.tick_events import StageBegun, StageDone, events_of
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
 from tests.harness.oracle import contradictions
-from tests.harness.runs import pause
+from tests.harness.runs import UNHURRIED, pause
 from tests.programs.orchestra import PLAYERS, STAGES
 
 pytestmark = pytest.mark.system
@@ -91,7 +91,7 @@ def test_kills_at_any_time_duplicate_and_lose_no_message(launch: Launch, folder:
     file = folder / "launch/orchestra.yaml"
     use = 'use: "player:Player"'
     file.write_text(file.read_text().replace(use, f"{use}, restart: {{ backoff_s: 0.01, limit: 100 }}"))
-    run = launch(*RUN)
+    run = launch(*RUN, *UNHURRIED)
     luck = random.Random(1)
     for kills in range(KILLS):
         run.until_count(" runs again", kills)

@@ -28,11 +28,12 @@ STANDING_M_S = 0.02
 @pytest.fixture
 def match(launch: Launch, ports: PortBlock, tmp_path: Path) -> Steered:
     """One moving robot on the field; its base is not restarted when it dies."""
-    robot = (LAUNCH / "msl-stereo.yaml").read_text()
-    (tmp_path / "msl-stereo.yaml").write_text(
+    robot = (LAUNCH / "msl-percepts.yaml").read_text()  # without pictures, which take most of the processor time
+    (tmp_path / "msl-percepts.yaml").write_text(
         robot.replace("use: procs.drivers.base\n", "use: procs.drivers.base\n      restart: {when: never}\n")
     )
-    (tmp_path / "one.yaml").write_text((LAUNCH / "one-robot.yaml").read_text())
+    one = (LAUNCH / "one-robot.yaml").read_text()
+    (tmp_path / "one.yaml").write_text(one.replace("stereo", "percepts"))
     return Steered(launch("one.yaml", "--speed", "max", "--set", f"public_url={ports.public_url}"), ports)
 
 

@@ -16,7 +16,7 @@ FILE = str(Path(__file__).parents[3] / "launch" / "frames.yaml")
 
 
 def test_sightings_are_transformed_to_the_true_ball(launch: Launch, tmp_path: Path) -> None:
-    run = launch(FILE, "--ticks", "160", "--speed", "max", "--record", "log.lcm")
+    run = launch(FILE, "--ticks", "130", "--speed", "max", "--record", "log.lcm")
     assert run.wait() == 0, run.text
     recording = Recording(tmp_path / "log.lcm")
     truth = {each.header.tick: each for each in recording.decoded("world/ground_truth")}

@@ -8,7 +8,7 @@ import pytest
 
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import Launched, pause
+from tests.harness.runs import UNHURRIED, Launched, pause
 
 pytestmark = pytest.mark.system
 
@@ -32,7 +32,7 @@ def trouble(what: str, tick: int = 5, again: bool = False) -> list[str]:
 
 def running(launch: Launch, *arguments: str) -> Launched:
     """A run without an end of its own, some ticks old."""
-    run = launch(FILE, "--record", "log.lcm", *arguments)
+    run = launch(FILE, "--record", "log.lcm", *UNHURRIED, *arguments)
     run.until_ticks("f/player", 3)
     return run
 

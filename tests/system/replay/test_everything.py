@@ -14,7 +14,7 @@ from fwk.model.tick_events import HostLate, HostLost, HostStopped, MainLoopGiven
 from tests.harness.fate import Fate
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import TIMEOUT_S, PortBlock, replayed, write_files
+from tests.harness.runs import TIMEOUT_S, UNHURRIED, PortBlock, replayed, write_files
 from tests.programs.control_system import Steered
 from tests.programs.everything import everything
 from tests.programs.together import FILE
@@ -61,7 +61,7 @@ def test_a_run_with_every_kind_of_event_is_replayed_exactly(
 ) -> None:
     write_files(tmp_path, everything(ports.public_url, real_time=clock == "real time"))
     use_types_of(tmp_path)
-    run = Steered(launch(FILE, "--record", "log.lcm"), ports)
+    run = Steered(launch(FILE, "--record", "log.lcm", *(UNHURRIED if clock == "lockstep" else ())), ports)
     fate = Fate(run, ports, random.Random(2))
     for what, whom in STRIKES:
         fate.strike(what, whom)

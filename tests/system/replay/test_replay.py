@@ -15,7 +15,7 @@ from tests.harness.components import source, sources
 from tests.harness.fate import Fate
 from tests.harness.fixtures import Launch
 from tests.harness.logs import Recording
-from tests.harness.runs import PortBlock, fwk, played, replayed, write_files
+from tests.harness.runs import UNHURRIED, PortBlock, fwk, played, replayed, write_files
 from tests.harness.terminals import Terminal
 from tests.programs.control_system import Steered
 from tests.programs.orchestra import orchestra
@@ -32,7 +32,7 @@ def test_requests_and_crashes_are_replayed_exactly(
 ) -> None:
     write_files(tmp_path, together(ports.public_url, real_time=real_time, groups=groups))
     (tmp_path / "traces").mkdir()
-    run = Steered(launch(FILE, "--record", "log.lcm"), ports)
+    run = Steered(launch(FILE, "--record", "log.lcm", *(() if real_time else UNHURRIED)), ports)
     luck = random.Random(3)
     fate = Fate(run, ports, luck)
     for _ in range(20):
