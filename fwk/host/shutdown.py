@@ -7,11 +7,14 @@ from collections.abc import Callable, Sequence
 
 from fwk.bus import sync
 from fwk.bus.network import Network, Steps
+from fwk.bus.retransmission import Backoff
 from fwk.bus.sender import Sender
 from fwk.model.ports import Ports
 from lcmtypes.core import done_t, leaving_t, taken_t
 
 REPEAT_US = 5_000
+LONGEST_REPEAT_US = 200_000
+"""All hosts of a run leave at once: supervisor and gateway may be busy with a hundred others."""
 TIMEOUT_US = 500_000
 """In real time: a supervisor or gateway that has not answered by then has ended or stopped."""
 LOCKSTEP_TIMEOUT_US = 2_500_000
@@ -61,12 +64,12 @@ class Shutdown:
         """Waits for all answers; `handle_own` answers fetches during the wait."""
         network = self._network
         end_us = network.now_us() + self._timeout_us
-        repeat_us = 0
+        repetition = Backoff(network.now_us(), 0, LONGEST_REPEAT_US, REPEAT_US)
         while self._unanswered and (now_us := network.now_us()) < end_us:
-            if now_us >= repeat_us:
+            if now_us >= repetition.due_us:
                 self._send()
-                repeat_us = now_us + REPEAT_US
-            yield min(repeat_us, end_us, self._sender.due_us)
+                repetition.repeated(now_us)
+            yield min(repetition.due_us, end_us, self._sender.due_us)
             self._sender.send_due()
             handle_own()
 
