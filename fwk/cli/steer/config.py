@@ -1,26 +1,16 @@
 """`fwk config`: settings of a run with their origins, and live changes."""
 
 import json
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from fwk.cli.conditions import pattern
 from fwk.cli.output import say_table
-from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
+from fwk.cli.run_options import FAILED, Json, RunChoice, asking
 from fwk.control import client
 from fwk.control.client import ControlError
-from fwk.control.host_file import KeepError, Kept, forget, keep
-from fwk.control.requests import RequestError
-from fwk.control.settings import RunSettings
-from fwk.control.settings_diff import differences
 from fwk.display.table import Column, Table
-from fwk.model.errors import PlanError
-from fwk.plan.classes import UnusableError
-from fwk.plan.files.json_schema import schema_of_component, schema_of_file, schema_of_files
-from fwk.plan.files.launch_file import host_file, shown
-from fwk.plan.load import load_plan
 
 config = typer.Typer(add_completion=False, no_args_is_help=True)
 SomeSettings = Annotated[
@@ -76,17 +66,9 @@ def schema(
     With FILE, the schema also knows the names of its components. Editors use it to complete and check launch files; see
     docs/launch-file.md.
     """
-    try:
-        if of.endswith((".yaml", ".yml")):
-            made = schema_of_file(of, host)
-        elif of:
-            made = schema_of_component(of)
-        else:
-            made = schema_of_files(host)
-    except (PlanError, UnusableError) as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
-    typer.echo(json.dumps(made, indent=1))
+    from fwk.cli.steer.setting_files import schema_of
+
+    typer.echo(json.dumps(schema_of(of, host), indent=1))
 
 
 @config.command()
@@ -122,21 +104,22 @@ def set_settings(
 
     `--save` first keeps them in NAME.host.yaml beside the launch file NAME.yaml. If that fails, nothing is changed.
     """
-    origin = "fwk config set"
+    origin, kept_in = "fwk config set", ""
     with asking(), client.supervisor(chosen) as run:
         if save:
+            from fwk.cli.steer.setting_files import keep_beside
+
             run.ask("set", changes=changes, check=True)
-            file = host_file(Path(run.ask("run")["file"]))
-            _keep(file, changes)
-            origin = f"{origin} --save, {shown(file)}"
+            kept_in = keep_beside(run.ask("run")["file"], changes)
+            origin = f"{origin} --save, {kept_in}"
         try:
             answer = run.ask("set", changes=changes, origin=origin)
         except ControlError as error:
-            raise type(error)(f"{error}; for later runs it is kept in {shown(file)}" if save else str(error)) from error
+            raise type(error)(f"{error}; for later runs it is kept in {kept_in}" if kept_in else str(error)) from error
     if as_json:
         typer.echo(json.dumps(answer))
         return
-    _say(answer, f", kept in {shown(file)}" if save else "")
+    _say(answer, f", kept in {kept_in}" if kept_in else "")
 
 
 @config.command()
@@ -150,12 +133,10 @@ def unset(
     NAME is the name or pattern that was typed with `fwk config set --save`.
     """
     with asking(), client.supervisor(chosen) as run:
+        from fwk.cli.steer.setting_files import forget_beside
+
         run.ask("settings", names=paths)
-        try:
-            forget(host_file(Path(run.ask("run")["file"])), paths)
-        except KeepError as error:
-            typer.echo(f"error: {error}; nothing was changed", err=True)
-            raise typer.Exit(FAILED) from error
+        forget_beside(run.ask("run")["file"], paths)
         _take_over(run, paths, "fwk config unset", as_json)
 
 
@@ -171,12 +152,9 @@ def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json =
 
 
 def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool) -> None:
-    rows = run.ask("settings", names=names)["settings"]
-    try:
-        changes, later = differences(rows, load_plan(run.ask("run")["file"]))
-    except PlanError as error:
-        typer.echo(error, err=True)
-        raise typer.Exit(BAD_INPUT) from error
+    from fwk.cli.steer.setting_files import changed_in
+
+    changes, later = changed_in(run.ask("run")["file"], run.ask("settings", names=names)["settings"])
     answer = run.ask("set", changes=changes, origin=origin) if changes else {"settings": []}
     if as_json:
         typer.echo(json.dumps({**answer, "later": later}))
@@ -211,11 +189,9 @@ def _rows(names: list[str], file: str | None, chosen: str | None) -> list[dict[s
             with client.supervisor(chosen) as run:
                 found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
             return found
-        try:
-            return RunSettings(load_plan(file)).rows(names)
-        except (PlanError, RequestError) as error:
-            typer.echo(f"error: {error}", err=True)
-            raise typer.Exit(BAD_INPUT) from error
+        from fwk.cli.steer.setting_files import rows_of
+
+        return rows_of(file, names)
 
 
 def _show(rows: list[dict[str, Any]], as_json: bool) -> None:
@@ -249,14 +225,6 @@ def _say(answer: dict[str, Any], kept: str) -> None:
     for component in answer["settings"]:
         for setting, value in component["values"].items():
             typer.echo(f"{component['component']}.{setting} = {_value(value)} since tick {answer['tick']}{kept}")
-
-
-def _keep(file: Path, changes: list[str]) -> None:
-    try:
-        keep(file, [Kept.of(each) for each in changes])
-    except KeepError as error:
-        typer.echo(f"error: {error}; nothing was set", err=True)
-        raise typer.Exit(FAILED) from error
 
 
 def _path(row: dict[str, Any]) -> str:

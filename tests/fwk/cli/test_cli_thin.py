@@ -35,6 +35,15 @@ def test_no_heavy_module_is_imported(typed: str, tmp_path: Path) -> None:
     assert "fwk.cli.commands" not in imported
 
 
+@pytest.mark.parametrize("typed", ["config list", "config set a/b.c=1", "bb list", "log", "stop --all", "runs list"])
+def test_looks_at_a_run_import_nothing_that_computes(typed: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-c", PROGRAM, *typed.split(), *(["--run", "none"] if typed != "runs list" else [])]
+    environment = {**os.environ, "HOME": str(tmp_path)}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    imported = next(line for line in done.stderr.splitlines() if line.startswith("IMPORTED")).split()
+    assert not set(imported) & {"numpy", "cv2", "lcm", "yaml"}
+
+
 def test_the_index_agrees_with_the_commands() -> None:
     assert Path(index.FILE).read_text() == reference.index(), "run: make docs"
 
