@@ -8,7 +8,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from fwk.lcm.log_parts import LogError, locked
+from fwk.lcm.log_parts import LogError, is_log, locked
 from fwk.lcm.seekable_zstd import SUFFIX, CompressedFile, CompressedFileError, compress
 
 _COMPARED_BYTES = 1 << 20
@@ -22,8 +22,10 @@ def compress_part(part: Path) -> bool:
         whether it was compressed: not, if a run still writes it.
 
     Raises:
-        LogError: the library is missing, or the file cannot be read, replaced or read back.
+        LogError: the library is missing, the file is not a log, or it cannot be read, replaced or read back.
     """
+    if not part.is_file() or (part.stat().st_size and not is_log(part)):  # never replaces a device or another file
+        raise LogError(f"{part}: is not the file of an LCM log; it stays as it is")
     made = part.with_name(f".{part.name}{SUFFIX}.part")
     try:
         with open(part, "rb") as opened:

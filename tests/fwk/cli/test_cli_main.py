@@ -41,9 +41,9 @@ def test_help_ends_with_examples() -> None:
 
 
 def test_an_unknown_command_is_refused_with_the_nearest() -> None:
-    result = CliRunner().invoke(app, ["compar"])
+    result = CliRunner().invoke(app, ["doctr"])
     assert result.exit_code == 2
-    assert "Did you mean 'compare'?" in result.output
+    assert "Did you mean 'doctor'?" in result.output
 
 
 def test_a_command_is_imported_only_when_it_is_needed() -> None:

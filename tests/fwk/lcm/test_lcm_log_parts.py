@@ -1,6 +1,7 @@
 """Logs of several files, plain or compressed, read as one."""
 
 import fcntl
+import os
 import random
 import shutil
 import subprocess
@@ -112,6 +113,18 @@ def test_a_part_that_a_run_writes_is_not_compressed(tmp_path: Path) -> None:
         assert contents_of(tmp_path / "log.lcm") == [b"1", b"2"]
     with open(tmp_path / "log.lcm.01", "rb") as file:
         assert locked(file.fileno(), fcntl.LOCK_EX)
+
+
+def test_only_files_of_logs_are_compressed(tmp_path: Path) -> None:
+    device, text, folder = tmp_path / "device", tmp_path / "notes.txt", tmp_path / "folder"
+    os.mkfifo(device)
+    text.write_text("this is not a log")
+    folder.mkdir()
+    for path in (device, text, folder, tmp_path / "missing"):
+        with pytest.raises(LogError, match="is not the file of an LCM log; it stays as it is"):
+            compress_part(path)
+    assert sorted(tmp_path.iterdir()) == [device, folder, text]
+    assert device.is_fifo()
 
 
 def test_without_room_for_a_part_the_newest_goes_on(tmp_path: Path) -> None:
