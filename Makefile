@@ -14,7 +14,7 @@ PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures web-pictures clean
+.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures web-pictures rerun-picture clean
 
 help:  ## Lists what can be made
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -64,6 +64,13 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg from its recording
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
 	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
+
+rerun-picture: types  ## Plays a match and takes docs/rerun.png of 'fwk view --web' in a headless Chromium
+	$(BIN)/fwk-launch soccer.yaml --ticks 560 --speed max --record build/view.lcm
+	$(BIN)/fwk cut build/view.lcm --from 520 --out build/view-part.lcm --force
+	$(BIN)/fwk view --from build/view-part.lcm --web --port 8471 --channels 'world/*' --channels 'cyan1/*' & view=$$!; sleep 10; \
+	$(BIN)/python -m tools.docs.rerun_picture 'http://127.0.0.1:8472/?url=rerun+http://127.0.0.1:8471/proxy'; code=$$?; \
+	kill -INT $$view; exit $$code
 
 web-pictures: types  ## Plays a match and takes docs/web-*.png in a headless Chromium
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --run pictures --detach --no-record

@@ -98,6 +98,8 @@ EXAMPLES = {
     ),
     "fwk import": ("fwk import log.mcap --out log.lcm",),
     "fwk plot": (
+        "fwk plot cyan1/odometry.vx_m_s 'cyan*/pose.x_m' --last 20",
+        "fwk plot cyan1/odometry.x_m --from RUN",
         "fwk plot cyan1/odometry.x_m cyan1/odometry.vx_m_s --from log.lcm --out drive.png",
         "fwk plot 'cyan*/world_model.ball.x_m' --from log.lcm --out ball.svg",
     ),
@@ -108,6 +110,7 @@ EXAMPLES = {
         "fwk eval robots.yaml --seeds 1..100 --cluster tcp://192.168.1.5:8786",
     ),
     "fwk web": ("fwk web", "fwk web --run red --read-only", "fwk web --view yard_view --port 8000"),
+    "fwk view": ("fwk view --from RUN", "fwk view --web", "fwk view --from log.lcm --save run.rrd"),
     "fwk foxglove": ("fwk foxglove", "fwk foxglove --run red --port 9000"),
     "fwk monitor": (
         "fwk monitor --template imu",

@@ -6,7 +6,6 @@ Every message with a position gets a view, by the names of its members: `x_m` an
 
 import math
 from collections.abc import Iterator
-from functools import cache
 from typing import Any, NamedTuple
 
 from foxglove.messages import (
@@ -33,9 +32,9 @@ from foxglove.messages import (
 )
 
 from fwk.clock import US_PER_S
-from fwk.lcm.messages import Message, current_name, type_name, type_named
-from fwk.log_tools.frames import WORLD, comment_frame, full_frame
-from fwk.log_tools.plain import members_of
+from fwk.lcm.messages import current_name, type_name
+from fwk.log_tools.frames import full_frame
+from fwk.log_tools.positions import Position, positions_in
 from lcmtypes.core import log_t
 
 PREFIX = "view/"
@@ -47,8 +46,6 @@ _LEVELS = {
     log_t.ERROR: LogLevel.Error,
 }
 _ENCODINGS = {1: "mono8", 3: "bgr8"}
-_ABSENT = ("known", "visible", "localized")
-"""Members that say, when false, that the position of their struct means nothing."""
 _HEIGHT_M = 0.05
 _SIZE_M = 0.2
 _COLOUR = Color(r=0.2, g=0.6, b=1.0, a=0.8)
@@ -59,14 +56,6 @@ class View(NamedTuple):
 
     topic: str
     content: Any
-
-
-class _Place(NamedTuple):
-    """A position in a message."""
-
-    path: str
-    frame: str
-    struct: Any
 
 
 def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
@@ -86,16 +75,16 @@ def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
 
 
 def _positions(channel: str, message: Any, stamp: Timestamp) -> Iterator[View]:
-    if not _may_have_position(type_name(type(message))):
+    found = positions_in(message)
+    if found is None:
         return
-    found = [place for place in _places(message) if _is_there(place.struct)]
     own = next((place for place in found if not place.path and hasattr(place.struct, "heading_rad")), None)
     if own:
         frame, pose = full_frame(own.frame, channel), _pose(own.struct)
         yield View(PREFIX + channel, PoseInFrame(timestamp=stamp, frame_id=frame, pose=pose))
         if channel.rpartition("/")[2] == "pose":
             yield View(f"{PREFIX}{channel}/frame", _robot(channel, frame, own.struct, stamp))
-    frames: dict[str, list[_Place]] = {}
+    frames: dict[str, list[Position]] = {}
     for place in found:
         frames.setdefault(full_frame(place.frame, channel), []).append(place)
     entities = [_entity(frame, channel, stamp, places) for frame, places in frames.items()]
@@ -103,39 +92,7 @@ def _positions(channel: str, message: Any, stamp: Timestamp) -> Iterator[View]:
     yield View(f"{PREFIX}{channel}/scene", SceneUpdate(deletions=[removed], entities=entities))
 
 
-def _places(message: Any, path: str = "", outer: str = WORLD) -> Iterator[_Place]:
-    """Yields the structs with a position in a message, each with its frame."""
-    kind = type_name(type(message))
-    frame = comment_frame(kind, "x_m") or outer
-    if _has_position(kind):
-        yield _Place(path, frame, message)
-    for name, member, dimensions in members_of(type(message)):
-        if "." not in member or member == "core.header_t" or len(dimensions) > 1:
-            continue
-        value, inner = getattr(message, name), comment_frame(kind, name) or frame
-        for number, each in enumerate(value if dimensions else (value,)):
-            yield from _places(each, f"{path}{name}{number if dimensions else ''} ", inner)
-
-
-@cache
-def _may_have_position(kind: str) -> bool:
-    """Returns whether a type, or a type nested in it, has a position."""
-    inner = [member for _, member, dimensions in members_of(type_named(kind)) if "." in member and len(dimensions) <= 1]
-    return _has_position(kind) or any(map(_may_have_position, inner))
-
-
-@cache
-def _has_position(kind: str) -> bool:
-    message_type: type[Message] = type_named(kind)
-    return {"x_m", "y_m"} <= {name for name, _, dimensions in members_of(message_type) if not dimensions}
-
-
-def _is_there(struct: Any) -> bool:
-    finite = math.isfinite(struct.x_m) and math.isfinite(struct.y_m)
-    return finite and all(getattr(struct, name, True) for name in _ABSENT)
-
-
-def _entity(frame: str, channel: str, stamp: Timestamp, places: list[_Place]) -> SceneEntity:
+def _entity(frame: str, channel: str, stamp: Timestamp, places: list[Position]) -> SceneEntity:
     """Returns the markers of a message in one frame."""
     arrows, cylinders, spheres, texts = [], [], [], []
     for place in places:

@@ -64,6 +64,7 @@ OPTIONS = [
     "--speed",
     "--seed",
     "--record",
+    "--record-split",
     "--set",
     "--hosting",
     "--profile",
