@@ -8,6 +8,8 @@ import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+import cv2
+import numpy as np
 from foxglove.messages import (
     ArrowPrimitive,
     Color,
@@ -30,6 +32,7 @@ from foxglove.messages import (
     Timestamp,
     Vector3,
 )
+from numpy.typing import NDArray
 
 from fwk.clock import US_PER_S
 from fwk.lcm.messages import current_name, type_name
@@ -72,6 +75,13 @@ def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
         yield View(PREFIX + channel, Log(timestamp=stamp, level=level, line=max(0, message.line), **text))
     elif not kind.startswith("core"):
         yield from _positions(channel, message, stamp)
+
+
+def frame_view(camera: str, pixels: NDArray[np.uint8], time_us: int) -> View:
+    """Returns a frame of a camera as an image, compressed: height x width, or height x width x 3 (blue, green, red)."""
+    stamp = Timestamp(time_us // US_PER_S, time_us % US_PER_S * 1000)
+    data = cv2.imencode(".jpg", pixels)[1].tobytes()
+    return View(PREFIX + camera, CompressedImage(timestamp=stamp, frame_id=camera, format="jpeg", data=data))
 
 
 def _positions(channel: str, message: Any, stamp: Timestamp) -> Iterator[View]:

@@ -1,15 +1,21 @@
 """Messages go to clients of Foxglove's protocol while they come."""
 
 import json
+import os
 import struct
 from collections.abc import Iterator
 from typing import Any
 
+import cv2
+import numpy as np
 import pytest
 from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from fwk.component.images import Ring
 from fwk.log_tools.foxglove_server import FoxgloveServer
+from fwk.log_tools.live_frames import LiveFrames
+from lcmtypes.core import frame_t
 from lcmtypes.robot import imu_t, odometry_t
 from lcmtypes.soccer import pose_t
 
@@ -85,6 +91,37 @@ def test_pose_comes_as_a_pose_of_foxglove(server: FoxgloveServer, studio: Studio
     assert studio.wait_for("view/r/pose")["schemaName"] == "foxglove.PoseInFrame"
     studio.subscribe(1, "view/r/pose")
     assert shown(server, studio, "r/pose", pose_t(x_m=2.0, localized=True), 50_000)[1] == 50_000_000
+
+
+def test_frames_come_from_the_memory_of_their_run() -> None:
+    ring = Ring.create("r/image")
+    pixels = np.full((12, 16, 3), 200, np.uint8)
+    ring.put(1, pixels)
+    announced = frame_t(frame=1, height_px=12, width_px=16, channels=3)
+    server = FoxgloveServer("small", 0, LiveFrames(os.getpid()))
+    protocol = Subprotocol("foxglove.sdk.v1")
+    with connect(f"ws://127.0.0.1:{server.port}", subprotocols=[protocol]) as connection:
+        studio = Studio(connection)
+        server.show("r/image", announced.encode(), 0)
+        assert studio.wait_for("view/r/image")["schemaName"] == "foxglove.CompressedImage"
+        studio.subscribe(3, "view/r/image")
+        _, time_ns, content = shown(server, studio, "r/image", announced, 50_000)
+    server.close()
+    seen = cv2.imdecode(np.frombuffer(content[content.index(b"\xff\xd8") :], np.uint8), cv2.IMREAD_COLOR)
+    assert seen is not None
+    assert (time_ns, seen.shape, abs(int(seen.mean()) - 200) <= 2) == (50_000_000, pixels.shape, True)
+
+
+def test_frames_that_cannot_be_read_are_left_out() -> None:
+    ring = Ring.create("r/other")
+    ring.put(5, np.zeros((12, 16), np.uint8))
+    frames = LiveFrames(os.getpid())
+    assert frames.pixels("r/other", frame_t(frame=1, height_px=12, width_px=16, channels=1)) is None, "overwritten"
+    assert frames.pixels("r/none", frame_t(frame=1, height_px=12, width_px=16, channels=1)) is None
+    assert LiveFrames(1 << 22).pixels("r/other", frame_t(frame=5, height_px=12, width_px=16, channels=1)) is None
+    seen = frames.pixels("r/other", frame_t(frame=5, height_px=12, width_px=16, channels=1))
+    assert seen is not None
+    assert seen.shape == (12, 16)
 
 
 def test_broken_messages_are_counted_and_left_out(server: FoxgloveServer, studio: Studio) -> None:
