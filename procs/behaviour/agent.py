@@ -8,8 +8,9 @@ from lcmtypes.robot import kicker_state_t
 from lcmtypes.soccer import game_state_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
 from procs.behaviour.game import Game, frame_of, game_of
+from procs.behaviour.order import Order
 from procs.behaviour.skills.book import SKILLS
-from procs.behaviour.tactics import Order, Tactics, leave_field
+from procs.behaviour.tactics import Tactics, leave_field
 from procs.behaviour.view import View, view_of
 from procs.model.field import Field, Point
 from procs.model.geometry import wrap_rad

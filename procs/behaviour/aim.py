@@ -17,10 +17,11 @@ _BALL_M_S = 9.0
 _TARGETS = 13
 LANE_RAD = 0.12
 """Room beside a pass's way that is enough."""
-_PASS_M_S = 4.0
+_PASS_M_S = 4.3
 _LEAD_S = 0.5  # a mate is assumed to drive on for this time
 _GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free path in rad
-_TURN_1_RAD = 0.1  # and a radian of turning costs this
+_TURN_1_RAD = 0.15  # and a radian of turning costs this
+_KEPT_RAD = 0.2  # a receiver is kept unless another is so much better
 
 
 class Aim(NamedTuple):
@@ -29,6 +30,8 @@ class Aim(NamedTuple):
     place: Point
     free_rad: float
     """Smallest angle between the ball's path and an obstacle, post or robot; negative: blocked."""
+    receiver: str = ""
+    """Mate for whom a pass is meant."""
 
 
 def lane_rad(start: Point, end: Point, robots: Iterable[Robot], ball_m_s: float = _BALL_M_S) -> float:
@@ -68,8 +71,12 @@ def best_shot(start: Point, robots: Iterable[Robot], field: Field) -> Aim:
     return best
 
 
-def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot], back_m: float = 1.0) -> Aim | None:
+def best_pass(
+    player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot], back_m: float = 1.0, kept: str = ""
+) -> Aim | None:
     """Finds the mate for the best pass: a free way, ground gained, little turning of the player.
+
+    `kept` is the receiver of the last tick, if the player has turned to it.
 
     Returns:
         Expected place of that mate, and the room beside the way; None without a mate that will be 2 to 9 m away and at
@@ -85,8 +92,8 @@ def best_pass(player: Robot, mates: Iterable[Robot], opponents: Iterable[Robot],
             continue
         free_rad = lane_rad(player.place, place, others, ball_m_s=_PASS_M_S)
         turn_rad = abs(wrap_rad(bearing_rad(player.place, place) - player.heading_rad))
-        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad
-        rank = (free_rad >= LANE_RAD, worth)
+        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
+        rank = (free_rad >= (0.0 if mate.name == kept else LANE_RAD), worth)
         if best is None or rank > best[0]:
-            best = rank, Aim(place, free_rad)
+            best = rank, Aim(place, free_rad, mate.name)
     return best[1] if best else None

@@ -13,6 +13,9 @@ _HORIZON_S = 4.0
 _RESTING_M_S = 0.2
 _SPEED_M_S = 2.5
 _ACCELERATION_M_S2 = 2.5
+_CARRY_S = 0.25
+"""A robot that drives reaches what a robot at rest reaches from the place where it will be after this time."""
+_STANDING = Point(0.0, 0.0)
 
 
 class Meeting(NamedTuple):
@@ -66,26 +69,35 @@ class Course:
         """`contact_m` is the distance of the middles of ball and robot when they touch."""
         self._ball = ball
         self._contact_m = contact_m
-        self._resting = ball.speed_m_s < _RESTING_M_S
-        self._stations = (
-            [] if self._resting else [(*ball_after(ball, time_s), time_s, way_m) for time_s, way_m in _WAYS]
-        )
+        speed_m_s = ball.speed_m_s
+        self._resting = speed_m_s < _RESTING_M_S
+        self._stations: list[tuple[float, float, float, float]] = []
+        """Place of the ball, time, and how near a robot has to be now to meet it there."""
+        if self._resting:
+            return
+        (x_m, y_m), (vx_m_s, vy_m_s), stands_s = ball.place, ball.velocity_m_s, speed_m_s / ROLLING_M_S2
+        for time_s, robot_m in _WAYS:
+            rolling_s = min(time_s, stands_s)
+            share = rolling_s - ROLLING_M_S2 * rolling_s * rolling_s / (2 * speed_m_s)
+            self._stations.append((x_m + vx_m_s * share, y_m + vy_m_s * share, time_s, robot_m + contact_m))
 
-    def meet(self, place: Point) -> Meeting:
+    def meet(self, place: Point, velocity_m_s: Point = _STANDING) -> Meeting:
         """Returns the earliest meeting with a robot that is now at `place`.
 
         If the ball outruns the robot, the meeting is where the ball will be at the end of the four seconds.
         """
+        own_x_m, own_y_m = place.x_m + _CARRY_S * velocity_m_s.x_m, place.y_m + _CARRY_S * velocity_m_s.y_m
         if self._resting:
-            return Meeting(self._ball.place, reach_s(math.dist(place, self._ball.place) - self._contact_m))
-        for x_m, y_m, time_s, way_m in self._stations:
-            if math.hypot(place.x_m - x_m, place.y_m - y_m) - self._contact_m <= way_m:
+            away_m = math.hypot(own_x_m - self._ball.place.x_m, own_y_m - self._ball.place.y_m)
+            return Meeting(self._ball.place, reach_s(away_m - self._contact_m))
+        for x_m, y_m, time_s, near_m in self._stations:
+            if (own_x_m - x_m) ** 2 + (own_y_m - y_m) ** 2 <= near_m * near_m:
                 return Meeting(Point(x_m, y_m), time_s)
         x_m, y_m, time_s, _ = self._stations[-1]
-        needed_s = reach_s(math.hypot(place.x_m - x_m, place.y_m - y_m) - self._contact_m)
+        needed_s = reach_s(math.hypot(own_x_m - x_m, own_y_m - y_m) - self._contact_m)
         return Meeting(Point(x_m, y_m), max(time_s, needed_s))
 
 
-def meet(ball: Ball, place: Point) -> Meeting:
-    """Returns the earliest meeting of the ball with a robot at `place`."""
-    return Course(ball).meet(place)
+def meet(ball: Ball, place: Point, velocity_m_s: Point = _STANDING) -> Meeting:
+    """Returns the earliest meeting of the ball with a robot at `place` that drives at a velocity."""
+    return Course(ball).meet(place, velocity_m_s)

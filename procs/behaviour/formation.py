@@ -16,6 +16,7 @@ _AREA_M = 0.35
 _APART_M = 1.0
 """Least distance of two robots at a set piece."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
+_SHOOTER_X_M, _SHOOTER_Y_M = 7.0, 2.5  # a mate there can shoot
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
@@ -29,12 +30,17 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
     """
     goal = field.goal_centre(-1.0)
     if ours:
-        supporter = Point(clamp(ball.x_m + 3.0, -5.0, 8.0), clamp(ball.y_m + flank * 3.5, -5.0, 5.0))
+        x_m = clamp(ball.x_m + 3.0, -5.0, _SHOOTER_X_M)
+        aside_m = _SHOOTER_Y_M if x_m > 3.0 else 5.0  # near the goal its mouth has to look wide
+        supporter = Point(x_m, clamp(ball.y_m + flank * 3.5, -aside_m, aside_m))
     else:
-        supporter = Point(clamp(ball.x_m - 2.0, -7.5, 6.0), clamp(ball.y_m * 0.5 + flank, -5.0, 5.0))
+        supporter = Point(clamp(ball.x_m - 2.0, -2.0, 6.0), clamp(ball.y_m * 0.5 + 2.5 * flank, -5.0, 5.0))
     far_m = math.dist(goal, ball)
     stopper = between(goal, ball, clamp(0.5 * far_m, 3.2, 8.0) / far_m) if far_m > 3.2 else Point(-8.0, ball.y_m * 0.5)
     sweeper = Point(clamp(ball.x_m - 4.0, -8.0, 1.0), clamp(stopper.y_m + flank * 2.5, -4.5, 4.5))
+    if ours and ball.x_m > -5.0:
+        aside_m = _SHOOTER_Y_M if ball.x_m > 3.0 else 5.0
+        sweeper = Point(min(ball.x_m + 1.0, _SHOOTER_X_M), clamp(ball.y_m - flank * 3.5, -aside_m, aside_m))
     spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - flank * 2.0, -6.0, 6.0))
     return [supporter, stopper, sweeper, spare]
 

@@ -4,8 +4,8 @@ import math
 
 from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
+from procs.behaviour.order import Order
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER
-from procs.behaviour.tactics import Order
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from pydantic import BaseModel, ConfigDict, NonNegativeFloat, PositiveFloat
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
 from procs.model.field import Point
 from procs.model.geometry import clamp, wrap_rad
@@ -46,8 +46,13 @@ class Limits(BaseModel):
     """Deceleration assumed for stopping at the heading."""
     ball_omega_rad_s: PositiveFloat = 4.0
     """Highest turning speed with the ball in the mouth."""
-    ball_acceleration_m_s2: PositiveFloat = 3.0
+    ball_acceleration_m_s2: PositiveFloat = 2.5
     """Limit of the change of the velocity with the ball in the mouth."""
+    ball_angular_acceleration_rad_s2: PositiveFloat = 14.0
+    """Limit of the change of the turning speed with the ball in the mouth; more than these loses the ball."""
+    ball_pivot: float = Field(default=0.6, ge=0.0, le=1.0)
+    """With the ball the robot turns about a point on the way from its middle (0) to the ball (1). The nearer to the
+    ball, the less the handling has to pull; a ball that rests for long is held."""
     position_gain_1_s: PositiveFloat = 4.0
     """Speed for each metre to go, close to the target."""
     heading_gain_1_s: PositiveFloat = 6.0

@@ -7,9 +7,13 @@ from lcmtypes.robot import kicker_state_t, motor_command_t, odometry_t
 from lcmtypes.soccer import drive_target_t, navigator_state_t, world_model_t
 from procs.behaviour import motion, obstacles
 from procs.behaviour.motion import STANDSTILL, Limits, Pose, Velocity
+from procs.behaviour.obstacles import APART_M
 from procs.behaviour.path import Way, find_way
+from procs.behaviour.velocity_obstacles import safe_velocity
+from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible, wrap_rad
+from procs.model.robot import ROBOT
 
 
 class NavigatorConfig(Config):
@@ -84,7 +88,18 @@ class Navigator(Component):
         state.arrived = state.distance_m < config.near_m and abs(turn_rad) < config.near_rad
         if way.blocked:
             state.error = navigator_state_t.OBSTRUCTED
-        self._command(self._velocity(target, way, turn_rad), pose.heading_rad)
+        wanted = self._velocity(target, way, turn_rad)
+        if target.avoid_robots:
+            wanted = self._give_way(wanted, pose.place, model)
+        self._command(wanted, pose.heading_rad)
+
+    def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
+        movers = obstacles.movers(model, self.config.limits.latency_s)
+        now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
+        velocity = safe_velocity(
+            Point(wanted.vx_m_s, wanted.vy_m_s), now_m_s, place, movers, APART_M, self.config.limits.acceleration_m_s2
+        )
+        return Velocity(*velocity, wanted.omega_rad_s)
 
     def _pose(self, model: world_model_t) -> Pose:
         measured = self.odometry.value
@@ -112,12 +127,15 @@ class Navigator(Component):
     def _command(self, wanted: Velocity, heading_rad: float) -> None:
         limits, held = self.config.limits, self.kicker_state.value.ball_held
         change_m_s2 = limits.ball_acceleration_m_s2 if held else limits.acceleration_m_s2
+        turn_rad_s2 = limits.ball_angular_acceleration_rad_s2 if held else limits.angular_acceleration_rad_s2
         period_s = self.clock.period_s
-        self._before = motion.approach(self._before, wanted, period_s, change_m_s2, limits.angular_acceleration_rad_s2)
+        self._before = motion.approach(self._before, wanted, period_s, change_m_s2, turn_rad_s2)
         # The robot turns on while it follows the command, so the command is meant for the middle of that time.
         middle_rad = heading_rad + self._before.omega_rad_s * period_s / 2
         command = self.motor_command.value
         command.vx_m_s, command.vy_m_s = motion.turned(self._before.vx_m_s, self._before.vy_m_s, -middle_rad)
+        if held:
+            command.vy_m_s -= limits.ball_pivot * self._before.omega_rad_s * ROBOT.held_ball_m(BALL)
         command.omega_rad_s = self._before.omega_rad_s
         command.enabled = True
         self.motor_command.write()

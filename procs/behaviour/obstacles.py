@@ -5,6 +5,7 @@ from collections.abc import Iterable
 
 from lcmtypes.soccer import robot_estimate_t, world_model_t
 from procs.behaviour.path import Disc
+from procs.behaviour.velocity_obstacles import Mover
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
@@ -13,6 +14,8 @@ from procs.model.robot import ROBOT
 _ROBOT_M = ROBOT.radius_m
 _BALL_M = BALL.radius_m
 _MARGIN_M = 0.12
+APART_M = 2 * _ROBOT_M + 0.06
+"""Distance of the middles of two robots that nearly touch."""
 _BALL_MARGIN_M = 0.1
 _FORESIGHT_S = 0.8
 _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
@@ -40,6 +43,19 @@ def reachable(place: Point, field: Field) -> Point:
     if abs(y_m) < field.goal_width_m / 2 + 0.5:
         x_m = clamp(x_m, -field.half_length_m + 0.1, field.half_length_m - 0.1)
     return Point(x_m, y_m)
+
+
+def movers(model: world_model_t, latency_s: float) -> list[Mover]:
+    """Returns the other robots where they will be when the robot begins to follow its next command."""
+    return [
+        Mover(
+            Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
+            Point(robot.vx_m_s, robot.vy_m_s),
+            gives_way=bool(robot.name),
+        )
+        for robot in (*model.mates, *model.opponents)
+        if plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
+    ]
 
 
 def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:

@@ -52,7 +52,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     attacker = min(free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
-    theirs_s = min((course.meet(other.place).time_s for other in view.opponents), default=math.inf)
+    theirs_s = min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
     ours = times_s[attacker.name] <= theirs_s
     roles = [SUPPORTER, DEFENDER, DEFENDER, DEFENDER]
     posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, _flank(view, team), field), strict=True)]
@@ -62,7 +62,9 @@ def assign(view: View, field: Field) -> dict[str, Job]:
 
 def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:
     # A dribbling robot takes the ball along; a mate ahead of the ball would seem to meet it sooner.
-    return 0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place).time_s
+    return (
+        0.0 if math.dist(robot.place, ball.place) < _HAS_BALL_M else course.meet(robot.place, robot.velocity_m_s).time_s
+    )
 
 
 def _flank(view: View, team: Sequence[Robot]) -> float:

@@ -9,7 +9,8 @@ from fwk.testing import launch_plan, system_of
 from fwk.testing.campaign import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
-from procs.evaluation.piece import piece_of
+from procs.evaluation.piece import Piece, piece_of
+from procs.evaluation.possession import possession
 from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, ratio, root_ratio, rows_of
 from procs.model.frames import Floats
 
@@ -20,7 +21,12 @@ def measured(file: str, time_s: float, seed: int) -> dict[str, list[float] | lis
     system = system_of(file, seed=seed)
     system.tick(round(time_s / period_s))
     piece = piece_of(system.sent, period_s)
-    return {name: samples.tolist() for name, samples in (believed(piece) | conducted(piece)).items()}
+    return {name: samples.tolist() for name, samples in samples_of(piece).items()}
+
+
+def samples_of(piece: Piece) -> Samples:
+    """Returns the samples of every measure of a piece."""
+    return believed(piece) | conducted(piece) | possession(piece)
 
 
 def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:

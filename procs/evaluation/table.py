@@ -79,7 +79,12 @@ MEASURES = [
     Measure("distance violated at restarts", mean, "share", "0"),
     Measure("half violated at kick-offs", mean, "share", "0"),
     Measure("passes controlled by the receiver", mean, "share", ">= 0.80"),
+    Measure("captures that bounce", mean, "share", ""),
+    Measure("ball free", mean, "share", ""),
+    Measure("shots", ratio, "/min", ""),
     Measure("goals", ratio, "/min", ""),
+    Measure("goals of cyan", ratio, "/min", ""),
+    Measure("goals of magenta", ratio, "/min", ""),
 ]
 """Rows of the table in their order."""
 

@@ -13,11 +13,13 @@ SYSTEMS = {
     "soccer-greedy.yaml": (5, 5),
     "soccer-1v1.yaml": (1, 1),
     "soccer-percepts.yaml": (5, 5),
+    "soccer-truth.yaml": (5, 5),
+    "soccer-truth-greedy.yaml": (5, 5),
     "soccer-refbox.yaml": (5, 5),
     "one-robot.yaml": (1, 0),
 }
 TOOLS = {"vision.yaml", "frames.yaml"}
-PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml", "msl-stereo.yaml"}
+PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml", "msl-stereo.yaml", "msl-truth.yaml"}
 
 
 def plan_of(file: str) -> Plan:
@@ -37,10 +39,12 @@ def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int
     for robot in expected:
         members = [each.name.rpartition("/")[2] for each in plan.components if each.namespace == robot]
         eyes = {
-            "soccer-percepts.yaml": "percepts",
-            "one-robot.yaml": "camera omni_ball omni_field stereo_camera stereo_obs obstacle_fusion",
-        }.get(file, "camera omni_ball omni_field")
-        assert " ".join(members) == f"base kicker {eyes} localization world_model agent skiller navigator"
+            "soccer-percepts.yaml": "percepts localization",
+            "soccer-truth.yaml": "",
+            "soccer-truth-greedy.yaml": "",
+            "one-robot.yaml": "camera omni_ball omni_field stereo_camera stereo_obs obstacle_fusion localization",
+        }.get(file, "camera omni_ball omni_field localization")
+        assert members == f"base kicker {eyes} world_model agent skiller navigator".split()
     assert plan.period_us == 50_000
 
 

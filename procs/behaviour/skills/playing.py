@@ -16,8 +16,10 @@ _MOUTH_M = ROBOT.held_ball_m(BALL)  # from the robot's middle to the middle of t
 _LEAST_KICK_M_S = 1.0
 _DRIBBLE_M_S = 2.7
 _THERE_M = 0.3
+_FACE_M = 2.0  # a dribbling robot so near to its place turns to the heading that it is to have there ...
+_SIDEWAYS_RAD = 1.2  # ... unless it would pull the ball back
 _SHOT_M_S = 11.0
-_ARRIVAL_M_S = 2.2
+_ARRIVAL_M_S = 2.7
 
 
 class _WithBall(Skill):
@@ -38,12 +40,14 @@ class _WithBall(Skill):
 
 
 class Dribble(_WithBall):
-    """Drives with the ball to the place, mouth forward, and turns to the heading there."""
+    """Drives with the ball to the place, mouth forward, and turns to the heading before it is there."""
 
     def _play(self, scene: Scene) -> Step:
         own = scene.view.own.place
         distance_m = math.dist(own, scene.place)
-        heading_rad = bearing_rad(own, scene.place) if distance_m > 2 * _THERE_M else scene.heading_rad
+        way_rad = bearing_rad(own, scene.place)
+        sideways = distance_m < _FACE_M and abs(wrap_rad(way_rad - scene.heading_rad)) < _SIDEWAYS_RAD
+        heading_rad = scene.heading_rad if sideways or distance_m < 2 * _THERE_M else way_rad
         speed_m_s = min(scene.speed_m_s or _DRIBBLE_M_S, _DRIBBLE_M_S)
         status = Status.FINAL if distance_m < _THERE_M else Status.RUNNING
         return Step(Drive(scene.place, heading_rad, speed_m_s), dribble=True, status=status)
@@ -58,13 +62,11 @@ class _Kick(_WithBall):
 
     _TIMEOUT_S = 3.0
     _LEAD_S = 0.04  # from the view to the kick
-    _BRAKE_M_S2 = 3.0
 
     def __init__(self) -> None:
         super().__init__()
         self._running_s = 0.0
         self._asked = False
-        self._stand: Point | None = None
         self._heading_rad = math.nan
 
     def step(self, scene: Scene) -> Step:
@@ -95,7 +97,7 @@ class _Kick(_WithBall):
         self._heading_rad = own.heading_rad
         wanted_rad, kick_m_s = self._aim(scene, speed_m_s, _mouth_velocity_m_s(own, turn_rad_s))
         off_rad = wrap_rad(wanted_rad - own.heading_rad - turn_rad_s * self._LEAD_S)
-        patience = 1.0 + self._running_s  # a poor kick is better than none
+        patience = 1.0 + 0.5 * self._running_s  # a poor kick is better than none
         if abs(off_rad) < self._tolerance_rad(distance_m) * patience and scene.charged and scene.holds_ball:
             self._asked = True
             return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
@@ -115,12 +117,7 @@ class _Kick(_WithBall):
         return heading_rad, max(_LEAST_KICK_M_S, math.hypot(*missing))
 
     def _turn(self, scene: Scene, heading_rad: float) -> Drive:
-        if self._stand is None:
-            own = scene.view.own
-            speed_m_s = math.hypot(*own.velocity_m_s)
-            course_rad = math.atan2(own.velocity_m_s.y_m, own.velocity_m_s.x_m)
-            self._stand = ahead(own.place, course_rad, speed_m_s**2 / (2 * self._BRAKE_M_S2))
-        return Drive(self._stand, heading_rad, avoid_robots=False)
+        return Drive(scene.view.own.place, heading_rad, avoid_robots=False)
 
 
 class Shoot(_Kick):

@@ -58,3 +58,12 @@ def test_pass_leads_a_running_mate() -> None:
 def test_no_robot_at_a_useful_distance_gets_no_pass() -> None:
     player = robot("cyan2", 0.0, 0.0)
     assert aim.best_pass(player, [robot("cyan3", 1.0, 0.0), robot("cyan4", 10.0, 0.0)], []) is None
+
+
+def test_receiver_is_kept_for_a_small_difference() -> None:
+    player = robot("cyan2", 0.0, 0.0)
+    left, right = robot("cyan3", 4.0, 2.0), robot("cyan4", 4.2, -2.0)
+    best, kept = aim.best_pass(player, [left, right], []), aim.best_pass(player, [left, right], [], kept="cyan3")
+    assert best is not None
+    assert kept is not None
+    assert (best.receiver, kept.receiver) == ("cyan4", "cyan3")

@@ -34,9 +34,9 @@ def test_robots_compute_the_same_jobs_in_any_order_of_mates() -> None:
     assert {name: job.role for name, job in jobs.items()} == {
         "cyan1": GOALKEEPER,
         "cyan2": ATTACKER,
-        "cyan3": DEFENDER,
+        "cyan3": SUPPORTER,
         "cyan4": DEFENDER,
-        "cyan5": SUPPORTER,
+        "cyan5": DEFENDER,
     }
 
 

@@ -5,8 +5,9 @@ import math
 import pytest
 
 from procs.behaviour.game import Game, Whose
+from procs.behaviour.order import Order
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER
-from procs.behaviour.tactics import Order, Tactics
+from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Point
 from procs.referee.restarts import State
@@ -162,3 +163,39 @@ def test_formation_is_taken_while_no_ball_is_seen() -> None:
     seen = view(robot("cyan2", 0.0, 0.0), Ball(known=False))
     order = decide(seen)
     assert (order.skill, order.place) == ("goto", (-3.0, 1.0))
+
+
+def test_pass_once_begun_follows_its_receiver() -> None:
+    tactics, pressing = Tactics(FIELD), robot("", -1.2, -0.2)
+    near, other = robot("cyan3", 3.0, 3.0, role=SUPPORTER), robot("cyan4", 3.0, 2.0, role=SUPPORTER)
+    tactics.decide(with_ball(-2.0, 0.0, pressing, mates=(near,)), PLAY, job(ATTACKER), True, 0.05)
+    moved = near._replace(place=Point(2.5, 3.5))
+    order = tactics.decide(with_ball(-2.0, 0.0, pressing, mates=(moved, other)), PLAY, job(ATTACKER), True, 0.05)
+    assert (order.skill, order.place) == ("pass", moved.place)
+
+
+def test_robot_waits_for_the_pass_of_a_mate_that_turned_to_it() -> None:
+    seen = view(robot("cyan3", 3.0, 0.0), ball(0.33, 0.0), (robot("cyan2", 0.0, 0.0, 0.0),))
+    order = decide(seen, role=SUPPORTER)
+    assert (order.place, order.intention) == ((3.0, 0.0), "await pass")
+    turned_away = seen._replace(mates=(robot("cyan2", 0.0, 0.0, math.pi / 2),))
+    assert decide(turned_away, role=SUPPORTER).intention == SUPPORTER
+
+
+def test_ball_that_gets_no_further_is_released() -> None:
+    before_robot = with_ball(-2.0, 0.0, robot("", -1.2, 0.0))
+    assert decide(before_robot, holds_ball=True).skill == "dribble"
+    assert decide(before_robot, holds_ball=True, ticks=14).intention == "push"
+
+
+def test_ball_at_the_end_line_is_not_shot_at_the_post() -> None:
+    assert decide(with_ball(10.6, 4.0), holds_ball=True).skill != "shoot"
+
+
+def test_taker_that_bumped_the_ball_away_leaves_it_to_a_mate() -> None:
+    tactics, mates = Tactics(FIELD), (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    waiting = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 0.0))
+    seen = view(robot("cyan2", 1.6, 0.0), ball(2.0, 0.0), mates)
+    for game, where in ((waiting, ball(2.0, 0.0)), (waiting._replace(stopped=False), ball(2.5, 0.0))):
+        tactics.decide(seen._replace(ball=where), game, job(ATTACKER), False, 0.05)
+    assert tactics.barred

@@ -21,7 +21,9 @@ from lcmtypes.soccer import (
 )
 from procs.evaluation.beliefs import believed
 from procs.evaluation.conduct import conducted
+from procs.evaluation.match import samples_of
 from procs.evaluation.piece import Piece, piece_of
+from procs.evaluation.possession import possession
 from procs.evaluation.table import MEASURES, rows_of
 
 FIRST = 100  # tick; measuring begins some seconds after the start
@@ -94,7 +96,7 @@ def test_fused_ball_is_compared_with_the_nearest_robots_sighting() -> None:
             told = made.by_robot["team_message"][name][tick + 1] = team_message_t()
             told.ball_visible, told.ball_capture_us, told.ball_distance_m = True, tick * 50_000, distance_m
             told.ball_x_m, told.ball_y_m = truth.ball_x_m, error_m
-    rows = {row.name: row.value for row in rows_of([believed(made) | conducted(made)])}
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
     assert rows["fused to best single"] == pytest.approx(0.05 / 0.2)
     assert rows["fused to plain average"] == pytest.approx(0.05 / 0.3)
 
@@ -115,7 +117,7 @@ def test_lag_of_an_opponent_is_its_distance_behind_by_its_speed() -> None:
     behind = robot_estimate_t()
     behind.x_m = 1.8
     made.by_robot["world_model"] = {"cyan1": {tick: model((0.0, 0.0), opponents=[behind]) for tick in made.truth}}
-    rows = {row.name: row.value for row in rows_of([believed(made) | conducted(made)])}
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
     assert rows["opponents, lag"] == pytest.approx(0.1)
     assert rows["opponents, position"] == pytest.approx(0.2)
     assert (rows["opponents known"], rows["opponents that do not exist"]) == (1.0, 0.0)
@@ -149,11 +151,36 @@ def test_pass_is_controlled_once_a_mate_holds_the_ball(toucher: str, controlled:
     assert conducted(made)["passes controlled by the receiver"].tolist() == [controlled]
 
 
+def test_captures_that_bounce_and_a_free_ball_are_counted() -> None:
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=60)
+    made.game = dict.fromkeys(made.truth, _playing())
+    made.events = {FIRST + 10: [event(match_event_t.TOUCH, "cyan1")]}
+    made.events |= {tick: [event(match_event_t.TOUCH, "cyan1")] for tick in range(FIRST + 30, FIRST + 60)}
+    found = possession(made)
+    assert found["captures that bounce"].tolist() == [True, False]
+    assert found["ball free"].mean() == pytest.approx(23 / 60, abs=0.04)
+
+
+def test_shots_are_fast_kicks_of_the_skill_that_shoots() -> None:
+    made = piece([robot("cyan1", 0.0, 0.0)])
+    status = skill_status_t()
+    status.skill = "shoot"
+    made.by_robot["skill_status"] = {"cyan1": dict.fromkeys(made.truth, status)}
+    made.events = {FIRST + at: [event(match_event_t.KICK, "cyan1", speed)] for at, speed in ((5, 10.0), (20, 3.0))}
+    assert possession(made)["shots"][0, 0] == 1
+
+
+def _playing() -> game_state_t:
+    game = game_state_t()
+    game.state = game_state_t.PLAY
+    return game
+
+
 def test_launch_file_gives_every_measure_its_samples() -> None:
     system = system_of("soccer-1v1.yaml", seed=2)
     system.tick(110)
     made = piece_of(system.sent, 0.05)
-    found = believed(made) | conducted(made)
+    found = samples_of(made)
     assert set(found) == {measure.name for measure in MEASURES}
     assert found["ball known"].any()
     assert np.sqrt(found["pose, position"].mean()) < 0.2

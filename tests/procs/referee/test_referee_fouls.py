@@ -155,6 +155,15 @@ def test_pulling_the_ball_back_is_a_foul_after_30_cm() -> None:
     assert start_m - script.ball.x_m == pytest.approx(0.35, abs=0.11)
 
 
+def test_robot_that_a_shot_hits_does_not_hold_the_ball() -> None:
+    script = Script().playing()
+    script.robots["cyan3"] = Point(script.ball.x_m - 1.0, 0.0)
+    for _ in range(2):
+        script.ball = Point(script.ball.x_m - 0.33, 0.0)
+        script.touch("cyan3")
+    assert script.reasons == []
+
+
 def test_two_rivals_at_the_ball_do_not_hold_it() -> None:
     script = Script().playing()
     for _ in range(60):

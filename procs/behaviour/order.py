@@ -1,0 +1,16 @@
+"""Order of an agent: a skill and its target."""
+
+from typing import NamedTuple
+
+from procs.model.field import Point
+
+
+class Order(NamedTuple):
+    """A skill and its target in the attack frame."""
+
+    skill: str
+    place: Point = Point(0.0, 0.0)
+    heading_rad: float = 0.0
+    intention: str = ""
+    speed_m_s: float = 0.0
+    """Of a pass: speed of the ball at its target; 0: the skill's own."""
