@@ -8,6 +8,7 @@ precise.
 
 import math
 from enum import IntEnum
+from functools import lru_cache
 
 import numpy as np
 
@@ -65,13 +66,11 @@ _FIRST = np.array((0.3, 0.3, 0.15, 0.2, 0.05))
 
 
 class BallFilter:
-    """Mixture of the models; `state` and `covariance` are those of the mixture.
-
-    A shallow copy is independent: no method changes an array that a copy can have.
-    """
+    """Mixture of the models; `state` and `covariance` are those of the mixture."""
 
     def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
+        # Copies share arrays: methods replace them, or change those that they have just made.
         self._x = np.zeros((_MODES, 4))
         self._x[:, :2] = position_m
         self._p = np.zeros((_MODES, 4, 4))
@@ -80,6 +79,12 @@ class BallFilter:
         self._p[Mode.RESTS, 2:, 2:] = np.eye(2) * 1e-4
         self._weights = _FIRST.copy()
         self._rolls_below_m_s = 0.0  # after a known kick the ball slides until it is slower
+
+    def copy(self) -> "BallFilter":
+        """Returns the same mixture; neither follows what happens to the other."""
+        made = BallFilter.__new__(BallFilter)
+        made.__dict__.update(self.__dict__)
+        return made
 
     @property
     def state(self) -> Floats:
@@ -109,27 +114,23 @@ class BallFilter:
         """
         self._mix(self._moves(duration_s, contact))
         x, p = self._x, self._p
-        speeds_m_s = np.sqrt((x[:, 2:] ** 2).sum(axis=1)) + 1e-9
-        losses_m_s2 = np.array((0.0, rolling_m_s2, SLIDING_M_S2, 0.0, 0.0))
-        kept = np.maximum(0.0, 1.0 - losses_m_s2 * duration_s / speeds_m_s)
+        velocities_m_s = x[:, 2:]
+        speeds_m_s = np.sqrt((velocities_m_s**2).sum(axis=1)) + 1e-9
+        losses_m_s = np.array((0.0, rolling_m_s2, SLIDING_M_S2, 0.0, 0.0)) * duration_s
+        kept = np.maximum(0.0, 1.0 - losses_m_s / speeds_m_s)
         kept[Mode.RESTS] = 0.0
-        x[:, :2] += x[:, 2:] * (duration_s * (1.0 + kept) / 2)[:, None]
-        x[:, 2:] *= kept[:, None]
+        x[:, :2] += velocities_m_s * (duration_s * (1.0 + kept) / 2)[:, None]
+        velocities_m_s *= kept[:, None]
         p[Mode.RESTS, 2:] = p[Mode.RESTS, :, 2:] = 0.0
         drift(p, duration_s)
-        along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
-        noise = _NOISE_M2_S3[:, None] * along
-        hit = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
-        noise[Mode.HIT] += hit
-        noise[Mode.RESTS] = (_NOISE_M2_S3[Mode.RESTS] * duration_s, 0.0, 1e-4)
-        p[:, _AXES, _AXES] += noise[:, (0, 0, 2, 2)]
-        p[:, _AXES, _OTHER] += noise[:, 1:2]
+        p += _noise(duration_s)
 
     def stay_within(self, x_m: float, y_m: float) -> None:
         """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them."""
         limits_m = np.array((x_m, y_m))
         beyond = np.abs(self._x[:, :2]) > limits_m
         if beyond.any():
+            self._x = self._x.copy()
             self._x[:, :2] = np.clip(self._x[:, :2], -limits_m, limits_m)
             self._x[:, 2:][beyond] *= -_BOUNCE
 
@@ -178,18 +179,11 @@ class BallFilter:
 
         A fast ball does not rest, and after a known kick the ball slides until it is slow enough to roll.
         """
-        rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
-        slow = float(np.hypot(*self._x[Mode.ROLLS, 2:])) < _SLOW_M_S
-        rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
+        slow = math.hypot(*self._x[Mode.ROLLS, 2:]) < _SLOW_M_S
+        slides: bool | None = None
         if self._rolls_below_m_s:
-            slides = float(np.hypot(*self._x[Mode.SLIDES, 2:])) > self._rolls_below_m_s
-            rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
-        leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
-        stays = np.exp(-leaves_1_s * duration_s)
-        moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
-        moves[_EACH, _EACH] = stays
-        moves[Mode.HIT] = _AFTER_HIT
-        return np.asarray(moves)
+            slides = math.hypot(*self._x[Mode.SLIDES, 2:]) > self._rolls_below_m_s
+        return _passes(duration_s, contact, slow, slides)
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
@@ -201,3 +195,38 @@ class BallFilter:
         spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
         self._p = (shares @ self._p.reshape(_MODES, 16)).reshape(_MODES, 4, 4) + spread
         self._x, self._weights = mixed, weights / weights.sum()
+
+
+@lru_cache(maxsize=128)
+def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None) -> Floats:
+    """Returns the probabilities (old, new) of passing from model to model; cached.
+
+    Args:
+        duration_s: the step.
+        contact: a robot or a wall is near the ball.
+        slow: a rolling ball is about to rest.
+        slides: whether a ball after a known kick is still too fast to roll; None without a known kick.
+    """
+    rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
+    rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
+    if slides is not None:
+        rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
+    leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
+    stays = np.exp(-leaves_1_s * duration_s)
+    moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
+    moves[_EACH, _EACH] = stays
+    moves[Mode.HIT] = _AFTER_HIT
+    return np.asarray(moves)
+
+
+@lru_cache(maxsize=32)
+def _noise(duration_s: float) -> Floats:
+    """Returns the covariances (5, 4, 4) that the models' accelerations add in a step; cached."""
+    along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
+    noise = _NOISE_M2_S3[:, None] * along
+    noise[Mode.HIT] += _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
+    noise[Mode.RESTS] = (_NOISE_M2_S3[Mode.RESTS] * duration_s, 0.0, 1e-4)
+    matrices = np.zeros((_MODES, 4, 4))
+    matrices[:, _AXES, _AXES] = noise[:, (0, 0, 2, 2)]
+    matrices[:, _AXES, _OTHER] = noise[:, 1:2]
+    return matrices

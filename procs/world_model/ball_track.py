@@ -11,8 +11,6 @@ Otherwise it is kept as a doubt, until a better source confirms the track; two d
 track: the ball was kicked, bounced or was placed elsewhere.
 """
 
-import copy
-from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -29,8 +27,21 @@ _NEVER_US = -(1 << 60)
 _HELD_M = 0.02  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
 
-Walls = Callable[[Floats], tuple[float, float]]
-"""Position (2) of the ball to the largest |x| and |y| in metres that its middle can reach."""
+
+@dataclass(frozen=True)
+class Walls:
+    """Largest |x| and |y| that the middle of a ball can reach, in metres."""
+
+    x_m: float
+    y_m: float
+    net_x_m: float
+    """In a goal, where the net takes the place of the wall."""
+    goal_half_width_m: float
+
+    def contain(self, ball: BallFilter) -> None:
+        """Lets a ball beyond the walls bounce off them."""
+        in_goal = abs(ball.state[1]) < self.goal_half_width_m
+        ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m)
 
 
 @dataclass(frozen=True)
@@ -59,6 +70,7 @@ class Step:
     """A robot or a wall is near the ball."""
     timeout_us: int = 2 * US_PER_S
     """The ball is forgotten after that time without a sighting."""
+    walls: Walls | None = None
 
 
 @dataclass
@@ -75,21 +87,16 @@ class BallTrack:
     doubts: tuple[tuple[int, Sighting], ...] = ()
     """Exposures and sightings that did not fit."""
 
-    def moved(self, time_us: int, step: Step, walls: Walls | None) -> "BallTrack":
+    def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
-        track = copy.copy(self)
-        track.time_us, track.confirmed = time_us, dict(self.confirmed)
-        track.doubts = tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
-        if self.filter is None:
-            return track
-        if time_us - self.seen_us > step.timeout_us:
-            track.filter, track.confirmed, track.doubts = None, {}, ()
-            return track
-        track.filter = copy.copy(self.filter)
-        track.filter.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
-        if walls is not None:
-            track.filter.stay_within(*walls(track.filter.state[:2]))
-        return track
+        if self.filter is None or time_us - self.seen_us > step.timeout_us:
+            return BallTrack(time_us, None, self.seen_us)
+        ball = self.filter.copy()
+        ball.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
+        if step.walls is not None:
+            step.walls.contain(ball)
+        doubts = tuple(doubt for doubt in self.doubts if time_us - doubt[0] <= _SECOND_SIGHT_US)
+        return BallTrack(time_us, ball, self.seen_us, self.confirmed.copy(), doubts)
 
     def see(self, sighting: Sighting, rolling_m_s2: float) -> None:
         """Takes a sighting that was captured at the time of the track."""

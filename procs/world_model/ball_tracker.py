@@ -8,14 +8,13 @@ the later inputs are taken again.
 from bisect import bisect_left
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from operator import itemgetter
 
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
 from procs.world_model.ball_track import BallTrack, Sighting, Step, Walls
 from procs.world_model.seen import Seen
-
-__all__ = ["BallTracker", "Sighting"]
 
 _KEPT_US = 400_000  # older inputs are not used
 _LONGEST_STEP_US = 100_000
@@ -37,9 +36,7 @@ class _Moment:
 class BallTracker:
     """Track of the ball: `advance` once a tick, then the inputs of the tick."""
 
-    def __init__(self, walls: Walls | None = None) -> None:
-        """Starts without a ball, inside `walls` if there are any."""
-        self._walls = walls
+    def __init__(self) -> None:
         self._now_us = 0
         self._steps: list[tuple[int, Step]] = []
         """Ends of the last ticks, and their conditions."""
@@ -74,7 +71,14 @@ class BallTracker:
         """Number of robots with a sighting in the last half second."""
         return sum(self._now_us - seen_us < _OBSERVER_US for seen_us, _ in self._at_now().confirmed.values())
 
-    def advance(self, duration_s: float, timeout_s: float, rolling_m_s2: float, contact: bool = False) -> None:
+    def advance(
+        self,
+        duration_s: float,
+        timeout_s: float,
+        rolling_m_s2: float,
+        contact: bool = False,
+        walls: Walls | None = None,
+    ) -> None:
         """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
 
         Args:
@@ -82,16 +86,17 @@ class BallTracker:
             timeout_s: longest time without a sighting.
             rolling_m_s2: deceleration of the rolling ball.
             contact: a robot or a wall is near the ball.
+            walls: limits of the ball's way.
         """
         self._now_us += round(duration_s * US_PER_S)
         self._current = None
         oldest_us = self._now_us - _KEPT_US
         self._steps = [step for step in self._steps if step[0] >= oldest_us]
-        self._steps.append((self._now_us, Step(rolling_m_s2, contact, round(timeout_s * US_PER_S))))
+        self._steps.append((self._now_us, Step(rolling_m_s2, contact, round(timeout_s * US_PER_S), walls)))
         self._settle()
         while len(self._moments) > 1 and self._moments[1].track.time_us <= oldest_us:
             del self._moments[0]
-        if self._moments[0].track.time_us < oldest_us:
+        if len(self._moments) == 1 and self._moments[0].track.time_us < oldest_us:
             self._moments[0] = _Moment(self._moved(self._moments[0].track, oldest_us))
         self._sound = len(self._moments)
 
@@ -129,7 +134,13 @@ class BallTracker:
             return
         if place == len(times_us) or times_us[place] != time_us:
             self._moments.insert(place, _Moment(BallTrack(time_us)))
-        self._moments[place].inputs.append((rank, taken))
+            self._sound = min(self._sound, place)
+        moment = self._moments[place]
+        last = not moment.inputs or moment.inputs[-1][0] <= rank
+        moment.inputs.append((rank, taken))
+        if place < self._sound and last:
+            taken(moment.track)
+            place += 1
         self._sound = min(self._sound, place)
         self._current = None
 
@@ -144,7 +155,8 @@ class BallTracker:
         for place in range(self._sound, len(self._moments)):
             moment = self._moments[place]
             moment.track = self._moved(self._moments[place - 1].track, moment.track.time_us)
-            for _, taken in sorted(moment.inputs, key=lambda each: each[0]):
+            moment.inputs.sort(key=itemgetter(0))
+            for _, taken in moment.inputs:
                 taken(moment.track)
         self._sound = len(self._moments)
 
@@ -153,5 +165,5 @@ class BallTracker:
         while track.time_us < time_us:
             end_us = min(time_us, track.time_us + _LONGEST_STEP_US)
             step = next((step for until_us, step in self._steps if until_us >= end_us), Step())
-            track = track.moved(end_us, step, self._walls)
+            track = track.moved(end_us, step)
         return track

@@ -1,13 +1,12 @@
 """Opponents: obstacles on the field that are not robots of the team, tracked from frame to frame."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from procs.world_model.robot_tracks import without_known
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate
+from procs.world_model.team import Places
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,7 @@ class OpponentSettings:
     """Distance within which an obstacle is taken for a mate; larger for obstacles seen poorly."""
 
 
-def strangers(seen: Seen, team: Sequence[Mate], seen_s: float, settings: OpponentSettings) -> Seen:
+def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSettings) -> Seen:
     """Returns the obstacles that are on the field, seen well enough, and not robots of the team.
 
     `seen_s` is the time of the exposure: mates are compared where they were then.
@@ -34,7 +33,5 @@ def strangers(seen: Seen, team: Sequence[Mate], seen_s: float, settings: Opponen
     covariances_m2 = seen.covariances_m2
     on_field = (np.abs(seen.positions_m) <= (settings.half_length_m, settings.half_width_m)).all(axis=1)
     clear = np.trace(covariances_m2, axis1=1, axis2=2) <= settings.deviation_m**2
-    team_m = np.array([mate.position_at(seen_s) for mate in team])
-    team_m2 = np.array([mate.covariance_at(seen_s) for mate in team])
-    unknown = without_known(seen.positions_m, covariances_m2, team_m, team_m2, settings.mate_radius_m)
+    unknown = without_known(seen.positions_m, covariances_m2, *team.at(seen_s), settings.mate_radius_m)
     return seen.only(on_field & clear & unknown)

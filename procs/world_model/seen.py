@@ -37,10 +37,8 @@ class Seen:
             radii_m: n radii.
         """
         rows = [
-            (x_m, y_m, xx_m2, xy_m2, yx_m2, yy_m2, radius_m)
-            for (x_m, y_m), ((xx_m2, xy_m2), (yx_m2, yy_m2)), radius_m in zip(
-                positions_m, covariances_m2, radii_m, strict=True
-            )
+            (*position_m, *row, *other_row, radius_m)
+            for position_m, (row, other_row), radius_m in zip(positions_m, covariances_m2, radii_m, strict=True)
         ]
         values = np.array(rows, np.float64).reshape(-1, 7)
         values[:, 2:6:3] += _LEAST_M2

@@ -1,5 +1,6 @@
 """The newest message of each team mate about itself."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -44,6 +45,24 @@ class Mate:
         """Returns the covariance (2, 2) in m² of `position_at`."""
         drift_m = _DRIFT_M_S * abs(time_s - self.told_s)
         return self.covariance_m2 + _UNIT * (_LEAST_M + drift_m) ** 2
+
+
+class Places:
+    """Where k mates were or are at times near their messages; all mates in one batch."""
+
+    def __init__(self, mates: Sequence[Mate]) -> None:
+        self._told_s = np.array([mate.told_s for mate in mates])
+        self._positions_m = np.array([mate.position_m for mate in mates]).reshape(-1, 2)
+        self._velocities_m_s = np.array([mate.velocity_m_s for mate in mates]).reshape(-1, 2)
+        self._covariances_m2 = np.array([mate.covariance_m2 for mate in mates]).reshape(-1, 2, 2)
+
+    def at(self, time_s: float) -> tuple[Floats, Floats]:
+        """Returns positions (k, 2) and their covariances (k, 2, 2), as `Mate` has them."""
+        passed_s = time_s - self._told_s
+        extrapolated_s = np.clip(passed_s, -_EXTRAPOLATED_S, _EXTRAPOLATED_S)
+        drifts_m = _LEAST_M + _DRIFT_M_S * np.abs(passed_s)
+        positions_m = self._positions_m + self._velocities_m_s * extrapolated_s[:, None]
+        return positions_m, self._covariances_m2 + _UNIT * (drifts_m**2)[:, None, None]
 
 
 class Team:

@@ -15,8 +15,8 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
     told_s = message.header.time_us / 1e6
     if told_s > now_s or not plausible(*values):
         return None
-    covariance_m2 = np.array(message.pose_covariance)[:2, :2]
-    proper = plausible(*covariance_m2.ravel()) and bool((np.linalg.eigvalsh(covariance_m2) >= 0).all())
+    (xx_m2, xy_m2, _), (yx_m2, yy_m2, _), _ = message.pose_covariance
+    proper = plausible(xx_m2, xy_m2, yx_m2, yy_m2) and min(xx_m2, yy_m2, xx_m2 * yy_m2 - xy_m2 * yx_m2) >= 0.0
     return Mate(
         name=message.robot,
         role=message.role,
@@ -25,7 +25,7 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         heading_rad=wrap(message.heading_rad),
         velocity_m_s=np.array((message.vx_m_s, message.vy_m_s)),
         localized=message.localized,
-        covariance_m2=covariance_m2 if proper else np.zeros((2, 2)),
+        covariance_m2=np.array(((xx_m2, xy_m2), (yx_m2, yy_m2))) if proper else np.zeros((2, 2)),
         number=message.number,
         holds_ball=bool(message.ball_held),
     )

@@ -21,16 +21,16 @@ from lcmtypes.soccer import (
 )
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
-from procs.model.frames import Floats
 from procs.model.geometry import plausible
 from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
-from procs.world_model.ball_tracker import BallTracker, Sighting
+from procs.world_model.ball_track import Sighting, Walls
+from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
-from procs.world_model.team import Mate, Team
+from procs.world_model.team import Mate, Places, Team
 from procs.world_model.told import ball_of, held_ball_of, mate_of, mouth_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
@@ -95,7 +95,7 @@ class WorldModel(Component):
 
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
-        self._ball = BallTracker(self._arena_m)
+        self._ball = BallTracker()
         self._opponents = RobotTracks()
         self._team = Team()
         self._view: OwnView | None = None
@@ -145,7 +145,7 @@ class WorldModel(Component):
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told)
         contact = self._in_contact(view, mates)
-        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact)
+        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls())
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
         if self.ball_percept.refreshed:
@@ -160,11 +160,15 @@ class WorldModel(Component):
             held = held_ball_of(message, mate, self._mouth_m)
             self._see(mate.name, held, self.clock.since_s(message.header.time_us))
 
-    def _arena_m(self, ball_m: Floats) -> tuple[float, float]:
-        """Returns how far along x and y the middle of a ball (2) can get: to the wall, or to the net of a goal."""
+    def _walls(self) -> Walls:
+        """Returns how far the middle of the ball can get: to the wall, or to the net of a goal."""
         field, radius_m = self.config.field, self.config.ball.radius_m
-        depth_m = field.goal_depth_m if abs(ball_m[1]) < field.goal_width_m / 2 else field.border_m
-        return field.half_length_m + depth_m - radius_m, field.half_width_m + field.border_m - radius_m
+        return Walls(
+            x_m=field.half_length_m + field.border_m - radius_m,
+            y_m=field.half_width_m + field.border_m - radius_m,
+            net_x_m=field.half_length_m + field.goal_depth_m - radius_m,
+            goal_half_width_m=field.goal_width_m / 2,
+        )
 
     def _in_contact(self, view: OwnView, mates: list[Mate]) -> bool:
         """Returns whether a robot, or the wall around the field, is near the ball."""
@@ -205,12 +209,12 @@ class WorldModel(Component):
         if self.obstacle_percepts.refreshed:
             percepts = self.obstacle_percepts.value
             age_s = self._age_s(percepts.capture_us)
-            seen = strangers(view.obstacles(percepts, age_s), mates, now_s - age_s, rules)
+            seen = strangers(view.obstacles(percepts, age_s), Places(mates), now_s - age_s, rules)
             self._untold_obstacles = seen
             self.team_message.value.obstacles_capture_us = percepts.capture_us or self.clock.now_us
             seen = seen.widened(config.sight_correlation, config.pose_correlation)
             self._opponents.see(seen.positions_m, seen.covariances_m2, age_s)
-        team = [*mates, view.as_mate(self._robot, now_s)] if view.localized else mates
+        team = Places([*mates, view.as_mate(self._robot, now_s)] if view.localized else mates)
         for message, _ in told:
             age_s = self._age_s(message.obstacles_capture_us or message.header.time_us)
             if 0.0 <= age_s <= _STALE_S:

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from procs.model.ball import SLIDING_M_S2
 from procs.model.frames import rotation
 from procs.world_model.ball_filter import BallFilter
-from procs.world_model.ball_tracker import BallTracker, Sighting
+from procs.world_model.ball_track import Sighting
+from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.seen import Seen
 
 Floats = NDArray[np.float64]

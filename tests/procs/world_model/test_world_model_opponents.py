@@ -5,7 +5,7 @@ import pytest
 from numpy.typing import NDArray
 
 from procs.world_model.robot_tracks import RobotTracks, without_known
-from procs.world_model.team import Mate, Team
+from procs.world_model.team import Mate, Places, Team
 
 Floats = NDArray[np.float64]
 PERIOD_S = 0.05
@@ -115,4 +115,8 @@ def test_team_keeps_the_newest_message_until_the_timeout() -> None:
     assert [mate.name for mate in mates] == ["cyan1", "cyan2"]
     assert mates[1].position_at(1.2) == pytest.approx((2.2, 0.0))
     assert mates[1].covariance_at(1.2)[0, 0] > mates[1].covariance_at(1.0)[0, 0]
+    for time_s in (0.2, 1.2, 2.5):
+        positions_m, covariances_m2 = Places(mates).at(time_s)
+        assert positions_m == pytest.approx(np.array([mate.position_at(time_s) for mate in mates]))
+        assert covariances_m2 == pytest.approx(np.array([mate.covariance_at(time_s) for mate in mates]))
     assert team.localized(6.1, 5.0) == []
