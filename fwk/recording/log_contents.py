@@ -1,5 +1,6 @@
 """Contents of a log: types, counts, rates, ticks, gaps and undecodable messages of each channel, and its bookmarks."""
 
+import re
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import ClassVar, NamedTuple
@@ -15,6 +16,11 @@ from lcmtypes.core import excerpt_t, log_t
 
 LOG_LINES = "fwk/log"
 """Channel of log lines."""
+_OLD_FILES = ("fwk/supervisor/control.py", "fwk/supervisor/control/control.py")
+"""Source files from which `fwk note` wrote its lines before they were marked as notes."""
+_NO_NOTE = re.compile(r"asked to |cannot answer |[^ ]+: process \d+, ")
+"""Beginnings of the other lines from there."""
+_MARKS = (NOTE.encode(), b"/control.py")
 
 
 class Note(NamedTuple):
@@ -164,10 +170,11 @@ def excerpt_in(channel: str, data: bytes) -> str:
 
 def note_in(channel: str, data: bytes) -> Note | None:
     """Returns the bookmark that a message is; None for other messages."""
-    if channel != LOG_LINES or NOTE.encode() not in data:
+    if channel != LOG_LINES or not any(mark in data for mark in _MARKS):
         return None
     try:
         line = log_t.decode(data)
     except Exception:  # any error of generated code on broken bytes
         return None
-    return Note(line.tick, line.time_us, line.text) if line.file == NOTE else None
+    is_note = line.file == NOTE or (line.file in _OLD_FILES and not _NO_NOTE.match(line.text))
+    return Note(line.tick, line.time_us, line.text) if is_note else None

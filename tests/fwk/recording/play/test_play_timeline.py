@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from fwk.lcm.event_log import LogError, LogWriter
+from fwk.recording.log_info import log_info
 from fwk.recording.play.timeline import MomentError, Timeline
 from lcmtypes.core import log_t, plan_t
 from tests.fwk.recording.play.play_logs import foreign, heard, recording
@@ -74,6 +75,15 @@ def test_ticks_before_damage_and_after_it_are_found(tmp_path: Path) -> None:
     log.write_bytes(data)
     timeline = Timeline(log)
     assert timeline.find("7").time_us == 7 * PERIOD_US
+
+
+@pytest.mark.parametrize("file", ["fwk/supervisor/control.py", "fwk/supervisor/control/control.py"])
+def test_notes_of_recordings_before_the_mark_are_bookmarks(tmp_path: Path, file: str) -> None:
+    texts = ["asked to stop a/b", "the ball: process by hand", "a/b: process 17, an external process, takes its place"]
+    lines = [log_t(component="supervisor", file=file, text=text).encode() for text in texts]
+    log = write(tmp_path / "log", [("fwk/plan", plan_t().encode(), 0), *(("fwk/log", line, 0) for line in lines)])
+    assert Timeline(log).find("ball") == Timeline(log).begin
+    assert [note.text for note in log_info(log).notes] == ["the ball: process by hand"]
 
 
 def test_only_lines_of_fwk_note_are_bookmarks(tmp_path: Path) -> None:
