@@ -130,18 +130,19 @@ class Timeline:
         return self.seconds(self.end_us)
 
     def _of_note(self, text: str) -> Moment:
-        seen = 0
+        seen, is_read = 0, False
         while True:
             for note, moment in self._notes[seen:]:
                 if text and text in note:
                     return moment
             seen = len(self._notes)
-            if not self._read_on():
+            if is_read:
                 there = ", ".join(f"'{note}'" for note, _ in self._notes[:_NOTES_SHOWN]) or "none"
                 raise MomentError(
                     f"{self.path}: no bookmark '{text}' ('fwk note' writes them); there are: {there}; "
                     "a tick is given as 1200, a time as 12.5s"
                 )
+            is_read = not self._read_on()  # reads notes of the last tick, too
 
     def _read_until(self, reached: Callable[[Moment], bool]) -> None:
         while not reached(self._moments[-1]) and self._read_on():

@@ -22,6 +22,11 @@ def grouped(public_url: str) -> dict[str, str]:
     return together(public_url, real_time=False, groups=True)
 
 
+def real_time(public_url: str) -> dict[str, str]:
+    """The same in real time, with a process for each component."""
+    return together(public_url, real_time=True, groups=False)
+
+
 def recording(folder: Path, files: Callable[[str], dict[str, str]], launch_file: str, ticks: str = TICKS) -> Path:
     return played(folder, files, f"launch/{launch_file}", "--ticks", ticks, "--speed", "max", "--record", "log.lcm")
 
@@ -98,3 +103,12 @@ def test_what_prevents_a_branch_is_explained(tmp_path: Path) -> None:
     )
     said = branched(tmp_path, 10, "--until-tick", "12")
     assert "up to tick 10 these write something else than in the run, so their state differs: a/player" in said
+
+
+def test_a_branch_of_a_run_in_real_time_goes_on_in_lockstep(tmp_path: Path) -> None:
+    played(tmp_path, real_time, "launch/together.yaml", "--ticks", TICKS, "--record", "log.lcm")
+    said = branched(tmp_path, 20, "--until-tick", "60")
+    assert "live from tick 21 to tick 60: " in said
+    replayed(tmp_path, log="branch.lcm")
+    ticks = [record.tick for record in Recording(tmp_path / "branch.lcm").records]
+    assert ticks == list(range(1, 61))
