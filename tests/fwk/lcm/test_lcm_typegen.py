@@ -136,25 +136,6 @@ def test_a_comment_in_latin_1_is_refused_with_its_line(folder: Path) -> None:
         generate(folder)
 
 
-@pytest.mark.slow
-def test_components_with_own_types_pass_strict_mypy(folder: Path) -> None:
-    write(folder, "tracking")
-    generate(folder)
-    (folder.parent / "tracker.py").write_text(
-        '"""A component."""\n\n'
-        "from fwk import Component, Config, Field, Reads, Writes\n"
-        "from lcmtypes.tracking import point_t, track_t\n\n\n"
-        "class TrackerConfig(Config):\n    gain: float = Field(0.3, ge=0.0)\n\n\n"
-        'class Tracker(Component):\n    stage = "think"\n    config: TrackerConfig\n    track: Reads[track_t]\n'
-        "    point: Writes[point_t]\n\n    def loop(self) -> None:\n"
-        "        self.point.value = point_t(x_m=self.config.gain * self.track.value.newest.x_m)\n"
-        "        self.point.write()\n"
-    )
-    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(folder.parent / ".cache"), "tracker.py"]
-    done = subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, check=False, timeout=250)
-    assert done.stdout.strip() == "Success: no issues found in 1 source file"
-
-
 QUIET = "import warnings; warnings.simplefilter('ignore'); "
 
 

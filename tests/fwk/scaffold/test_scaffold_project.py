@@ -14,9 +14,29 @@ from fwk.scaffold.project import NAME_MAX, Project
 from fwk.scaffold.templates import kinds
 from tests.fwk.cli.cli_processes import environment
 from tests.harness.commands import BIN
-from tests.harness.runs import Launched, PortBlock, replayed
+from tests.harness.runs import Launched, PortBlock, replayed, write_files
 
 pytestmark = [pytest.mark.system]
+
+
+TRACKER = {
+    "lcmtypes/tracking.lcm": (
+        "package tracking;\n"
+        "struct point_t { double x_m; double y_m; }\n"
+        "struct track_t { point_t newest; int32_t n; point_t points[n]; string label; const int8_t LOST = 1; }\n"
+    ),
+    "procs/tracker.py": (
+        '"""A component."""\n\n'
+        "from fwk import Component, Config, Field, Reads, Writes\n"
+        "from lcmtypes.tracking import point_t, track_t\n\n\n"
+        "class TrackerConfig(Config):\n    gain: float = Field(0.3, ge=0.0)\n\n\n"
+        'class Tracker(Component):\n    stage = "think"\n    config: TrackerConfig\n    track: Reads[track_t]\n'
+        "    point: Writes[point_t]\n\n    def loop(self) -> None:\n"
+        "        self.point.value = point_t(x_m=self.config.gain * self.track.value.newest.x_m)\n"
+        "        self.point.write()\n"
+    ),
+}
+"""A user's own component with types of which one contains the other."""
 
 
 def made(folder: Path, name_of: Callable[[str], str]) -> Project:
@@ -55,6 +75,8 @@ def test_every_kind_passes_types_and_tests_runs_and_replays(
     needs("cc", "make")
     project = made(tmp_path, lambda kind: f"my_{kind}")
     check(project, "pytest", "-q", "-p", "no:cacheprovider")  # builds the program in C, too
+    write_files(project.root, TRACKER)
+    generate_types(project)
     check(project, "mypy")
     check(project, "fwk", "check", "garden.yaml")
     arguments = ("garden.yaml", "--ticks", "20", "--speed", "max", "--record", "log.lcm", "--hosting", "single")
