@@ -51,7 +51,7 @@ class PlayerConfig(Config):
     crash_tick: int = 0
     """Tick in which the component fails, once; 0: none."""
     crash_in: str = "loop"
-    """Function in which the component fails: init, loop or finalize."""
+    """Function in which the component fails: init, loop or finalize; again: in a further iteration of a tick."""
     eager: float = 0.3
     """Probability of a request in an iteration."""
     early: bool = False
@@ -73,6 +73,7 @@ class Player(Component):
 
     def init(self) -> None:
         self.asked = ""
+        self.tick = 0
         self.crash("init")
         if self.config.early:
             self.burst.value.number = -1
@@ -105,6 +106,9 @@ class Player(Component):
         self.note.write()
         if self.clock.tick >= self.config.crash_tick > 0:
             self.crash("loop")
+            if self.tick == self.clock.tick:
+                self.crash("again")
+        self.tick = self.clock.tick
 
     def finalize(self) -> None:
         self.note.value.told = ["farewell"]

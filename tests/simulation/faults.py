@@ -7,6 +7,7 @@ from typing import Literal
 ActionKind = Literal[
     "kill",  # the process ends at once
     "kill_at_send",  # the process ends before it sends its datagram number `amount` from now on
+    "cut_off",  # the same, and until then only the supervisor hears it: readers and gateway lack its last messages
     "stop",  # the process stops for `amount` microseconds
     "stop_at_send",  # the same, before its datagram number `amount` from now on
     "jump",  # the clock of the machine jumps ahead by `amount` microseconds
@@ -15,7 +16,7 @@ ActionKind = Literal[
     "pause",  # a tool pauses the run and lets it go on after `amount` microseconds
     "call",  # a program outside publishes the number `amount`
 ]
-OUTSIDE: frozenset[ActionKind] = frozenset({"kill", "kill_at_send", "set", "steer", "pause", "call"})
+OUTSIDE: frozenset[ActionKind] = frozenset({"kill", "kill_at_send", "cut_off", "set", "steer", "pause", "call"})
 """Actions from outside: two runs with them may differ, but each replays."""
 
 

@@ -172,6 +172,9 @@ class Ether:
         world = self._world
         world.trace.add(process.local_us, process.name, f"-> {_place(address)}", data)
         self.on_sent(address, data)
+        if process.reached_port and address != (GROUP, process.reached_port):
+            self.lost += 1
+            return
         if to == GROUP:
             for hearer in self._groups.get(port, ()):
                 self._carry(process, source, hearer, data)

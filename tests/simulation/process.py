@@ -31,6 +31,8 @@ class Process:
         self.local_us = world.now_us
         """The process's wall time: ahead of the world's while a step takes time."""
         self.died_us: int | None = None
+        self.reached_port = 0
+        """Port of the only group that hears a process without network; 0: the network works."""
         self.stopping = False
         """Whether the process has been asked to end."""
         self.error = ""
@@ -135,6 +137,10 @@ class Process:
     def kill_at_send(self, number: int) -> None:
         """Ends the process before it sends datagram `number` from now on, from 1."""
         self._die_in = number
+
+    def cut_off(self, reached_port: int) -> None:
+        """Loses everything that the process sends from now on, but to the group on one port."""
+        self.reached_port = reached_port
 
     def stand_still(self, time_us: int) -> None:
         """Stops the process for some wall time."""

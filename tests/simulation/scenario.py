@@ -65,7 +65,7 @@ class Scenario:
     def may_fail(self) -> bool:
         """Whether a component may fail for good: by itself, or by repeated kills."""
         crashes = any(part.settings.get("crash_tick") for part in self.parts)
-        return crashes or any(action.kind in ("kill", "kill_at_send") for action in self.actions)
+        return crashes or any(action.kind in ("kill", "kill_at_send", "cut_off") for action in self.actions)
 
     def calm(self) -> "Scenario":
         """Returns the same scenario without faults."""
@@ -120,10 +120,11 @@ def scenario_of(seed: int) -> Scenario:
     wall = not exact and random.random() < 0.4
     inner = [stage for stage in STAGES if stage == "think" or random.random() < 0.5]
     parts = _in_turns(Random(f"turns {seed}"), _parts(random, tuple(inner), exact))
+    parts = _failing_again(Random(f"again {seed}"), parts, tuple(inner))
     ticks = random.choice([3, 6, 6, 10, 10, 16, 30])
     hosting = random.choice(["process", "process", "process", "robot", "single", "mixed"])
     weather = weather_of(random) if random.random() < 0.9 else Weather()
-    actions = _actions(random, parts, ticks, exact)
+    actions = _cut_off(Random(f"cut off {seed}"), _actions(random, parts, ticks, exact))
     return Scenario(
         seed=seed,
         ticks=ticks,
@@ -174,6 +175,17 @@ def _in_turns(random: Random, parts: tuple[Part, ...]) -> tuple[Part, ...]:
     )
 
 
+def _failing_again(random: Random, parts: tuple[Part, ...], stages: tuple[str, ...]) -> tuple[Part, ...]:
+    """Lets some components fail in the second iteration of a tick, when processes may lack messages of the first."""
+    made = []
+    for part in parts:
+        if part.settings.get("crash_in") == "loop" and part.stages and len(stages) > 1 and random.random() < 0.5:
+            two = tuple(stages[place] for place in sorted(random.sample(range(len(stages)), 2)))
+            part = dataclasses.replace(part, stages=two, settings={**part.settings, "crash_in": "again"})
+        made.append(part)
+    return tuple(made)
+
+
 def _settings(random: Random, crashes: bool) -> Settings:
     made: Settings = {
         "bursts": random.choice([0, 1, 3, MANY if random.random() < 0.02 else 3]),
@@ -215,6 +227,16 @@ def _actions(random: Random, parts: tuple[Part, ...], ticks: int, exact: bool) -
         amount = amounts.get(kind, 0)
         made.append(Action(kind, random.randint(0, max(0, ticks - 1)), delay_us, target, amount, word))
     return tuple(sorted(made, key=lambda action: (action.after_tick, action.delay_us)))
+
+
+def _cut_off(random: Random, actions: tuple[Action, ...]) -> tuple[Action, ...]:
+    """Lets some of the processes that end while they send lose the network first."""
+    return tuple(
+        dataclasses.replace(action, kind="cut_off", amount=random.randint(3, 30))
+        if action.kind == "kill_at_send" and random.random() < 0.5
+        else action
+        for action in actions
+    )
 
 
 def writers_of(plan: Plan) -> dict[str, str]:

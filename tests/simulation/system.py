@@ -299,6 +299,9 @@ class System:
                 process.kill()
             elif action.kind == "kill_at_send":
                 process.kill_at_send(action.amount)
+            elif action.kind == "cut_off":
+                process.cut_off(self._ports.sync)
+                process.kill_at_send(action.amount)
             elif action.kind == "stop":
                 process.stand_still(action.amount)
             else:

@@ -153,3 +153,13 @@ def test_shrinking_keeps_what_matters() -> None:
     assert [part.name for part in small.parts] == ["a2/player"]
     assert (small.ticks, small.weather) == (3, Weather(loss=0.1))
     assert [action.target for action in small.actions] == ["a2/player"]
+
+
+@pytest.mark.parametrize(("reached_port", "heard"), [(PORT, 10), (PORT + 1, 0)])
+def test_a_process_without_network_reaches_one_port(reached_port: int, heard: int) -> None:
+    pair = Pair()
+    pair.sender.cut_off(reached_port)
+    pair.sender.kill_at_send(21)  # every second datagram has no receiver
+    pair.run(200_000)
+    assert numbers(pair) == list(range(heard))
+    assert pair.codes == [-9]
