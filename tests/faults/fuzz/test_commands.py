@@ -38,7 +38,7 @@ class _WouldRunError(Exception):
 
 @pytest.fixture
 def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with a launch file whose run is never started; nor is the console."""
+    """A folder with a launch file whose run is never started; nor are commands that serve until Ctrl-C."""
 
     def run(*_: object) -> None:
         raise _WouldRunError
@@ -48,6 +48,8 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(launching, "run", run)
     monkeypatch.setattr(server, "serve", run)
+    for command in ("view", "foxglove"):  # they would follow another user's run on this machine
+        monkeypatch.setattr(f"fwk.cli.look.{command}.listening", run)
     return tmp_path
 
 
