@@ -48,6 +48,8 @@ class Limits(BaseModel):
     """Highest turning speed with the ball in the mouth."""
     ball_acceleration_m_s2: PositiveFloat = 2.5
     """Limit of the change of the velocity with the ball in the mouth."""
+    ball_push_m_s2: PositiveFloat = 4.0
+    """The same for a change towards the ball, which ends a drive backwards before it counts as holding."""
     ball_angular_acceleration_rad_s2: PositiveFloat = 14.0
     """Limit of the change of the turning speed with the ball in the mouth; more than these loses the ball."""
     ball_pivot: float = Field(default=0.6, ge=0.0, le=1.0)

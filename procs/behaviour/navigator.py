@@ -15,6 +15,8 @@ from procs.model.field import Field, Point
 from procs.model.geometry import plausible, wrap_rad
 from procs.model.robot import ROBOT
 
+_FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
+
 
 class NavigatorConfig(Config):
     """Settings of the way-finding."""
@@ -126,7 +128,7 @@ class Navigator(Component):
 
     def _command(self, wanted: Velocity, heading_rad: float) -> None:
         limits, held = self.config.limits, self.kicker_state.value.ball_held
-        change_m_s2 = limits.ball_acceleration_m_s2 if held else limits.acceleration_m_s2
+        change_m_s2 = self._ball_change_m_s2(wanted, heading_rad) if held else limits.acceleration_m_s2
         turn_rad_s2 = limits.ball_angular_acceleration_rad_s2 if held else limits.angular_acceleration_rad_s2
         period_s = self.clock.period_s
         self._before = motion.approach(self._before, wanted, period_s, change_m_s2, turn_rad_s2)
@@ -139,6 +141,15 @@ class Navigator(Component):
         command.omega_rad_s = self._before.omega_rad_s
         command.enabled = True
         self.motor_command.write()
+
+    def _ball_change_m_s2(self, wanted: Velocity, heading_rad: float) -> float:
+        """Returns the limit of the acceleration with the ball: a change towards the ball presses it into the mouth."""
+        limits = self.config.limits
+        forward, _ = motion.turned(
+            wanted.vx_m_s - self._before.vx_m_s, wanted.vy_m_s - self._before.vy_m_s, -heading_rad
+        )
+        change_m_s = math.hypot(wanted.vx_m_s - self._before.vx_m_s, wanted.vy_m_s - self._before.vy_m_s)
+        return limits.ball_push_m_s2 if forward > _FORWARD * change_m_s else limits.ball_acceleration_m_s2
 
 
 def _makes_sense(target: drive_target_t) -> bool:

@@ -110,7 +110,10 @@ class Tactics:
             place = formation.first_opponent_place(game, self.field)
             return self._stand(view, formation.next_step(view.own.place, place, game), "keep distance")
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
-        best = aim.best_pass(taker, field_players(view), view.opponents, math.inf, self._receiver)
+        mates = field_players(view)
+        if not game.stopped:  # the taker has turned to its receiver
+            mates = [mate for mate in mates if mate.name == self._receiver] or mates
+        best = aim.best_pass(taker, mates, view.opponents, math.inf, self._receiver)
         target = best.place if best else self.field.goal_centre(1.0)
         self._receiver = best.receiver if best else ""
         way_rad = bearing_rad(game.spot, target)

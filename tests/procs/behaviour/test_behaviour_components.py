@@ -1,5 +1,6 @@
 """Navigator, skiller and agent on the bench."""
 
+import itertools
 import math
 from typing import Any
 
@@ -68,6 +69,37 @@ def test_navigator_drives_in_its_frame_within_its_acceleration() -> None:
     state = newest(bench, "navigator_state")
     assert (state.target_id, state.arrived, state.error) == (7, False, navigator_state_t.OK)
     assert state.distance_m == pytest.approx(5.0)
+
+
+def changes_m_s(held: bool, x_m: float) -> list[float]:
+    """Returns the change of the speed in the first ticks towards a target; the robot faces along x."""
+    bench = Bench(Navigator, "cyan2/navigator")
+    for _ in range(3):
+        put(bench, "world_model", localized=True)
+        put(bench, "odometry")
+        put(bench, "kicker_state", ball_held=held)
+        put(bench, "drive_target", x_m=x_m)
+        bench.iterate()
+    speeds_m_s = [0.0, *(command.vx_m_s for command in bench.port("motor_command").sent)]
+    return [after - before for before, after in itertools.pairwise(speeds_m_s)]
+
+
+def test_robot_with_the_ball_accelerates_most_towards_it() -> None:
+    assert changes_m_s(held=False, x_m=-5.0) == pytest.approx([-0.15] * 3)
+    assert changes_m_s(held=True, x_m=-5.0) == pytest.approx([-0.125] * 3)
+    assert changes_m_s(held=True, x_m=5.0) == pytest.approx([0.2] * 3)
+
+
+def test_robot_turns_about_a_point_near_its_ball() -> None:
+    bench = Bench(Navigator, "cyan2/navigator")
+    put(bench, "world_model", localized=True)
+    put(bench, "odometry")
+    put(bench, "kicker_state", ball_held=True)
+    put(bench, "drive_target", heading_rad=2.0)
+    bench.iterate()
+    command = newest(bench, "motor_command")
+    assert command.omega_rad_s > 0.0
+    assert command.vy_m_s / command.omega_rad_s == pytest.approx(-0.6 * 0.327, abs=0.01)
 
 
 def test_navigator_turns_the_short_way() -> None:

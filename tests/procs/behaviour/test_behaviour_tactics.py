@@ -110,6 +110,17 @@ def test_set_piece_is_played_to_a_mate() -> None:
     assert (order.skill, order.place) == ("pass", (0.0, 3.0))
 
 
+def test_taker_keeps_its_receiver_once_the_ball_may_be_played() -> None:
+    spot, tactics = Point(0.0, 0.0), Tactics(FIELD)
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
+    own, taken = robot("cyan2", -0.7, 0.0), job(ATTACKER)
+    left, right = robot("cyan3", 3.0, 3.0, role=SUPPORTER), robot("cyan4", 2.0, -3.0, role=DEFENDER)
+    tactics.decide(view(own, ball(*spot), (left, right)), game, taken, False, 0.05)
+    moved = view(own, ball(*spot), (left, right._replace(place=Point(6.0, -1.0))))
+    order = tactics.decide(moved, game._replace(stopped=False), taken, False, 0.05)
+    assert order.heading_rad == pytest.approx(math.pi / 4)
+
+
 @pytest.mark.parametrize("stopped", [True, False])
 def test_robots_keep_away_at_the_other_teams_set_piece(stopped: bool) -> None:
     game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
