@@ -20,14 +20,14 @@ class LiveFrames:
         self._rings: dict[str, Ring] = {}
 
     def pixels(self, channel: str, announced: Any) -> NDArray[np.uint8] | None:
-        """Returns the frame that a message announces.
+        """Returns the frame that a message announces, or the newest one if that has been overwritten.
 
         Args:
             channel: channel of the camera.
             announced: a `frame_t`.
 
         Returns:
-            height x width (x channels); None, if the frame is overwritten, or this process may not see it.
+            height x width (x channels); None, if there is no frame that this process may see.
         """
         ring = self._rings.get(channel)
         if ring is None:
@@ -39,5 +39,7 @@ class LiveFrames:
                 return None
             self._rings[channel] = ring
         found = ring.get(announced.frame, announced.height_px * announced.width_px * announced.channels)
-        shape = shape_of(announced.height_px, announced.width_px, announced.channels)
-        return None if found is None else found.reshape(shape)
+        if found is not None:
+            return found.reshape(shape_of(announced.height_px, announced.width_px, announced.channels))
+        newest = ring.newest()
+        return newest[1] if newest else None
