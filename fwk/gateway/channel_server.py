@@ -111,7 +111,6 @@ class ChannelServer:
         return ChannelPlan(state.index, state.name, state.type_name, writer, ())
 
     def _row(self, channel: ChannelPlan) -> dict[str, Any]:
-        names = [component.name for component in self._plan.components]
         data = self._newest.get(channel.name)
         header = Header.of(data) if data else None
         plain_type = envelope.is_plain(channel.type_name)
@@ -120,7 +119,7 @@ class ChannelServer:
             "type": channel.type_name,
             "writer": self._plan.writer_of(channel),
             "outside": channel.name in self._plan.outside,
-            "readers": [names[index] for index in self._readers(channel)],
+            "readers": [self._plan.components[index].name for index in self._readers(channel)],
             "opened": channel.name not in self._channels,
             "messages": self._counts.get(channel.name, 0),
             "sequence": header.sequence if header else 0,

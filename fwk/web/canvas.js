@@ -1,5 +1,6 @@
 // Shows the drawings of a view. Asks for the next one only after the last was shown, so a hidden page asks for nothing.
 const TRAIL_MS = 2000;
+const LEAST_PX = 3.7;
 
 export default {
   template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
@@ -40,6 +41,7 @@ export default {
       } catch (error) { /* the console restarts; the next request finds out */ }
       setTimeout(() => requestAnimationFrame(this.ask), Math.max(0, this.period - (performance.now() - began)));
     },
+    fitAgain() { this.scale = 0; this.trails.clear(); this.image = this.loaded = null; },
     async load(picture) {
       const url = `${this.images}&channel=${encodeURIComponent(picture.camera)}&frame=${picture.frame}`;
       if (url === this.loaded) return;
@@ -89,9 +91,11 @@ export default {
         this.canvas.width = width * dots; this.canvas.height = height * dots;
       }
       if (!this.scale) this.fit(width, height);
+      this.canvas.dataset.scale = String(Math.round(this.scale * 100) / 100);
       const pen = this.canvas.getContext("2d");
       pen.setTransform(1, 0, 0, 1, 0, 0);
-      pen.fillStyle = this.drawing.background || getComputedStyle(document.body).backgroundColor;
+      pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
+      pen.fillStyle = this.drawing.background || "transparent";
       pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
       const s = this.scale * dots;
       pen.setTransform(s, 0, 0, -s * this.up, (width * dots) / 2 - this.middle[0] * s,
@@ -128,6 +132,7 @@ export default {
       }
     },
     paintText(pen, shape) {
+      if (shape.h * this.scale < LEAST_PX) return; // it would hide what it names; zooming shows it
       pen.save();
       pen.translate(shape.x, shape.y); pen.scale(0.01, -0.01 * this.up);
       pen.font = `${Math.max(shape.h * 100, 900 / this.scale)}px system-ui, sans-serif`;

@@ -1,6 +1,7 @@
 """State that all pages of a console share."""
 
-from collections.abc import Callable
+import asyncio
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,9 @@ from fwk.web.rates import Rates
 from fwk.web.recorded import RecordedRun, RecordedRuns
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
+from fwk.web.usage import Figures, Usage
+
+_USAGE_AGE_S = 1.5
 
 
 @dataclass(frozen=True)
@@ -36,16 +40,26 @@ class Console:
     opened: RecordedRuns = field(default_factory=RecordedRuns)
     rates: dict[int, Rates] = field(default_factory=dict)
     """Rates of channels by process of a run."""
+    usages: dict[str, Usage] = field(default_factory=dict)
+    """Meters of CPU and memory by run."""
 
-    def recorded(self, name: str) -> RecordedRun:
-        """Returns the recording in the run directory of that name.
+    async def usage(self, run: str, pids: Iterable[int]) -> dict[int, Figures]:
+        """Returns CPU and memory of the processes of a run."""
+        meter = self.usages.setdefault(run, Usage())
+        found: dict[int, Figures] = await self.shared.get(
+            ("usage", run), _USAGE_AGE_S, lambda: asyncio.to_thread(meter.measure, [*pids])
+        )
+        return found
+
+    def recorded(self, name: str, anew: bool = False) -> RecordedRun:
+        """Returns the recording in the run directory of that name; with `anew` as it is now.
 
         Raises:
             LogError: there is none, or it cannot be read.
         """
         for each in self.recordings():
             if Path(each["path"]).name == name:
-                return self.opened.of(each["path"])
+                return self.opened.of(each["path"], anew)
         raise LogError(f"no recording '{name}'; 'fwk runs list' shows all")
 
 

@@ -8,7 +8,9 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 import cv2
+import numpy as np
 from fastapi import FastAPI
+from numpy.typing import NDArray
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
 
@@ -86,6 +88,18 @@ def add_drawings(app: FastAPI, console: Console) -> None:
         wanted = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
         return Response(await asyncio.to_thread(drawn, view, wanted), 200, _NO_STORE, "application/json")
 
+    async def recorded_image(request: Request) -> Response:
+        try:
+            run = console.recorded(request.query_params.get("log", ""))
+        except LogError as error:
+            return PlainTextResponse(str(error), 404, _NO_STORE)
+        picture = run.picture(request.query_params.get("channel", ""))
+        data = await asyncio.to_thread(_jpeg, picture.pixels()) if picture else None
+        if data is None:
+            return PlainTextResponse("no images of it in this recording", 404, _NO_STORE)
+        return Response(data, 200, _NO_STORE, "image/jpeg")
+
+    app.add_route("/recorded-image", recorded_image)
     app.add_route("/graph.svg", graph_svg)
     app.add_route("/recorded", recorded)
     app.add_route("/drawing", drawing)
@@ -134,8 +148,12 @@ def drawn(view: View, newest: dict[str, Any]) -> bytes:
 def _image(pid: int, channel: str, number: int) -> bytes | None:
     """Returns a frame of a camera as JPEG: that of the number if it is kept still, otherwise the newest."""
     ring = Ring.of_process(pid, channel)
-    pixels = ring.newest(number) if ring else None
+    found = ring.newest(number) if ring else None
+    return _jpeg(found[1]) if found else None
+
+
+def _jpeg(pixels: NDArray[np.uint8] | None) -> bytes | None:
     if pixels is None:
         return None
-    done, data = cv2.imencode(".jpg", pixels[1])
+    done, data = cv2.imencode(".jpg", pixels)
     return data.tobytes() if done else None

@@ -26,6 +26,7 @@ PAGES = {
     "/settings": ("Settings", "tune"),
     "/log": ("Log", "subject"),
     "/recordings": ("Recordings", "history"),
+    "/runs": ("Runs", "dns"),
 }
 """Address of a page to its title and icon."""
 SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}
@@ -47,6 +48,7 @@ class Frame:
         self.request = request
         self.link = console.runs.link(run)
         self.access = RunAccess(self.link, role)
+        self.role = role
         self.may_steer = role is Role.STEER
         self._runs = runs
         self._on_status: list[Callable[[dict[str, Any]], None]] = []

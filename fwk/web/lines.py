@@ -12,6 +12,11 @@ class Lines(Element, component="lines.js"):
         super().__init__()
         self._props["most"] = most
 
+    def link_ticks(self, address: str) -> None:
+        """Lets each line lead to an address that its tick completes."""
+        self._props["link"] = address
+        self.update()
+
     def append(self, lines: Sequence[tuple[int, str, str, int]]) -> None:
         """Adds lines: number, class, text, tick."""
         if lines:

@@ -7,6 +7,7 @@ from typing import Any
 from fwk.lcm.type_registry import decoded
 from fwk.recording.log_contents import LogInfo
 from fwk.recording.log_info import log_info
+from fwk.recording.pictures import RecordedPicture, picture_of
 from fwk.recording.play.timeline import Timeline
 
 LOG = "log.lcm"
@@ -30,6 +31,7 @@ class RecordedRun:
         self._lock = threading.Lock()
         self._tick = 0
         self._newest: dict[str, bytes] = {}
+        self._pictures: dict[str, bytes] = {}
         self._begin = self._read({}, 0, _BEGIN_TICKS)
 
     @property
@@ -53,6 +55,12 @@ class RecordedRun:
                 continue
         return made
 
+    def picture(self, camera: str) -> RecordedPicture | None:
+        """Returns the recorded image of a camera that was read last; None: its images were not recorded."""
+        with self._lock:
+            data = self._pictures.get(camera)
+        return picture_of(data) if data else None
+
     def _read(self, newest: dict[str, bytes], after: int, until: int) -> dict[str, bytes]:
         """Returns the newest messages with those of the ticks from `after` to `until`."""
         made = dict(newest)
@@ -64,6 +72,8 @@ class RecordedRun:
                 break
             if not event.channel.startswith("fwk/"):
                 made[event.channel] = event.data
+            if picture := picture_of(event.data):
+                self._pictures[picture.camera] = event.data
         return made
 
 
@@ -73,13 +83,14 @@ class RecordedRuns:
     def __init__(self) -> None:
         self._open: dict[str, RecordedRun] = {}
 
-    def of(self, folder: str) -> RecordedRun:
-        """Opens a recording.
+    def of(self, folder: str, anew: bool = False) -> RecordedRun:
+        """Opens a recording; with `anew` once more if it has grown since.
 
         Raises:
             LogError: the log cannot be read.
         """
-        if folder not in self._open:
+        known = self._open.get(folder)
+        if known is None or (anew and known.path.stat().st_size != known.info.size_bytes):
             if len(self._open) >= 4:
                 self._open.pop(next(iter(self._open)))
             self._open[folder] = RecordedRun(Path(folder))

@@ -20,7 +20,7 @@ from fwk.web.drawings import add_drawings
 from fwk.web.extensions import Extensions
 from fwk.web.layout import Frame
 from fwk.web.log_tail import LogTails
-from fwk.web.pages import board, devices, graph, log, plots, recordings, settings, system, view
+from fwk.web.pages import board, devices, graph, log, plots, recordings, runs, settings, system, view
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
 
@@ -38,7 +38,11 @@ _BUILDERS: dict[str, Callable[[Frame], None]] = {
     "/settings": settings.build,
     "/log": log.build,
     "/recordings": recordings.build,
+    "/runs": runs.build,
 }
+
+_WITHOUT_RUN = ("/recordings", "/runs")
+"""Pages that show something when nothing runs."""
 
 
 class ServeError(Exception):
@@ -126,15 +130,17 @@ def _add_pages(console: Console) -> None:
 
 def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> None:
     async def made(request: Request) -> None:
-        runs = await console.runs.all()
-        run = request.query_params.get("run") or console.run or next(iter(runs), "")
+        known = await console.runs.all()
+        run = request.query_params.get("run") or console.run or next(iter(known), "")
         role: Role = request.state.role
-        frame = Frame(console, request, role, run, runs)
+        frame = Frame(console, request, role, run, known)
         frame.build(path, await _own_pages(console, frame))
-        if run or path == "/recordings":
+        if run or path in _WITHOUT_RUN:
             builder(frame)
         else:
-            ui.label("nothing runs on this machine; start something with: fwk-launch FILE").classes("q-pa-md")
+            ui.label(
+                "nothing runs on this machine; the page Runs starts launch files, and so does: fwk-launch FILE"
+            ).classes("q-pa-md")
 
     ui.page(path, response_timeout=_RECONNECT_S)(made)
 

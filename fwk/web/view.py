@@ -1,12 +1,16 @@
 """Views on a canvas and pages that projects add to the console, and their access to a run."""
 
+import asyncio
 from collections.abc import Awaitable, Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Protocol
 
 from fwk.bus.public import PublicBus
 from fwk.control.client import RefusedError
+from fwk.control.host_file import KeepError, Kept, keep
 from fwk.control.requests import Action
 from fwk.lcm import messages
+from fwk.plan.files.launch_file import host_file, shown
 from fwk.web.access import Role
 from fwk.web.run_link import RunLink
 from fwk.web.scene import Newest, Scene
@@ -100,10 +104,27 @@ class RunAccess:
         answer: dict[str, Any] = await self.link.ask(verb, _STEER_S, **fields)
         return answer
 
-    async def set(self, changes: Sequence[str]) -> dict[str, Any]:
-        """Changes settings, `NAME.SETTING=VALUE` each: all or none."""
+    async def set(self, changes: Sequence[str], save: bool = False) -> dict[str, Any]:
+        """Changes settings, `NAME.SETTING=VALUE` each: all or none.
+
+        Args:
+            changes: the new values.
+            save: first keeps them in the host-specific file beside the launch file, for later runs.
+
+        Raises:
+            ControlError: refused, or not permitted; nothing has changed in the run.
+        """
         self._check()
-        answer: dict[str, Any] = await self.link.ask("set", changes=list(changes), origin="fwk web")
+        origin = "fwk web"
+        if save:
+            await self.link.ask("set", changes=list(changes), check=True)
+            file = host_file(Path((await self.link.about())["file"]))
+            try:
+                await asyncio.to_thread(keep, file, [Kept.of(each) for each in changes])
+            except KeepError as error:
+                raise RefusedError(str(error)) from error
+            origin = f"{origin}, {shown(file)}"
+        answer: dict[str, Any] = await self.link.ask("set", changes=list(changes), origin=origin)
         return answer
 
     async def note(self, text: str) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from tests.harness.commands import BIN
 from tests.harness.runs import pause
 
 CHROMIUM = "chromium-headless-shell"
-_WAIT_MS = 30_000.0
+_WAIT_MS = 60_000.0
 
 
 class Console:

@@ -17,6 +17,7 @@ PROGRAM = "chromium-headless-shell"
 PICTURES = {
     "web-view": "/view",
     "web-system": "/",
+    "web-devices": "/devices?channel=cyan1/image",
     "web-phone": "/view",
 }
 """Name of a picture to the page that it shows."""

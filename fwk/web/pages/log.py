@@ -1,10 +1,12 @@
 """Page of the log: filters, and following."""
 
 import re
+from pathlib import Path
 from typing import Any
 
 from nicegui import ui
 
+from fwk.clock import US_PER_S
 from fwk.component.log import LEVELS
 from fwk.display.lines import log_line
 from fwk.logs.reader import Filter, from_plain
@@ -12,35 +14,54 @@ from fwk.web.layout import Frame, body
 from fwk.web.lines import Lines
 
 _REFRESH_S = 0.4
-_RANGE = re.compile(r"\s*(\d*)\s*(\.\.)?\s*(\d*)\s*", re.ASCII)
-_TICK_MAX = 1 << 62
+_NUMBER = r"(\d+(?:\.\d+)?)?"
+_RANGE = re.compile(rf"\s*{_NUMBER}\s*(\.\.)?\s*{_NUMBER}\s*", re.ASCII)
+_PLACE = re.compile(r":\d+\s*$", re.ASCII)
+_MOST = 1 << 62
 
 
 class FilterMistakeError(ValueError):
     """A field of the filters cannot be understood."""
 
 
-def filter_of(level: str, component: str, ticks: str, file: str, text: str) -> Filter:
+def filter_of(level: str, component: str, ticks: str, times: str, place: str, text: str) -> Filter:
     """Returns the filter that a person has typed.
 
+    Args:
+        level: least level.
+        component: name or pattern; empty: all, as in the others.
+        ticks: range `A..B`, `A..`, `..B` or one tick.
+        times: the same of logical time in seconds.
+        place: source file, perhaps with its line, such as `agent.py:41`.
+        text: regular expression.
+
     Raises:
-        FilterMistakeError: ticks or text are not understood.
+        FilterMistakeError: ticks, times or text are not understood.
     """
     try:
         pattern = re.compile(text, re.IGNORECASE) if text else None
     except re.error as error:
         raise FilterMistakeError(f"text: {error}") from error
-    return Filter(level=level, component=component or None, tick=_ticks(ticks), file=file or None, text=pattern)
+    file, _, line = place.strip().rpartition(":") if _PLACE.search(place) else (place.strip(), "", "")
+    return Filter(
+        level=level,
+        component=component or None,
+        tick=_range("ticks", ticks, 1),
+        time_us=_range("times", times, US_PER_S),
+        file=file or None,
+        line=int(line) if line else None,
+        text=pattern,
+    )
 
 
-def _ticks(text: str) -> tuple[int, int] | None:
+def _range(name: str, text: str, unit: int) -> tuple[int, int] | None:
     if not text.strip():
         return None
     found = _RANGE.fullmatch(text)
     if not found or not (found[1] or found[3]) or (found[3] and not found[2]):
-        raise FilterMistakeError("ticks: write N, A.., ..B or A..B")
-    first = int(found[1] or 0)
-    return first, int(found[3]) if found[3] else _TICK_MAX if found[2] else first
+        raise FilterMistakeError(f"{name}: write N, A.., ..B or A..B")
+    first, last = (round(float(part) * unit) if part else 0 for part in (found[1], found[3]))
+    return first, last if found[3] else _MOST if found[2] else first + unit - 1
 
 
 def build(frame: Frame) -> None:
@@ -55,9 +76,10 @@ def build(frame: Frame) -> None:
             )
             component = ui.input("component or pattern", value=query.get("component", "")).props("data-name=component")
             ticks = ui.input("ticks A..B", value=query.get("tick", "")).props("data-name=ticks")
-            file = ui.input("source file").props("data-name=file")
+            times = ui.input("seconds A..B").props("data-name=times")
+            file = ui.input("source file, perhaps :line").props("data-name=file")
             text = ui.input("text (regular expression)").props("data-name=text")
-            inputs: list[Any] = [component, ticks, file, text]
+            inputs: list[Any] = [component, ticks, times, file, text]
             for each in inputs:
                 each.props("dense outlined clearable debounce=300")
             follow = ui.switch("follow", value=True).props("data-name=follow")
@@ -82,6 +104,7 @@ def build(frame: Frame) -> None:
         run_dir = (await link.about())["run_dir"]
         if run_dir != seen_dir:
             seen_dir = run_dir
+            lines.link_ticks(frame.address("/recordings", log=Path(run_dir).name) + "&tick=")
             again()
         try:
             typed = (each.value or "" for each in inputs)

@@ -1,11 +1,13 @@
 """Page of the settings: a tree of all components, values with origin, type and meaning; changed live."""
 
 import json
+from collections.abc import Callable
 from typing import Any
 
 from nicegui import ui
 
 from fwk.control.client import ControlError
+from fwk.web.file_settings import differing, values_in_file
 from fwk.web.layout import Frame, body
 
 _TREE_S = 5.0
@@ -19,6 +21,11 @@ def build(frame: Frame) -> None:
     with body():
         wanted = ui.input("filter by name, value, origin or meaning")
         wanted.props("dense outlined clearable debounce=300").classes("w-full").props("data-name=filter")
+        with ui.row().classes("items-center gap-4"):
+            different = ui.button("difference to the launch file", icon="difference", on_click=lambda: compare())
+            different.props("dense outline no-caps")
+            save = ui.switch("keep changes for later runs on this machine")
+            save.set_visibility(frame.may_steer)
         with ui.row().classes("w-full items-start no-wrap-md"):
             tree = ui.tree([], label_key="label", on_select=lambda event: choose(event.value or ""))
             tree.classes("fwk-tree").props("data-name=tree")
@@ -32,15 +39,29 @@ def build(frame: Frame) -> None:
 
     async def choose(name: str) -> None:
         chosen["name"] = name
-        rows = [
+        found = [
             row for row in await frame.do(link.settings(age_s=_FRESH_S)) or [] if matches(row, name, wanted.value or "")
         ]
+        show(found, "no setting matches")
+
+    def show(rows: list[dict[str, Any]], otherwise: str) -> None:
         rows_area.clear()
         with rows_area:
             for row in rows:
-                _setting(frame, row)
+                _setting(frame, row, lambda: bool(save.value))
             if not rows:
-                ui.label("no setting matches")
+                ui.label(otherwise)
+
+    async def compare() -> None:
+        async def found() -> list[dict[str, Any]]:
+            values = await values_in_file((await link.about())["file"])
+            return differing(await link.settings(age_s=_FRESH_S), values)
+
+        different.props("loading")
+        rows = await frame.do(found())
+        different.props(remove="loading")
+        if rows is not None:
+            show(rows, "every setting is as in the launch file")
 
     wanted.on_value_change(lambda: choose(chosen["name"]))
     frame.every(_TREE_S, refresh_tree)
@@ -76,8 +97,8 @@ def path_of(row: dict[str, Any]) -> str:
     return f"{row['component']}.{row['setting']}"
 
 
-def _setting(frame: Frame, row: dict[str, Any]) -> None:
-    """Makes the field of one setting, with what is known of it."""
+def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> None:
+    """Makes the field of one setting, with what is known of it; a change is kept for later runs if `saves()`."""
     access = frame.access
     path = path_of(row)
     live = frame.may_steer and row["editable"]
@@ -98,12 +119,13 @@ def _setting(frame: Frame, row: dict[str, Any]) -> None:
     async def change() -> None:
         value = json.dumps(field.value) if row["type"] == "bool" else field.value
         try:
-            answer = await access.set([f"{path}={value}"])
+            answer = await access.set([f"{path}={value}"], saves())
         except ControlError as error:
             mistake.set_text(str(error))
             return
         mistake.set_text("")
-        details.set_text(f"{_details(row)}; changed here, since tick {answer['tick']}")
+        kept = ", kept for later runs" if saves() else ""
+        details.set_text(f"{_details(row)}; changed here, since tick {answer['tick']}{kept}")
         ui.notify(f"{path} = {value} since tick {answer['tick']}", type="positive")
 
     if isinstance(field, ui.input):
@@ -118,5 +140,6 @@ def _typed(value: Any) -> str:
 
 
 def _details(row: dict[str, Any]) -> str:
-    parts = (row["type"], row["origin"], "" if row["editable"] else "fixed for the run", row["meaning"])
+    in_file = f"in the launch file: {_typed(row['in_file'])}" if "in_file" in row else ""
+    parts = (in_file, row["type"], row["origin"], "" if row["editable"] else "fixed for the run", row["meaning"])
     return ", ".join(filter(None, parts))

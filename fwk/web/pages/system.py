@@ -1,5 +1,6 @@
 """Page of the components: state, times, losses; start, stop, restart, reload, log level."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -9,6 +10,7 @@ from fwk.clock import US_PER_S, monotonic_us, rate_word, turns_word
 from fwk.control.requests import Action
 from fwk.model.histogram import Histogram
 from fwk.web.layout import Frame, body
+from fwk.web.usage import Figures
 from fwk.web.words import age, rows_of
 
 ACTIONS: dict[Action, str] = {
@@ -26,6 +28,8 @@ _COLUMNS = {
     "state": "state",
     "stage": "stage",
     "pid": "pid",
+    "cpu": "CPU %",
+    "memory": "MB",
     "starts": "starts",
     "iterations": "iterations",
     "mean_ms": "mean ms",
@@ -36,6 +40,7 @@ _COLUMNS = {
 }
 _WORDS = ("name", "state", "stage", "reason")
 _STATE_CELL = '<q-td :props="props"><span :class="`s-${props.value}`">{{ props.value }}</span></q-td>'
+_USAGE_S = 2.0
 _FIGURES_US = 2 * US_PER_S
 """Figures are shown anew so often, states at once: a browser needs long to draw a hundred rows."""
 
@@ -43,6 +48,7 @@ _FIGURES_US = 2 * US_PER_S
 def build(frame: Frame) -> None:
     """Makes the page."""
     shown_us = 0
+    usage: dict[int, Figures] = {}
     with body():
         figures = ui.label("").props("data-name=figures")
         with ui.row().classes("items-center gap-1"):
@@ -67,7 +73,7 @@ def build(frame: Frame) -> None:
 
     def show(status: dict[str, Any]) -> None:
         nonlocal shown_us
-        rows = [row_of(each) for each in status["components"]]
+        rows = [row_of(each, usage) for each in status["components"]]
         if states_of(rows) != states_of(table.rows) or monotonic_us() > shown_us + _FIGURES_US:
             table.rows, shown_us = rows, monotonic_us()
         figures.set_text(
@@ -75,17 +81,25 @@ def build(frame: Frame) -> None:
             f"repeated {status['repeated']}   {Path(status['run_dir']).name}"
         )
 
+    async def measure() -> None:
+        pids = {each["pid"] for each in (await frame.link.status())["components"]}
+        usage.update(await frame.console.usage(frame.run, pids))
+
     frame.on_status(show)
+    frame.every(_USAGE_S, measure)
 
 
-def row_of(component: dict[str, Any]) -> dict[str, Any]:
-    """Returns the row of a component."""
+def row_of(component: dict[str, Any], usage: Mapping[int, Figures]) -> dict[str, Any]:
+    """Returns the row of a component; CPU and memory are those of its process."""
+    figures = usage.get(component["pid"])
     stage = ", ".join(component["stages"]) + turns_word(component["every"], component["offset"])
     if component["rate_hz"] is not None:
         stage = rate_word(component["rate_hz"])
     return {
+        **{key: component[key] for key in _COLUMNS if key in component},
+        "cpu": round(figures.cpu_percent, 1) if figures else "",
+        "memory": round(figures.memory_mb, 1) if figures else "",
         "stage": stage,
-        **{key: component[key] for key in _COLUMNS if key not in ("stage", "mean_ms", "worst_ms")},
         "mean_ms": round(component["mean_ms"], 2),
         "worst_ms": round(component["worst_ms"], 1),
     }
@@ -102,7 +116,7 @@ def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:
 
     async def steer(action: Action) -> None:
         if chosen:
-            answer = await frame.do(frame.access.steer(action, list(chosen)))
+            answer = await frame.do(frame.access.steer(action, list(chosen), action == "unload" and force.value))
             if answer:
                 ui.notify("; ".join(sentence(each, answer["tick"]) for each in answer["processes"]), type="info")
 
@@ -111,6 +125,7 @@ def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:
         button = ui.button(action, icon=icon, on_click=lambda action=action: steer(action))
         made.append(button.props("dense outline no-caps size=sm").props(f"data-name={action}"))
         button.set_enabled(False)
+    force = ui.checkbox("unload with all that need it").props("dense").classes("q-ml-sm")
     return made
 
 

@@ -62,14 +62,27 @@ def line(tick: int) -> dict[str, Any]:
     ("typed", "wanted"), [("", (1, 5, 9)), ("5", (5,)), ("5..", (5, 9)), ("..5", (1, 5)), (" 1 .. 5 ", (1, 5))]
 )
 def test_ticks_are_typed_as_ranges(typed: str, wanted: tuple[int, ...]) -> None:
-    chosen = filter_of("debug", "", typed, "", "")
+    chosen = filter_of("debug", "", typed, "", "", "")
     assert tuple(tick for tick in (1, 5, 9) if chosen.wants(line(tick))) == wanted
+
+
+def test_times_and_places_are_typed_as_people_say_them() -> None:
+    lines = [line(5) | {"time_us": time_us, "file": "a/agent.py", "line": 41} for time_us in (900_000, 1_500_000)]
+    for times, place, wanted in (
+        ("0.5..1", "agent.py", (900_000,)),
+        ("1..", "agent.py:41", (1_500_000,)),
+        ("1", " a/agent.py:41 ", (1_500_000,)),
+        ("", "agent.py:42", ()),
+        ("", "gent.py", ()),
+    ):
+        chosen = filter_of("debug", "", "", times, place, "")
+        assert tuple(each["time_us"] for each in lines if chosen.wants(each)) == wanted, (times, place)
 
 
 @pytest.mark.parametrize(("ticks", "text"), [("x", ""), ("..", ""), ("1 2", ""), ("", "(")])
 def test_a_filter_that_is_not_understood_is_refused(ticks: str, text: str) -> None:
     with pytest.raises(FilterMistakeError, match=r"ticks: write|text: "):
-        filter_of("debug", "", ticks, "", text)
+        filter_of("debug", "", ticks, "", "", text)
 
 
 def test_rates_come_from_counts_and_survive_quick_looks() -> None:

@@ -13,9 +13,9 @@ from tests.harness.runs import Launched, PortBlock, write_files
 from tests.programs.garden_system import garden_system
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="package")
 def shared_garden(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Garden]:
-    """A run, a console and a browser that all tests of a worker share."""
+    """A run, a console and a browser that the tests of this folder share; later tests may use event loops again."""
     program = shutil.which(CHROMIUM)
     if not program:
         pytest.skip(f"needs {CHROMIUM}: apt install {CHROMIUM}")

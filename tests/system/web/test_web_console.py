@@ -163,6 +163,7 @@ def test_the_log_follows_and_filters(garden: Garden) -> None:
 
 
 def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> None:
+    garden.run.until_true(lambda: garden.tick() > 40, "the beginning of the recording is as other tests expect it")
     page = garden.open("/view?run=garden")
     canvas = page.locator("canvas")
     expect(page.locator("[data-name=headline]")).to_contain_text("mower <img")
@@ -183,8 +184,34 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     y_px = box["y"] + box["height"] / 2 - place[1] * scale
     page.mouse.click(x_px, y_px)
     expect(page.locator("[data-name='canvas a/image'] canvas")).to_have_attribute("data-picture", re.compile(r"\d+"))
+    page.mouse.move(x_px, y_px)
+    page.mouse.down()
+    page.mouse.move(box["x"] + box["width"] / 2 + 3 * scale, box["y"] + box["height"] / 2 - scale, steps=3)
+    page.mouse.up()
     page.get_by_role("button", name="pause or resume").click()
-    expect(page.locator("[data-name=state]")).to_have_text("running")
+    garden.run.until_true(lambda: "dragged mower" in garden.run.text, "the mower was dragged")
+    visited = re.search(r"visits \(([-\d.]+), ([-\d.]+)\), dragged mower", garden.run.text)
+    assert visited
+    assert [float(each) for each in visited.groups()] == pytest.approx((3.0, 1.0), abs=0.1)
+
+
+def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
+    page = garden.open("/view?run=garden")
+    canvas = page.locator("canvas")
+    expect(canvas).to_have_attribute("data-frames", re.compile(r"[1-9]"))
+    scale = float(canvas.get_attribute("data-scale") or 0)
+
+    def wait_for_scale(wanted: float) -> None:
+        page.wait_for_function(f"() => Math.abs(document.querySelector('canvas').dataset.scale - {wanted}) < 0.03")
+
+    canvas.focus()
+    page.keyboard.press("+")
+    wait_for_scale(1.2 * scale)
+    page.keyboard.press("0")
+    wait_for_scale(scale)
+    canvas.hover()
+    page.mouse.wheel(0, -100)
+    wait_for_scale(1.15 * scale)
 
 
 def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:

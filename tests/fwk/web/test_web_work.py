@@ -1,0 +1,109 @@
+"""Work that pages do: commands in child processes, settings for later runs, figures of processes."""
+
+import asyncio
+import os
+from pathlib import Path
+from typing import Any, cast
+
+import pytest
+
+from fwk.control.client import RefusedError
+from fwk.web.access import Role
+from fwk.web.file_settings import differing
+from fwk.web.job import Job
+from fwk.web.pages.runs import launch_files
+from fwk.web.run_link import RunLink
+from fwk.web.usage import Usage
+from fwk.web.view import RunAccess
+
+
+def test_a_command_tells_its_output_and_its_end() -> None:
+    told: list[str] = []
+    job = Job(["python", "-c", "print('half'); import sys; sys.exit('whole')"], told.append)
+    assert job.code is None
+    assert asyncio.run(job.run()) == job.code == 1
+    assert sorted("".join(told).split()) == ["half", "whole"]
+
+
+def test_a_command_is_ended_as_by_ctrl_c() -> None:
+    async def begin_and_end() -> tuple[int, str]:
+        told: list[str] = []
+        begun = asyncio.Event()
+
+        def take(text: str) -> None:
+            told.append(text)
+            begun.set()
+
+        script = "try:\n print('begun')\n import time; time.sleep(60)\nexcept KeyboardInterrupt: print('ended')"
+        job = Job(["python", "-c", script], take)
+        running = asyncio.ensure_future(job.run())
+        await begun.wait()
+        job.end()
+        return await running, "".join(told)
+
+    code, text = asyncio.run(begin_and_end())
+    assert code == 0
+    assert text.startswith("begun")
+    assert text.endswith("ended\n")
+
+
+class Run:
+    """Stands for the connection to a run."""
+
+    def __init__(self, file: Path, refuses: bool = False) -> None:
+        self._file = file
+        self._refuses = refuses
+        self.asked: list[dict[str, Any]] = []
+
+    async def about(self) -> dict[str, Any]:
+        return {"file": str(self._file)}
+
+    async def ask(self, verb: str, **fields: Any) -> dict[str, Any]:
+        self.asked.append({"verb": verb, **fields})
+        if self._refuses:
+            raise RefusedError("too large")
+        return {"tick": 7}
+
+
+def access(run: Run, role: Role = Role.STEER) -> RunAccess:
+    return RunAccess(cast(RunLink, run), role)
+
+
+def test_settings_are_kept_for_later_runs_of_this_machine(tmp_path: Path) -> None:
+    run = Run(tmp_path / "garden.yaml")
+    asyncio.run(access(run).set(["a/mower.radius_m=3.5"], save=True))
+    assert "radius_m: 3.5" in (tmp_path / "garden.host.yaml").read_text()
+    assert [each.get("check", False) for each in run.asked] == [True, False]
+    assert run.asked[1]["origin"].endswith("garden.host.yaml")
+
+
+def test_refused_settings_are_not_kept(tmp_path: Path) -> None:
+    run = Run(tmp_path / "garden.yaml", refuses=True)
+    with pytest.raises(RefusedError, match="too large"):
+        asyncio.run(access(run).set(["a/mower.radius_m=50"], save=True))
+    with pytest.raises(RefusedError, match="for reading only"):
+        asyncio.run(access(run, Role.READ).set(["a/mower.radius_m=3"], save=True))
+    assert list(tmp_path.iterdir()) == []
+    assert len(run.asked) == 1
+
+
+def test_settings_that_differ_from_the_launch_file_are_found() -> None:
+    rows = [{"component": "a/b", "setting": name, "value": 1.0} for name in ("same", "other", "new")]
+    found = differing(rows, {("a/b", "same"): 1.0, ("a/b", "other"): 2.0})
+    assert found == [{"component": "a/b", "setting": "other", "value": 1.0, "in_file": 2.0}]
+
+
+def test_processes_have_figures_as_long_as_they_exist() -> None:
+    usage = Usage()
+    usage.measure([os.getpid()])
+    found = usage.measure([os.getpid(), 0, 2**22 + 1])
+    assert [*found] == [os.getpid()]
+    assert found[os.getpid()].memory_mb > 5
+
+
+def test_launch_files_are_listed_without_those_of_hosts(tmp_path: Path) -> None:
+    (tmp_path / "launch").mkdir()
+    for name in ("b.yaml", "a.yaml", "a.host.yaml", "notes.txt"):
+        (tmp_path / "launch" / name).touch()
+    assert launch_files(tmp_path) == ["a.yaml", "b.yaml"]
+    assert launch_files(tmp_path / "nowhere") == []
