@@ -12,6 +12,7 @@ from fwk.component.channels import Reads, Writes
 from fwk.component.child_process import ChildProcess, ProgramError
 from fwk.component.component import Component
 from fwk.component.config import Config
+from fwk.component.file_process import FileProcess
 from fwk.component.program_coding import CODINGS, FINAL, INIT, ProgramRequest
 from fwk.lcm.messages import MessageError, type_named
 
@@ -26,8 +27,10 @@ class ProgramConfig(Config):
 
     command: list[str] = Field(min_length=1, frozen=True)
     """The program and its arguments; words with a slash that are files are looked for beside the launch file, too."""
-    coding: Literal["json", "lcm"] = Field("json", frozen=True)
-    """`json`: one line of JSON for each iteration and each answer; `lcm`: LCM messages, for programs with fwk.h."""
+    coding: Literal["json", "lcm", "files"] = Field("json", frozen=True)
+    """`json`: one line of JSON for each iteration and each answer; `lcm`: LCM messages, for programs with fwk.h;
+    `files`: the program is started for each iteration, reads `input.json` and writes `output.json`.
+    """
     answer_timeout_s: float | None = Field(None, gt=0.0)
     """Wall time after which a program without an answer has failed; by default no limit."""
     repeatable: bool = Field(False, frozen=True)
@@ -60,10 +63,13 @@ class Program(Component):
         self._readers = {name: port for name, port in ports.items() if isinstance(port, Reads)}
         self._writers = {name: port for name, port in ports.items() if isinstance(port, Writes)}
         self._coding = CODINGS[self.config.coding]
-        self._child = ChildProcess(self.config.command)
+        self._is_started_again = self.config.coding == "files"
+        kind = FileProcess if self._is_started_again else ChildProcess
+        self._child: FileProcess | ChildProcess = kind(self.config.command)
         about = {"name": self.name, "period_s": self.clock.period_s, "settings": self.config.settings}
         self._news: dict[str, Any] = {**about, "reads": [*self._readers], "writes": [*self._writers]}
-        self._exchange(INIT)
+        if not self._is_started_again:
+            self._exchange(INIT)
 
     def loop(self) -> None:
         """Sends the inputs of the iteration and writes the messages of the answer."""
@@ -71,15 +77,18 @@ class Program(Component):
 
     def config_changed(self) -> None:
         """Sends changed settings with the next request."""
-        self._news = {"settings": self.config.settings}
+        self._news |= {"settings": self.config.settings}
 
     def finalize(self) -> None:
         """Sends the last request, and ends the program."""
-        self._exchange(FINAL)
+        if not self._is_started_again:
+            self._exchange(FINAL)
         self._child.close()
 
     def _exchange(self, stage: str) -> None:
-        news, self._news = self._news, {}
+        news = self._news
+        if not self._is_started_again:  # a program that is started again knows nothing of the requests before
+            self._news = {}
         period_us = round(self.clock.period_s * US_PER_S)
         readers = {} if stage == FINAL else self._readers  # the last iteration has had them
         asked = ProgramRequest(stage, self.clock.tick, self.clock.now_us, period_us, readers, news)

@@ -134,7 +134,7 @@ class LcmFrames:
         return made
 
 
-CODINGS: dict[str, Coding] = {"json": JsonLines(), "lcm": LcmFrames()}
+CODINGS: dict[str, Coding] = {"json": JsonLines(), "lcm": LcmFrames(), "files": JsonLines()}
 
 
 def _message(writer: Writes[Any], port: str, members: Any) -> Any:

@@ -121,6 +121,46 @@ def test_programs_that_cannot_start_are_named(tmp_path: Path) -> None:
     assert missing_program(["sh", "./other"], []) == ""
 
 
+WITH_FILES = """
+total=$(cat total 2>/dev/null || echo 0)
+x=$(sed -n 's/.*"x_m": \\([0-9]*\\).*/\\1/p' input.json)
+total=$((total + ${x:-0}))
+echo $total > total
+echo "{\\"motor\\": {\\"vx_m_s\\": $total}}" > output.json
+"""
+
+
+def test_a_program_with_files_is_started_for_each_iteration() -> None:
+    bench = bench_of("sh", "-c", WITH_FILES, coding="files", settings={"a": 1})
+    folder = bench.component._child._folder
+    for x_m in (1.0, 20.0):
+        bench.odometry.put(x_m=x_m)
+        bench.iterate()
+    asked = json.loads((folder / "input.json").read_text())
+    assert (asked["tick"], asked["stage"], asked["settings"], asked["writes"]) == (2, "think", {"a": 1}, ["motor"])
+    bench.iterate()
+    bench.finalize()
+    assert [each.vx_m_s for each in bench.motor.sent] == [1.0, 21.0, 21.0]
+    assert not folder.exists()
+
+
+@pytest.mark.parametrize(
+    ("script", "reason"),
+    [
+        ("exit 3", "ended with exit code 3"),
+        ("true", "ended without a file output.json; {} in it writes no message"),
+        ("sleep 30", "gave no answer within 0.2 s"),
+        ("echo hello > output.json", "the answer 'hello' is not a JSON object"),
+        ("head -c 70000000 /dev/zero > output.json", f"answers with more than {ANSWER_BYTES_MAX >> 20} MiB"),
+    ],
+)
+def test_failures_of_programs_with_files_are_named(script: str, reason: str) -> None:
+    bench = bench_of("sh", "-c", script, coding="files", answer_timeout_s=0.2 if "within" in reason else None)
+    with pytest.raises(ProgramError, match=re.escape(reason)):
+        bench.iterate()
+    assert not bench.component._child._folder.exists()
+
+
 def test_replay_runs_only_programs_called_repeatable() -> None:
     assert Program.unrepeatable(ProgramConfig(command=["a", "b"])) == "it runs the program 'a b'"
     assert Program.unrepeatable(ProgramConfig(command=["a"], repeatable=True)) == ""
