@@ -143,6 +143,9 @@ def test_settings_change_live_and_say_why_not(garden: Garden) -> None:
     with Client(supervisor_address(garden.ports.bus)) as run:
         (setting,) = run.ask("settings", names=["a/mower.radius_m"])["settings"]
     assert (setting["value"], setting["origin"].partition(",")[0]) == (3.5, "fwk web")
+    page.get_by_role("button", name="difference to the launch file").click()
+    expect(page.get_by_text("in the launch file: 2.0")).to_be_visible()
+    expect(page.get_by_label("a/mower.motto")).to_have_count(0)
 
 
 def test_the_log_follows_and_filters(garden: Garden) -> None:
@@ -159,7 +162,22 @@ def test_the_log_follows_and_filters(garden: Garden) -> None:
     page.get_by_label("text (regular").fill("")
     page.get_by_label("component or pattern").fill("a/*")
     expect(lines.filter(has_text="look here")).to_have_count(0)
-    expect(lines.filter(has_text="grass").first).to_be_visible()
+    first = lines.filter(has_text="grass").first
+    tick = first.get_attribute("data-tick")
+    first.get_by_role("link", name=f"tick {tick} of the recording").click()
+    expect(page.locator("[data-name=tick]")).to_have_text(f"tick {tick}")
+    expect(page.locator("[data-name=log] > div").last).to_contain_text("grass")
+
+
+def test_runs_are_seen_side_by_side(garden: Garden) -> None:
+    page = garden.open("/runs?run=garden")
+    card = page.locator(f"[data-name='run {garden.name}']")
+    expect(card).to_contain_text(f"garden, {CROWD + 5} components")
+    expect(card).to_contain_text(re.compile(r"running\s*tick \d+"))
+    page.get_by_role("combobox", name="launch file").click()
+    page.get_by_role("option", name="garden.yaml").click()
+    card.get_by_role("link", name=garden.name).click()
+    expect(row(page, "a/mower")).to_contain_text("running")
 
 
 def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> None:
