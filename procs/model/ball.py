@@ -9,13 +9,13 @@ class BallModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
     radius_m: PositiveFloat = 0.11
-    """Rule book of 2016: a circumference of 0.68 to 0.70 m."""
+    """Radius in metres. Rule book of 2016: a circumference of 0.68 to 0.70 m."""
     mass_kg: PositiveFloat = 0.43
-    """Rule book of 2016: 0.41 to 0.45 kg."""
+    """Mass in kilograms. Rule book of 2016: 0.41 to 0.45 kg."""
     sliding_m_s2: PositiveFloat = 3.0
-    """Deceleration while the ball slides, as it does after a kick. TIGERs: 3.0, ER-Force: 2.8 to 3.9."""
+    """Deceleration in m/s² while the ball slides, as after a kick. TIGERs: 3.0, ER-Force: 2.8 to 3.9."""
     rolling_m_s2: PositiveFloat = 0.4
-    """Deceleration while it rolls. Small size league: 0.26 to 0.5; nothing is published for the middle size league."""
+    """Deceleration in m/s² of the rolling ball. Small size league: 0.26 to 0.5; none is published for this league."""
     bounce: float = Field(default=0.6, ge=0.0, le=1.0)
     """Share of the vertical speed after a bounce on carpet. FIFA: at least 0.82 on steel; carpet takes some."""
     inertia: PositiveFloat = 2 / 3

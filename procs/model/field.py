@@ -42,56 +42,56 @@ class Field(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
     length_m: float = 22.0
-    """A: along x, over the outer edges of the goal lines."""
+    """Length A of the field along x, over the outer edges of the goal lines, in metres."""
     width_m: float = 14.0
-    """B: along y, over the outer edges of the touch lines."""
+    """Width B of the field along y, over the outer edges of the touch lines, in metres."""
     penalty_area_width_m: float = 6.9
-    """C: along y."""
+    """Width C of the penalty areas along y, in metres."""
     penalty_area_depth_m: float = 2.25
-    """E: from the goal line into the field."""
+    """Depth E of the penalty areas from the goal line into the field, in metres."""
     goal_area_width_m: float = 3.9
-    """D: along y."""
+    """Width D of the goal areas along y, in metres."""
     goal_area_depth_m: float = 0.75
-    """F: from the goal line into the field."""
+    """Depth F of the goal areas from the goal line into the field, in metres."""
     corner_radius_m: float = 0.75
-    """G: of the arcs in the corners."""
+    """Radius G of the quarter circles in the corners, in metres."""
     circle_diameter_m: float = 4.0
-    """H: of the centre circle."""
+    """Diameter H of the centre circle, in metres."""
     penalty_mark_distance_m: float = 3.6
-    """I: from the goal line to the penalty mark."""
+    """Distance I from the goal line to the penalty mark, in metres."""
     mark_diameter_m: float = 0.15
-    """J: of the centre mark, the penalty marks and the restart marks."""
+    """Diameter J of the centre mark, the penalty marks and the restart marks, in metres."""
     line_width_m: float = 0.125
-    """K: of every line."""
+    """Width K of every line, in metres."""
     border_m: float = 1.0
-    """L: from the field to the low wall around it."""
+    """Distance L from the field to the low wall around it, in metres."""
     team_area_width_m: float = 1.0
-    """M: of the technical team areas beside the border."""
+    """Width M of the technical team areas beside the border, in metres."""
     team_area_length_m: float = 7.5
-    """N: of the technical team areas."""
+    """Length N of the technical team areas, in metres."""
     ramp_length_m: float = 1.0
-    """O: of the ramps into the team areas."""
+    """Length O of the ramps into the team areas, in metres."""
     ramp_width_m: float = 0.5
-    """P: of the ramps into the team areas."""
+    """Width P of the ramps into the team areas, in metres."""
     restart_offset_m: float = 3.5
-    """Q: from the middle of the field to the restart marks beside it."""
+    """Distance Q from the middle of the field to the restart marks beside it, in metres."""
     goal_width_m: float = 2.4
-    """Between the posts."""
+    """Clear width of the goals between the posts, in metres."""
     goal_depth_m: float = 0.6
-    """From the outer edge of the goal line to the net."""
+    """Depth of the goals from the outer edge of the goal line to the net, in metres."""
     goal_height_m: float = 1.0
-    """Under the bar."""
+    """Clear height of the goals under the bar, in metres."""
     post_diameter_m: float = 0.125
-    """Of the goal posts."""
+    """Diameter of the round goal posts, in metres."""
 
     @property
     def half_length_m(self) -> float:
-        """From the centre to the outer edge of a goal line."""
+        """Distance from the centre to the outer edge of a goal line, in metres."""
         return self.length_m / 2
 
     @property
     def half_width_m(self) -> float:
-        """From the centre to the outer edge of a touch line."""
+        """Distance from the centre to the outer edge of a touch line, in metres."""
         return self.width_m / 2
 
     def segments(self) -> list[Segment]:

@@ -21,21 +21,21 @@ class RobotModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
 
     radius_m: PositiveFloat = 0.25
-    """Of the body. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
+    """Radius of the round body, in metres. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
     height_m: PositiveFloat = 0.6
-    """Of the body; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
+    """Height of the body, in metres; the team markers are below. Rule book of 2016: 0.40 to 0.80 m."""
     mass_kg: PositiveFloat = 35.0
-    """The robots of simatch have 31 to 39 kg."""
+    """Mass of the whole robot, in kilograms. The robots of simatch have 31 to 39 kg."""
     wheel_distance_m: PositiveFloat = 0.2
-    """From the robot's middle to each wheel."""
+    """Distance from the robot's middle to each wheel, in metres."""
     wheel_limit_m_s: PositiveFloat = 3.5
-    """Highest rim speed."""
+    """Highest rim speed of the wheels, in m/s."""
     mouth_half_angle_deg: PositiveFloat = 30.0
     """The front is cut off between these angles to the left and the right of forward."""
 
     @property
     def mouth_m(self) -> float:
-        """From the robot's middle to the plane of the mouth."""
+        """Distance from the robot's middle to the plane of the mouth, in metres."""
         return self.radius_m * math.cos(math.radians(self.mouth_half_angle_deg))
 
     def held_ball_m(self, ball: BallModel) -> float:
@@ -56,7 +56,7 @@ class Player(BaseModel):
     team: Literal["cyan", "magenta"]
     """Cyan defends the goal at negative x."""
     number: PositiveInt
-    """On the robot's back; no two players of a team have the same."""
+    """Number on the robot's back; no two players of a team have the same."""
 
 
 Players = dict[str, Player]

@@ -18,7 +18,7 @@ ORANGE: Bgr = (22, 108, 236)
 CYAN: Bgr = (214, 196, 40)
 MAGENTA: Bgr = (186, 48, 198)
 COLOURS: dict[str, Bgr] = {"cyan": CYAN, "magenta": MAGENTA}
-"""Of the markers of the teams."""
+"""Colour of each team's markers."""
 FLOOR: Bgr = (124, 120, 112)
 
 Hsv = tuple[int, int, int]

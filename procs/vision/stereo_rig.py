@@ -17,17 +17,17 @@ class StereoRig(Config):
     """The pair as it was calibrated; camera and detector use the same."""
 
     width_px: int = Field(default=400, ge=64, le=1600)
-    """Of each frame."""
+    """Width of each frame, in pixels."""
     height_px: int = Field(default=200, ge=32, le=1200)
-    """Of each frame."""
+    """Height of each frame, in pixels."""
     focal_px: float = Field(default=300.0, gt=0.0)
     """Focal length: a thing as wide as it is far away is so wide in the picture."""
     baseline_m: float = Field(default=0.16, gt=0.0)
-    """Between the two cameras, which look along the robot's x axis."""
+    """Distance between the two cameras, which look along the robot's x axis."""
     forward_m: float = 0.1
-    """From the robot's middle to the cameras."""
+    """Distance from the robot's middle forward to the cameras."""
     height_m: float = Field(default=0.5, gt=0.0)
-    """Of the cameras above the ground."""
+    """Height of the cameras above the ground."""
 
     @property
     def columns(self) -> Floats:

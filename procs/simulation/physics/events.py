@@ -29,7 +29,7 @@ class Event(NamedTuple):
 
 
 class LineJudge:
-    """Sees the ball leave the field, once each time."""
+    """Reports the ball's leaving of the field, once each time."""
 
     def __init__(self, field: Field, ball_radius_m: float) -> None:
         self.ball_in_field = True

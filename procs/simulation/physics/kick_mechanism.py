@@ -28,7 +28,7 @@ class Push(NamedTuple):
     """Effect of a kicker on the ball in a step."""
 
     change_m_s: pymunk.Vec2d
-    """Of the ball's velocity, world frame."""
+    """Change of the ball's velocity, world frame."""
     kicked: bool
     lift_m_s: float = 0.0
     """Vertical speed that a lob gives to the ball."""
