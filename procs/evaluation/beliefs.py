@@ -18,7 +18,7 @@ NEAR_M = 4.0
 MOVING_M_S = 0.3
 """A ball slower than that counts as resting."""
 SETTLED_S = 0.3
-"""A ball without a touch for that time rolls freely."""
+"""A ball without a touch or a bounce for that time rolls freely."""
 _CONTACT_S = 0.1
 _INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
 _START_S = 4.0  # until all robots know their places
@@ -29,6 +29,7 @@ _DRIVING_M_S = 0.5
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 _KICK_M_S = 2.0
 _JUMP_M = 0.2
+_BOUNCE_M_S = 1.0  # no ball that rolls or slides changes its velocity by so much in a tick
 _KNOWN_SHARE = 0.1
 
 Samples = dict[str, Floats]
@@ -64,11 +65,11 @@ def _models(piece: Piece) -> Iterator[tuple[str, int, world_model_t, ground_trut
 def _ball_samples(piece: Piece) -> Samples:
     seen: list[_Ball] = []
     known: list[bool] = []
-    placed = _placed(piece)
+    placed, bounced = _placed(piece), _bounced(piece)
     for robot, tick, model, truth in _models(piece):
         known.append(model.ball.known)
         if model.ball.known and tick not in placed:
-            seen.append(_ball(piece, robot, tick, model, truth))
+            seen.append(_ball(piece, robot, tick, model, truth, tick in bounced))
 
     def of(value: str, *, case: list[bool]) -> Floats:
         return np.array([getattr(each, value) for each, asked in zip(seen, case, strict=True) if asked], np.float64)
@@ -104,7 +105,17 @@ def _placed(piece: Piece) -> set[int]:
     return ticks
 
 
-def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: ground_truth_t) -> _Ball:
+def _bounced(piece: Piece) -> set[int]:
+    """Returns the ticks in which, or shortly before which, a wall, a post or a net turned or stopped the ball."""
+    ticks: set[int] = set()
+    for (_, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
+        change_m_s = math.hypot(truth.ball_vx_m_s - before.ball_vx_m_s, truth.ball_vy_m_s - before.ball_vy_m_s)
+        if change_m_s > _BOUNCE_M_S:
+            ticks.update(range(tick, tick + round(SETTLED_S / piece.period_s) + 1))
+    return ticks
+
+
+def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: ground_truth_t, bounced: bool) -> _Ball:
     own, ball = piece.robot(tick, robot), model.ball
     error = np.array((ball.x_m - truth.ball_x_m, ball.y_m - truth.ball_y_m))
     covariance = np.array(ball.covariance)[:2, :2]
@@ -116,7 +127,7 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
-        not piece.touched_by(tick, SETTLED_S),
+        not bounced and not piece.touched_by(tick, SETTLED_S),
     )
 
 

@@ -73,6 +73,15 @@ def test_ball_errors_are_those_of_the_estimate() -> None:
     assert not len(found["ball resting, position"])
 
 
+def test_ball_does_not_roll_freely_just_after_a_bounce() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)], ticks=20)
+    for tick in range(FIRST + 10, FIRST + 20):
+        made.truth[tick].ball_vx_m_s = -1.0
+    made.by_robot["world_model"] = {"cyan1": {tick: model((truth.ball_x_m, 0.1)) for tick, truth in made.truth.items()}}
+    assert len(believed(made)["ball rolling freely, position"]) == 20 - 7, "0.3 s and the tick of the bounce"
+    assert len(believed(made)["ball moving, position"]) == 20
+
+
 @pytest.mark.parametrize(("toucher", "case"), [("cyan1", "held by itself"), ("magenta1", "held by another")])
 def test_claims_are_counted_by_the_holder_of_the_ball(toucher: str, case: str) -> None:
     made = piece([robot("cyan1", 0.0, 1.0), robot("magenta1", 9.0, 0.0)])
