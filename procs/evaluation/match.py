@@ -10,6 +10,7 @@ from fwk.testing.campaign import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import Piece, piece_of
+from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
 from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, ratio, root_ratio, rows_of
 from procs.model.frames import Floats
@@ -36,10 +37,9 @@ def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
     try:
-        from procs.evaluation.plots import plot  # takes a second, which starts of a match would pay, too
+        plot(rows, folder / "measures.png")
     except ImportError:
         return f"{as_text(rows)}\nno picture: matplotlib is not installed; type: {INSTALL}"
-    plot(rows, folder / "measures.png")
     return as_text(rows)
 
 

@@ -10,8 +10,12 @@ from procs.evaluation.table import Row
 
 
 def plot(rows: Sequence[Row], file: Path) -> None:
-    """Draws the measures that have a finite value, a panel for each unit, as PNG."""
-    from matplotlib.figure import Figure
+    """Draws the measures that have a finite value, a panel for each unit, as PNG.
+
+    Raises:
+        ImportError: matplotlib is not installed.
+    """
+    from matplotlib.figure import Figure  # takes half a second, which each start of a match would pay, too
 
     known = sorted((row for row in rows if np.isfinite(row.value)), key=lambda row: row.unit)
     panels = [list(group) for _, group in groupby(known, key=lambda row: row.unit)]

@@ -33,7 +33,6 @@ def test_report_of_two_short_pieces(tmp_path: Path) -> None:
 
 def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    monkeypatch.delitem(sys.modules, "procs.evaluation.plots", raising=False)
     text = report([{each.name: [] for each in MEASURES}], tmp_path)
     assert text.endswith("no picture: matplotlib is not installed; type: pip install 'fwk[eval]'")
     assert sorted(file.name for file in tmp_path.iterdir()) == ["table.csv", "table.json"]
