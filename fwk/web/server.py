@@ -24,8 +24,8 @@ from fwk.web.pages import board, devices, graph, log, plots, recordings, runs, s
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
 
-NICENESS = 10
-"""The console leaves the processors to the run where both need them."""
+NICENESS = 15
+"""The console leaves the processors to the run: where both need one, it gets about 3 % of it."""
 _RECONNECT_S = 30.0
 """A page survives so long without a sign of life, on a busy machine or while the browser sleeps; then it loads anew."""
 _BUILDERS: dict[str, Callable[[Frame], None]] = {

@@ -13,7 +13,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -185,10 +185,9 @@ def _browser(url: str, paths: list[str]) -> Iterator[list[Page]]:
     program = shutil.which(CHROMIUM)
     if program is None:
         raise RunFailedError(f"needs {CHROMIUM}: apt install {CHROMIUM}")
+    os.nice(_LOWEST)  # every thread of the browser inherits it
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for pid in _browser_processes(program):
-            os.setpriority(os.PRIO_PROCESS, pid, _LOWEST)
         opened = []
         for path in paths:
             page = browser.new_page(viewport={"width": 1280, "height": 800})
@@ -197,18 +196,6 @@ def _browser(url: str, paths: list[str]) -> Iterator[list[Page]]:
             opened.append(page)
         yield opened
         browser.close()
-
-
-def _browser_processes(program: str) -> list[int]:
-    """Returns the processes of the browser that this process has started."""
-    name = Path(program).name
-    return [pid for pid in accounting.descendants(os.getpid()) if name in _command(pid)]
-
-
-def _command(pid: int) -> str:
-    with suppress(OSError):
-        return Path(f"/proc/{pid}/cmdline").read_bytes().decode(errors="replace")
-    return ""
 
 
 if __name__ == "__main__":
