@@ -1,6 +1,7 @@
 """Reads and checks values of the command line: paces, durations, files, folders, lists of names."""
 
 import os
+import re
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ from fwk.clock import SECONDS_MAX, SPEED_MAX, SPEED_MIN
 _MANY = ("--only", "--without")
 _PART_MAX = 100_000.0
 """Largest limit of the parts of a recording, in any unit."""
+_LINE_END = re.compile(r"(?<!\n)\n(?=\S)")
+"""End of a line within a paragraph."""
 _LAUNCH_FILES = (".yaml", ".yml")
 
 
@@ -29,6 +32,15 @@ class SeveralNames(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         return super().parse_args(ctx, spread(args))
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """Writes the help with its paragraphs as wide as the terminal; brackets, as in `fwk[plot]`, are no markup."""
+        text = self.help
+        self.help = _LINE_END.sub(" ", text or "").replace("[", "\\[")
+        try:
+            super().format_help(ctx, formatter)
+        finally:
+            self.help = text
 
 
 def spread(arguments: list[str]) -> list[str]:

@@ -55,3 +55,10 @@ def test_choosing_commands_accept_several_names() -> None:
     result = CliRunner().invoke(app, ["check", "--only", "world/simulator", "world/referee", "one-robot.yaml"])
     assert result.exit_code == 0, result.output
     assert result.output.startswith("one-robot: 2 components")
+
+
+def test_help_names_extras_and_fills_its_lines(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    shown = [line.strip() for line in CliRunner().invoke(app, ["compress", "--help"]).stdout.splitlines()]
+    assert "Needs: pip install 'fwk[compress]'" in shown
+    assert "makes it a plain LCM log again, as lcm-logplayer needs it. The file that a run" in shown
