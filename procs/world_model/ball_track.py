@@ -24,7 +24,7 @@ _SECOND_SIGHT_US = 300_000
 _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _NEVER_US = -(1 << 60)
-_HELD_M = 0.02  # deviation of a held ball's place in the mouth
+_HELD_M = 0.03  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
 
 
