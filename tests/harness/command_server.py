@@ -7,6 +7,7 @@ at its end, how it ended.
 
 import ctypes
 import gc
+import inspect
 import json
 import os
 import selectors
@@ -21,6 +22,7 @@ from typing import Any, NoReturn
 import fwk
 import fwk.cli  # limits linear algebra to one thread before numpy is imported, as in the commands
 from fwk.host.process import die_with_parent
+from fwk.plan.packages import component_packages
 
 MARK = "FWK_TEST_RUN"
 """Variable of the environment by which the harness finds the processes of a run."""
@@ -125,6 +127,8 @@ def import_all() -> None:
     os.environ["SPT_NOENV"] = "1"  # keeps the environment where /proc/PID/environ shows it
     import_module("setproctitle").getproctitle()  # finds the title's memory, which it cannot once `carry_out` has begun
     del os.environ["SPT_NOENV"]
+    component_packages()  # these two remember what they read of the disk
+    inspect.getmodule(inspect.currentframe())
     gc.collect()
     gc.freeze()
 

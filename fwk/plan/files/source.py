@@ -14,6 +14,8 @@ from fwk.model.errors import Problems
 _HALF = re.compile("[\ud800-\udfff]")
 VALUES_MAX = 100_000
 """Largest number of values of a file with its aliases expanded; more is a mistake or an attack."""
+FLOW_DEPTH_MAX = 100
+"""Most brackets inside one another; the reader's time grows with the square of their number."""
 BYTES_MAX = 1_000_000
 """Largest size of a file; reading it takes some seconds."""
 
@@ -56,6 +58,11 @@ class _Loader(yaml.SafeLoader):
     """YAML 1.2's plain values: `on` and `12:30` are text, `1e-3` is a number, `010` is ten."""
 
     yaml_implicit_resolvers = {}
+
+    def fetch_flow_collection_start(self, TokenClass: Any) -> None:  # noqa: N803 - the library's name
+        if self.flow_level >= FLOW_DEPTH_MAX:
+            raise _TooDeepError
+        super().fetch_flow_collection_start(TokenClass)
 
 
 _TAG = "tag:yaml.org,2002:"
@@ -133,7 +140,7 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
         problems.add(
             f"{shown}:{line}", "", f"this is not valid YAML: character {chr(error.character)!r} is not allowed"
         )
-    except RecursionError:
+    except (RecursionError, _TooDeepError):
         problems.add(f"{shown}:1", "", "values are nested too deeply; use a few levels")
     except _TooManyValuesError:
         problems.add(f"{shown}:1", "", f"more than {VALUES_MAX} values when its aliases are written out; use fewer")
@@ -141,6 +148,10 @@ def _parse(text: str, shown: str, problems: Problems) -> Node | None:
         if loader:
             loader.dispose()
     return None
+
+
+class _TooDeepError(Exception):
+    pass
 
 
 class _TooManyValuesError(Exception):

@@ -63,6 +63,7 @@ from tests.fwk.plan.plan_mistakes import Broken, expected, rows, said
     ),
     Broken("it.yaml:1: it should be a mapping with keys such as 'name: value'", "[a, b]"),
     Broken("it.yaml:1: values are nested too deeply; use a few levels", f"name: {'[' * 3000}{']' * 3000}"),
+    Broken("it.yaml:1: values are nested too deeply; use a few levels", f"name: {'[' * 101}{']' * 101}"),
     Broken(
         "it.yaml:1: more than 100000 values when its aliases are written out; use fewer",
         "a0: &a0 [1, 2, 3, 4, 5, 6, 7, 8, 9]\n"
