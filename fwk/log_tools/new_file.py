@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from fwk.lcm.event_log import LogError
+from fwk.lcm.log_parts import exists, remove_parts
 from fwk.recording.indexed_log import IndexedLogWriter
 from fwk.recording.log_index import index_path
 
@@ -50,6 +51,8 @@ def new_log(path: Path, replace: bool) -> Iterator[IndexedLogWriter]:
         """Ends the work; a recording would go on without messages."""
         raise LogError(f"{path}: cannot be written: the disk is full, or failed")
 
+    if exists(path) and not replace:
+        raise LogError(f"{path}: exists already; choose another name, or replace it with --force")
     with new_file(path, replace) as part:
         index = index_path(part)
         try:
@@ -57,6 +60,7 @@ def new_log(path: Path, replace: bool) -> Iterator[IndexedLogWriter]:
                 yield log
             if not log.events:
                 raise LogError(f"{path}: not written: no event would be in it")
+            remove_parts(path)  # of the log that is replaced
             index_path(path).unlink(missing_ok=True)
             if index.exists():
                 os.replace(index, index_path(path))

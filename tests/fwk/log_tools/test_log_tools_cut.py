@@ -10,10 +10,11 @@ from typer.testing import CliRunner
 
 from fwk.cli.commands import app
 from fwk.lcm.envelope import STAMP
-from fwk.lcm.event_log import LogError, LogReader
+from fwk.lcm.event_log import LogError, LogReader, LogWriter
 from fwk.log_tools.cut import cut
 from fwk.log_tools.selection import Selection
 from fwk.recording.log_info import log_info
+from fwk.recording.part_compressor import compress_part
 from fwk.recording.replay.recording import Recording, RecordingError
 from lcmtypes.core import excerpt_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, channels_of, heard, recording
@@ -161,3 +162,19 @@ def test_a_full_disk_ends_the_work_without_a_file(tmp_path: Path, small_disk: Ca
     result = CliRunner().invoke(app, ["filter", str(log), "--channels", "*", "-o", str(disk / "out")])
     assert (result.exit_code, list(disk.iterdir())) == (2, [])
     assert result.stderr == f"error: {disk}/out: cannot be written: the disk is full, or failed\n"
+
+
+def test_a_new_log_replaces_all_parts_of_the_old_one(tmp_path: Path) -> None:
+    out = tmp_path / "out.lcm"
+    with LogWriter(out, pytest.fail) as old:
+        for number in range(4):
+            old.append("old", b"%d" % number, number)
+            if number < 3:
+                old.split()
+    compress_part(out)
+    log = recording(tmp_path / "log.lcm")
+    with pytest.raises(LogError, match="exists already"):
+        cut(log, out, Selection())
+    cut(log, out, Selection(), replace=True)
+    assert channels_of(out) == channels_of(log)
+    assert not list(tmp_path.glob("out.lcm.*[!x]"))
