@@ -24,6 +24,7 @@ _TOUCHED_M = 0.4
 _BENCH_M = 8.0  # from the halfway line
 _PASSED_S = 1.0  # after a pass the passer leaves the ball to the receiver
 _PASSED_M_S = 1.5
+_SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when the robot turns
 _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has been taken
 _NEAR_M = 1.0
 
@@ -41,6 +42,7 @@ class Tactics:
         self._receiver = ""  # of the own set piece
         self._barred_s = 0.0
         self._passed_s = 0.0
+        self._held_s = math.inf  # since the ball was caught
 
     @property
     def barred(self) -> bool:
@@ -49,6 +51,8 @@ class Tactics:
 
     def decide(self, view: View, game: Game, job: Job, holds_ball: bool, duration_s: float) -> Order:
         """Returns the order for this tick, `duration_s` after the last."""
+        self._held_s = self._held_s + duration_s if holds_ball else 0.0
+        holds_ball = self._held_s >= _SETTLED_S
         self._play.watch(view, holds_ball, duration_s)
         if game.stopped:
             self._laid = view.ball.place

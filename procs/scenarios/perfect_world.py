@@ -7,6 +7,9 @@ from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, r
 from procs.behaviour.roles import ABSENT
 from procs.model.robot import team_of
 
+_ROUNDING_M2 = 1e-8
+"""A covariance without noise is that of rounding."""
+
 
 class PerfectWorldModelConfig(Config):
     """Standard deviations of the errors."""
@@ -45,6 +48,8 @@ class PerfectWorldModel(Component):
         ball.x_m, ball.y_m = truth.ball_x_m + config.ball_sd_m * noise[3], truth.ball_y_m + config.ball_sd_m * noise[4]
         ball.vx_m_s = truth.ball_vx_m_s + config.ball_velocity_sd_m_s * noise[5]
         ball.vy_m_s = truth.ball_vy_m_s + config.ball_velocity_sd_m_s * noise[6]
+        place_m2, velocity_m2_s2 = config.ball_sd_m**2 + _ROUNDING_M2, config.ball_velocity_sd_m_s**2 + _ROUNDING_M2
+        ball.covariance = np.diag([place_m2, place_m2, velocity_m2_s2, velocity_m2_s2]).tolist()
         model.ball = ball
         others = [each for each in truth.robots if each.name != robot]
         model.mates = [_estimate(each) for each in others if team_of(each.name) == team_of(robot)]

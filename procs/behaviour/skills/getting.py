@@ -41,17 +41,19 @@ class _Capture(Skill):
         self._held_s = self._held_s + scene.duration_s if scene.holds_ball else 0.0
         if self._held_s >= _SURE_S:
             return Step(dribble=True, status=Status.FINAL)
-        if not scene.view.ball.known and not scene.holds_ball:
+        if scene.holds_ball:  # the ball follows the robot, which stops before it has pulled the ball back
+            return Step(Drive(scene.view.own.place, scene.view.own.heading_rad), dribble=True)
+        if not scene.view.ball.known:
             return failed("the ball is unknown")
         return Step(self._approach(scene), dribble=self._near(scene))
 
     def _near(self, scene: Scene) -> bool:
-        return scene.holds_ball or math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M
+        return math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M
 
     def _wait(self, scene: Scene) -> Drive | None:
         """Returns the drive to the first place in the way of the ball; None if there is none in time."""
         own, ball = scene.view.own, scene.view.ball
-        stand = None if scene.holds_ball else self._plan.stand(ball, own, scene.duration_s)
+        stand = self._plan.stand(ball, own, scene.duration_s)
         if stand is None:
             return None
         excess_m_s = ball.speed_m_s - _KEPT_M_S
@@ -74,7 +76,7 @@ class GetBall(_Capture):
     def _approach(self, scene: Scene) -> Drive:
         own, ball = scene.view.own.place, scene.view.ball
         meeting = ballistics.meet(ball, own, scene.view.own.velocity_m_s).place
-        if not scene.holds_ball and any(math.dist(other.place, ball.place) < _HELD_M for other in scene.view.opponents):
+        if any(math.dist(other.place, ball.place) < _HELD_M for other in scene.view.opponents):
             goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
             return Drive(ahead(meeting, goal_rad, _PUSH_M), wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S)
         way_rad = bearing_rad(own, meeting)
@@ -83,7 +85,7 @@ class GetBall(_Capture):
             return Drive(ahead(meeting, scene.heading_rad, -_STAGING_M), scene.heading_rad, avoid_ball=True)
         facing_rad = bearing_rad(own, ball.place)
         turned = abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) < _FACING_RAD
-        if scene.set_piece and not turned and not scene.holds_ball:
+        if scene.set_piece and not turned:
             return Drive(ahead(ball.place, facing_rad, -_WAITING_M), facing_rad)
         return self._wait(scene) or drive_to(scene)
 

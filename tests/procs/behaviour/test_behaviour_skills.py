@@ -85,6 +85,13 @@ def test_rolling_ball_is_faced_where_it_comes_from() -> None:
     assert drive(GetBall().step(scene(seen))).heading_rad == pytest.approx(math.atan2(1.0, 3.0))
 
 
+def test_robot_stops_with_a_ball_that_it_has_just_caught() -> None:
+    own = robot("cyan2", 0.0, 0.0)._replace(velocity_m_s=Point(-1.0, 0.0))
+    caught = Intercept().step(scene(view(own, ball(0.33, 0.0, -1.3, 0.0)), holds_ball=True))
+    assert drive(caught) == Drive(own.place, 0.0)
+    assert caught.dribble
+
+
 def test_intercept_waits_on_the_balls_path_facing_it() -> None:
     wait = drive(Intercept().step(scene(view(robot("cyan2", -1.0, 0.6), ball(4.0, 0.0, -3.0, 0.0)))))
     assert -1.0 <= wait.place.x_m < 1.0

@@ -57,6 +57,13 @@ def test_open_goal_is_shot_beside_the_keeper() -> None:
     assert abs(order.place.y_m) > 0.4
 
 
+def test_ball_just_caught_settles_before_it_is_played() -> None:
+    tactics, seen = Tactics(FIELD), with_ball(3.0, 0.5)
+    skills = [tactics.decide(seen, PLAY, job(ATTACKER), holds, 0.05).skill for holds in (False, *[True] * 4)]
+    assert skills[:3] == ["get_ball"] * 3
+    assert skills[-1] != "get_ball"
+
+
 def test_robot_far_from_the_goal_dribbles_towards_the_goal() -> None:
     order = decide(with_ball(-3.0, 4.0), holds_ball=True)
     assert order.skill == "dribble"
