@@ -14,10 +14,12 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from fwk.cli.commands import app as fwk
+from fwk.cli.look import log
 from fwk.cli.look.bb import _message
 from fwk.cli.run import launch_command as launching
 from fwk.cli.run.launch_command import app as fwk_launch
 from fwk.cli.steer.send import made
+from fwk.control import address
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
@@ -47,6 +49,8 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(launching, "run", run)
+    monkeypatch.setattr(address, "running", list)
+    monkeypatch.setattr(log, "running", list)
     monkeypatch.setattr(server, "serve", run)
     for command in ("view", "foxglove"):  # they would follow another user's run on this machine
         monkeypatch.setattr(f"fwk.cli.look.{command}.listening", run)
