@@ -152,6 +152,8 @@ def find_run(chosen: str | int | None) -> int:
         RefusedError: no run, or more than one, has that name; or several runs exist and none is named.
         ControlError: no run exists.
     """
+    if chosen == "":
+        raise RefusedError("a run has a name or a bus port, not ''; 'fwk ps' lists the runs")
     wanted = str(chosen if chosen is not None else os.environ.get(RUN_VARIABLE, ""))
     by_port = {str(port): port for port in address.running()}
     if wanted in by_port:

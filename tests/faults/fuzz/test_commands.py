@@ -20,6 +20,7 @@ from fwk.cli.run import launch_command as launching
 from fwk.cli.run.launch_command import app as fwk_launch
 from fwk.cli.steer.send import made
 from fwk.control import address
+from fwk.control import address
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
@@ -48,6 +49,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     write_files(tmp_path, TINY)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr(address, "running", list)  # no command may act on a run that goes on beside the tests
     monkeypatch.setattr(launching, "run", run)
     monkeypatch.setattr(address, "running", list)
     monkeypatch.setattr(log, "running", list)

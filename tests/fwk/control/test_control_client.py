@@ -28,6 +28,7 @@ def runs(monkeypatch: pytest.MonkeyPatch) -> dict[int, dict[str, object]]:
     [
         ([], None, "nothing runs on this machine; start something with: fwk-launch FILE"),
         ([], "17700", "no run '17700' on this machine"),
+        ([1], "", "a run has a name or a bus port, not ''"),
         ([1, 2], None, "several runs on this machine; choose one: --run match (soccer, pid 11) or --run solo"),
         ([1], "2", "no run '2' on this machine; there is --run match (soccer, pid 11)"),
         ([1], "mach", "no run 'mach' on this machine; there is --run match"),
