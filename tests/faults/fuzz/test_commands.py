@@ -20,7 +20,6 @@ from fwk.cli.run import launch_command as launching
 from fwk.cli.run.launch_command import app as fwk_launch
 from fwk.cli.steer.send import made
 from fwk.control import address
-from fwk.control import address
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
@@ -51,7 +50,6 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setattr(address, "running", list)  # no command may act on a run that goes on beside the tests
     monkeypatch.setattr(launching, "run", run)
-    monkeypatch.setattr(address, "running", list)
     monkeypatch.setattr(log, "running", list)
     monkeypatch.setattr(server, "serve", run)
     for command in ("view", "foxglove"):  # they would follow another user's run on this machine
