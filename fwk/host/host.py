@@ -25,7 +25,7 @@ from fwk.model.requests import clear_requests, has_requests, lost_message
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, protocol_t, tick_t
 
 READY_REPORT_US = 100_000
-"""First interval of the reports that a host is ready; each further one is twice as long, until the first tick comes."""
+"""Interval of the reports that a host is ready, until its first tick comes."""
 REPORT_US = US_PER_S
 
 
@@ -99,7 +99,6 @@ class Host:
         self._message.run, self._message.host = assignment.run, assignment.host
         self._message.incarnation = assignment.start.incarnation
         self._report_us = 0
-        self._ready_report_us = READY_REPORT_US
 
     def current_log(self) -> Logger:
         """Returns the log of the component that is being executed; while none is, the host's own."""
@@ -149,7 +148,6 @@ class Host:
             if self._sender.due_us < NEVER_US:
                 self._sender.send_due()
             if self._now_us() >= self._report_us:
-                self._ready_report_us = min(2 * self._ready_report_us, REPORT_US)
                 self._report()
 
     def _finalize(self) -> Steps[None]:
@@ -288,7 +286,7 @@ class Host:
 
     def _report(self) -> None:
         """Sends the states and figures of all components."""
-        self._report_us = self._now_us() + (REPORT_US if self._answered[0] else self._ready_report_us)
+        self._report_us = self._now_us() + (READY_REPORT_US if self._answered[0] == 0 else REPORT_US)
         runners, metrics = self.group.runners, self.group.metrics.values()
         actual = actual_t()
         actual.run, actual.host = self._assignment.run, self._assignment.host
