@@ -91,7 +91,7 @@ class LogBytes:
     def _part(self, number: int) -> _File:
         if self._open is None or self._open[0] != number:
             self.close()
-            self._open = number, _opened(_existing(self._paths[number]) or self._paths[number])
+            self._open = number, _opened_form(self._paths[number])
         return self._open[1]
 
 
@@ -202,7 +202,7 @@ def _continues(path: Path) -> bool:
     try:
         head = _head(path)
     except LogError:
-        return False
+        return not os.path.exists(path) and exists(path)  # compressed in this moment
     return len(head) == _NUMBER.size and head.startswith(SYNC) and _NUMBER.unpack(head)[1] > 0
 
 
@@ -212,6 +212,16 @@ def _head(path: Path) -> bytes:
         return file.read(0, _NUMBER.size)
     finally:
         file.close()
+
+
+def _opened_form(path: Path) -> _File:
+    """Opens a file or its compressed form, also if the one replaces the other in this moment."""
+    try:
+        return _opened(_existing(path) or path)
+    except LogError:
+        if os.path.exists(path) or not exists(path):
+            raise
+        return _opened(path.with_name(path.name + SUFFIX))
 
 
 def _opened(path: Path) -> _File:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.lcm import log_parts
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
 from fwk.lcm.log_parts import LogBytes, exists, is_later_part, locked, parts_of
 from fwk.lcm.seekable_zstd import FRAME_BYTES, CompressedFile, CompressedFileError, compress
@@ -68,6 +69,22 @@ def test_reading_goes_on_when_a_part_is_compressed_meanwhile(tmp_path: Path) -> 
     for part in parts_of(log):
         assert compress_part(part)
     assert found + [event.data for event in reader] == contents
+
+
+def test_a_part_may_be_compressed_while_it_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log = tmp_path / "log.lcm"
+    contents = split_log(log)
+    waiting, right = set(parts_of(log)), log_parts._opened
+
+    def opened(path: Path) -> log_parts._File:
+        if path in waiting:
+            waiting.remove(path)
+            assert compress_part(path)
+        return right(path)
+
+    monkeypatch.setattr(log_parts, "_opened", opened)
+    assert contents_of(log) == contents
+    assert not waiting
 
 
 def test_damage_in_a_compressed_part_costs_one_frame(tmp_path: Path) -> None:

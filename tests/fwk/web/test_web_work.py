@@ -32,9 +32,13 @@ def test_a_command_is_ended_as_by_ctrl_c() -> None:
 
         def take(text: str) -> None:
             told.append(text)
-            begun.set()
+            if "begun\n" in "".join(told):
+                begun.set()
 
-        script = "try:\n print('begun')\n import time; time.sleep(60)\nexcept KeyboardInterrupt: print('ended')"
+        script = (
+            "import os, time\ntry:\n os.write(1, b'begun\\n')\n time.sleep(60)\n"
+            "except KeyboardInterrupt: os.write(1, b'ended\\n')"
+        )
         job = Job(["python", "-c", script], take)
         running = asyncio.ensure_future(job.run())
         await begun.wait()

@@ -27,20 +27,20 @@ def folder(tmp_path: Path, ports: PortBlock) -> Path:
 
 
 def test_a_deleted_run_directory_fails_the_run(launch: Launch, folder: Path) -> None:
-    run = launch("counted.yaml", "--ticks", "80")
+    run = launch("counted.yaml", "--ticks", "160")
     run.until("tick ")
     run_dir = run.run_dir
     shutil.rmtree(run_dir)
     assert run.wait() == 1
     last = run.text.splitlines()[-8:]
-    assert f"counted: broken: the run directory {run_dir} was deleted during the run" in last
+    assert f"counted: broken: the run directory {run_dir} was deleted during the run" in last, run.text
     assert f"the run directory {run_dir} was deleted during the run; files written there are lost" in run.text
     assert not any(line.startswith(("recording: ", "run directory: ")) for line in last)
     assert not run_dir.exists()
 
 
 def test_a_deleted_recording_fails_the_run(launch: Launch, folder: Path) -> None:
-    run = launch("counted.yaml", "--ticks", "80", "--record", "log.lcm")
+    run = launch("counted.yaml", "--ticks", "160", "--record", "log.lcm")
     run.until("tick ")
     (folder / "log.lcm").unlink()
     assert run.wait() == 1
