@@ -35,6 +35,7 @@ class ClockControl:
                 "for a simulation set 'clock: simulated' in the launch file"
             )
         if request.verb == "step":
+            self._log.info(f"asked to step {request.ticks} {'tick' if request.ticks == 1 else 'ticks'}")
             return self._step(request.ticks)
         if request.verb == "pause":
             clock.pause()

@@ -44,6 +44,7 @@ def test_pause_step_and_speed_leave_messages_unchanged(start: Start, tmp_path: P
     assert run.ask("status")["paused"]
     ticks = run.tick
     steered = run.end()
+    assert "asked to step 5 ticks" in run.launched.text
     plain = start("--ticks", str(ticks), "--speed", "max", "--record", "plain.lcm").launched
     assert plain.wait() == 0, plain.text
     compared = Comparison(tmp_path / "plain.lcm", steered, False)
