@@ -45,7 +45,7 @@ class Job:
             stdout=asyncio.subprocess.PIPE,
             stderr=asyncio.subprocess.STDOUT,
             env={**os.environ, "NO_COLOR": "1", "TERM": "dumb", "PYTHONUNBUFFERED": "1"},
-            preexec_fn=lambda: die_with_parent(parent, signal.SIGTERM),
+            preexec_fn=lambda: _prepare(parent),
         )
         assert self._process.stdout is not None
         while data := await self._process.stdout.read(_CHUNK_BYTES):
@@ -57,3 +57,9 @@ class Job:
         """Ends the command as Ctrl-C does."""
         if self._process and self._process.returncode is None:
             self._process.send_signal(signal.SIGINT)
+
+
+def _prepare(parent: int) -> None:
+    """Lets a child end with its parent, and by SIGINT also if the console was started in the background of a script."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    die_with_parent(parent, signal.SIGTERM)

@@ -2,6 +2,7 @@
 
 import asyncio
 import os
+import signal
 from pathlib import Path
 from typing import Any, cast
 
@@ -45,7 +46,11 @@ def test_a_command_is_ended_as_by_ctrl_c() -> None:
         job.end()
         return await running, "".join(told)
 
-    code, text = asyncio.run(begin_and_end())
+    handler = signal.signal(signal.SIGINT, signal.SIG_IGN)  # as in the background of a script
+    try:
+        code, text = asyncio.run(begin_and_end())
+    finally:
+        signal.signal(signal.SIGINT, handler)
     assert code == 0
     assert text.startswith("begun")
     assert text.endswith("ended\n")
