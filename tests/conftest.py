@@ -1,5 +1,6 @@
 """Fixtures that all tests share: ports, and skips for programs and rights that the machine lacks."""
 
+import os
 import shutil
 import subprocess
 from collections.abc import Callable, Iterator
@@ -32,6 +33,19 @@ _PACKAGES = {
     "unshare": "util-linux",
 }
 """Program to Debian package, where the names differ."""
+
+
+@pytest.fixture(autouse=True)
+def _same_environment() -> Iterator[None]:
+    """Fails a test that leaves variables behind: commands of later tests would start with them."""
+    before = dict(os.environ)
+    yield
+    changed = {name for name, _ in before.items() ^ os.environ.items()}
+    left = changed - {"PYTEST_CURRENT_TEST", "LD_LIBRARY_PATH"}  # OpenCV extends its path when it is first imported
+    os.environ.update(before)
+    for name in left - before.keys():
+        del os.environ[name]
+    assert not left, f"the test changed variables of the environment: {', '.join(sorted(left))}"
 
 
 @pytest.fixture

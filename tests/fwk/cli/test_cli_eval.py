@@ -4,6 +4,7 @@ import json
 import os
 import re
 import sys
+from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
@@ -118,7 +119,17 @@ class Queue(Executor):
         return future
 
 
+@pytest.fixture
+def restored_environment() -> Iterator[None]:
+    """Takes back what a cluster of this process sets for its workers: a hash seed, and numbers of threads."""
+    before = dict(os.environ)
+    yield
+    os.environ.clear()
+    os.environ.update(before)
+
+
 @pytest.mark.slow
+@pytest.mark.usefixtures("restored_environment")
 def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
     distributed: Any = import_module("distributed")
     with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
