@@ -155,27 +155,22 @@ def record_of(
     frames = _patterns(files, "frames", (), cameras, problems)
     names = [channel.name for channel in channels]
     has_limit = any(key in parts for key in _LIMITS)
-    limits = {key: parts.get(key, 0.0) if has_limit else _last(files, key) for key in _LIMITS}
+    limits = {key: parts.get(key, 0.0) if has_limit else _last(files, key, 0.0) for key in _LIMITS}
     return RecordPlan(
         frames=tuple(name for name in cameras if any(matches(name, pattern) for pattern in frames)),
         channels=_patterns(files, "channels", options["channels"], names, problems),
         exclude=_patterns(files, "exclude", options["exclude"], names, problems),
-        size_gb=_last(files, "size_gb"),
+        size_gb=_last(files, "size_gb", 0.0),
         split_mb=limits["split_mb"],
         split_s=limits["split_s"],
-        compress=bool(parts.get("compress")) or _is_compressed(files),
+        compress=bool(parts.get("compress") or _last(files, "compress", False)),
     )
 
 
-def _last(files: Files, key: str) -> float:
-    """Returns the limit of the last layer that sets it; 0: none does."""
-    limits = [getattr(layer.content.record, key) for layer in files.layers]
-    return next((float(limit) for limit in reversed(limits) if limit is not None), 0.0)
-
-
-def _is_compressed(files: Files) -> bool:
-    choices = [layer.content.record.compress for layer in files.layers]
-    return next((choice for choice in reversed(choices) if choice is not None), False)
+def _last(files: Files, key: str, default: float) -> float:
+    """Returns the value of a key of `record:` in the last layer that sets it."""
+    values = (getattr(layer.content.record, key) for layer in reversed(files.layers))
+    return next((value for value in values if value is not None), default)
 
 
 def _patterns(
