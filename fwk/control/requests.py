@@ -46,7 +46,7 @@ class Steer(_Request):
     action: Action
     names: Names
     force: bool = False
-    """Of `unload`: also unload the dependents."""
+    """`unload` also unloads the dependents."""
 
 
 class TakePlace(_Request):

@@ -14,7 +14,7 @@ _TABS_MAX = 12
 
 
 class Contents(NamedTuple):
-    """What there is to arrange, in the order in which it appeared."""
+    """Contents of a recording that need a place on the screen, in the order of their first appearance."""
 
     views: tuple[str, ...]
     """Titles of the views of projects."""

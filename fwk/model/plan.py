@@ -36,7 +36,7 @@ class ComponentPlan:
     rate_hz: float | None = None
     """Rate of a continuous component; 0: one iteration for each newer input. None: it iterates in stages."""
     every: int = 1
-    """It iterates in the ticks with `tick % every == offset % every`."""
+    """The component iterates in the ticks with `tick % every == offset % every`."""
     offset: int = 0
     start: bool = True
     """Whether it starts with the run; otherwise it is started by request."""

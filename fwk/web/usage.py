@@ -12,7 +12,7 @@ class Figures(NamedTuple):
     """Figures of a process."""
 
     cpu_percent: float
-    """Of one core, since the last measurement."""
+    """CPU time since the last measurement, in percent of one core."""
     memory_mb: float
 
 

@@ -1,4 +1,4 @@
-"""How a match goes: shots, goals of each team, share of time without a robot at the ball, captures that bounce."""
+"""Figures of a match: shots, goals of each team, share of time without a robot at the ball, captures that bounce."""
 
 import numpy as np
 

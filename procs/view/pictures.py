@@ -20,7 +20,7 @@ class PicturesConfig(Config):
     format: Literal["jpeg", "png"] = "jpeg"
     """jpeg is small and lossy; png is lossless and large."""
     quality: int = Setting(default=80, ge=1, le=100)
-    """Of jpeg; 100 is best."""
+    """Quality of a jpeg picture; 100 is best."""
     longest_px: int = Setting(default=0, ge=0)
     """Larger pictures are scaled until their longer side is that long; 0: none is."""
 

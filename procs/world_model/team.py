@@ -48,7 +48,7 @@ class Mate:
 
 
 class Places:
-    """Where k mates were or are at times near their messages; all mates in one batch."""
+    """Positions of k mates at times near their messages, computed in one batch."""
 
     def __init__(self, mates: Sequence[Mate]) -> None:
         self._told_s = np.array([mate.told_s for mate in mates])

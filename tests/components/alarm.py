@@ -8,7 +8,7 @@ class WorrierConfig(Config):
     lines: int = 1
     """Warnings in tick 5."""
     raises: bool = False
-    """It dies in that tick."""
+    """Whether the component dies in that tick."""
 
 
 class Worrier(Component):

@@ -18,11 +18,11 @@ class TalkerConfig(Config):
     long: int = 0
     """Letters of a long line."""
     asks: bool = False
-    """It prints a line without an end."""
+    """Whether the component prints a line without an end."""
     thread: bool = False
     """A thread ends by an exception."""
     thinks: bool = False
-    """It uses a plain module that logs."""
+    """Whether the component uses a plain module that logs."""
     fails_at: int = 0
     """Tick in which it raises."""
     leaves_at: int = 0

@@ -25,9 +25,9 @@ class Camera(Component):
 
 class WatcherConfig(Config):
     slow: bool = False
-    """It is slow now and then before it looks."""
+    """Whether the watcher pauses now and then before it looks."""
     looks_first: bool = False
-    """It is slow now and then after it has looked."""
+    """Whether the watcher pauses now and then after it has looked."""
 
 
 class Watcher(Component):

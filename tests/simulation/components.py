@@ -55,7 +55,7 @@ class PlayerConfig(Config):
     eager: float = 0.3
     """Probability of a request in an iteration."""
     early: bool = False
-    """It writes in `init`."""
+    """Whether the component writes in `init`."""
 
 
 class Player(Component):

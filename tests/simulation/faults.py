@@ -33,7 +33,7 @@ class Action:
     """Component whose process is affected; or `supervisor`, `gateway`."""
     amount: int = 0
     word: str = ""
-    """Of `steer`: the requested action."""
+    """Action that `steer` requests."""
 
 
 @dataclass(frozen=True)

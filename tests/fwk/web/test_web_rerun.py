@@ -43,7 +43,7 @@ class Garden(View):
 
 
 class Written:
-    """What a file of Rerun holds."""
+    """Contents of a file of Rerun."""
 
     def __init__(self, file: Path) -> None:
         self.rows: dict[str, list[dict[str, Any]]] = {}

@@ -54,7 +54,7 @@ def play(system: MemorySystem, duration_s: float) -> tuple[list[game_state_t], l
 
 @dataclass(frozen=True)
 class Played:
-    """What was played in a match of ten, and where all were at the end of the first 6 s."""
+    """A match of ten robots: its course, and the positions after the first 6 s."""
 
     truth: ground_truth_t
     states: list[game_state_t]

@@ -50,7 +50,7 @@ def test_third_foul_brings_yellow_then_the_robot_leaves() -> None:
         cards = [call.card for call in script.whistle.calls if call.card]
         script.robots["cyan3"] = Point(-4.0, -2.0)
         script.started()
-        script.wait(7.1)  # until it is play, which nobody touched
+        script.wait(7.1)  # until play resumes without a touch of the ball
         if cards == [Card.DOUBLE_YELLOW]:
             break
     assert cards == [Card.DOUBLE_YELLOW]

@@ -60,7 +60,7 @@ def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def recorded(original: Path) -> Iterator[Path]:
-    """That folder; a change of the players is undone after the test."""
+    """The folder of the original run; a change of the players is undone after the test."""
     yield original
     write_files(original, sources("player.py"))
 
