@@ -1,5 +1,6 @@
 """Every relative link of the documentation leads to a file, and to a heading where it names one."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,12 @@ def test_every_page_is_reached_from_the_readme() -> None:
         reached |= found
         waiting += found
     assert set(PAGES) <= reached, f"no link leads to {sorted(page.name for page in set(PAGES) - reached)}"
+
+
+def test_every_page_is_in_the_navigation_of_the_site() -> None:
+    navigation = (ROOT / ".mkdocs.yml").read_text().partition("\nnav:\n")[2]
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")}
+    assert pages == {name for name in re.findall(r": (\S+\.md)$", navigation, re.MULTILINE) if name in pages}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
