@@ -1,8 +1,9 @@
 """The base class of components."""
 
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from fwk.component.aspect import Aspect
+from fwk.component.undeclared import explanation
 
 DEFAULT_STAGES = (
     "pre_loop",
@@ -62,6 +63,16 @@ class Component:
     """Full name: `cyan1/omni_ball`."""
     changed_settings: frozenset[str] = frozenset()
     """Dotted names of the settings that the newest change has changed, for `config_changed`."""
+
+    if not TYPE_CHECKING:  # type checkers would take every attribute for declared
+
+        def __getattr__(self, name: str) -> Any:
+            """Names the line that declares an attribute which is used without it.
+
+            Raises:
+                AttributeError: always; Python calls this method for attributes that do not exist.
+            """
+            raise AttributeError(explanation(type(self), vars(self), name))
 
     @classmethod
     def preload(cls, config: Any) -> None:
