@@ -1,4 +1,4 @@
-"""The web console: a browser sees and steers running systems. Exports what projects make views and pages with."""
+"""The web console: a browser sees and steers running systems. Exports the classes for views and pages of projects."""
 
 from fwk.web.scene import Newest, Scene
 from fwk.web.view import OpenPage, Page, RunAccess, View

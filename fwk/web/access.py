@@ -88,7 +88,7 @@ class Access:
 
 
 def new_tokens(read_only: bool) -> dict[str, Role]:
-    """Makes a token for each role; only one for reading if nothing may be steered."""
+    """Makes a token for each role; without steering only the token for reading."""
     roles = (Role.READ,) if read_only else (Role.STEER, Role.READ)
     return {secrets.token_urlsafe(24): role for role in roles}
 
@@ -118,7 +118,7 @@ class Gate:
         self._cookie = f"fwk-web-{access.port}"
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Handles one request or connection."""
+        """Handles a request or a connection."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return

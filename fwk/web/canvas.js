@@ -132,7 +132,7 @@ export default {
       }
     },
     paintText(pen, shape) {
-      if (shape.h * this.scale < LEAST_PX) return; // it would hide what it names; zooming shows it
+      if (shape.h * this.scale < LEAST_PX) return; // a text this small is unreadable; zooming shows it
       pen.save();
       pen.translate(shape.x, shape.y); pen.scale(0.01, -0.01 * this.up);
       pen.font = `${Math.max(shape.h * 100, 900 / this.scale)}px system-ui, sans-serif`;

@@ -28,7 +28,7 @@ class Console:
         extensions: views and pages of projects.
         logs: the newest lines of the logs.
         recordings: lists the run directories, the newest first.
-        run: name of the run that pages show at first; empty: the only one, or the first.
+        run: name of the run that pages show at first; empty: the first run found.
     """
 
     runs: Runs

@@ -1,4 +1,4 @@
-"""The view of one device: its instrument, and in images of a camera what views of projects say was found there."""
+"""The view of a device: its instrument, and over images of a camera the detections that views of projects draw."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -9,7 +9,7 @@ from fwk.web.view import View
 
 
 class DeviceView(View):
-    """Draws the newest message of one channel with the instrument of its type.
+    """Draws the newest message of a channel with the instrument of its type.
 
     Args:
         channel: the channel of the device.

@@ -1,6 +1,6 @@
-"""Gives browsers the drawings of views and the images of cameras, as often as they ask but no oftener than is useful.
+"""Serves the drawings of views and the images of cameras.
 
-A browser asks for the next drawing after it has shown the last one, so a browser that sleeps costs nothing.
+A browser asks for a drawing after the last drawing was shown, so a sleeping browser costs nothing.
 """
 
 import asyncio
@@ -122,7 +122,7 @@ def views_of_recording(console: Console, name: str) -> list[View]:
 
 
 def chosen(views: list[View], number: str, device: str) -> View:
-    """Returns the view that an address names: that of a device, or one of the list; otherwise the first."""
+    """Returns the view that an address names: that of a device or that of the number; otherwise the first."""
     if device:
         return DeviceView(device, views)
     return views[int(number) if number.isdecimal() and int(number) < len(views) else 0]

@@ -10,7 +10,7 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.web.instruments import JOYSTICK, MOTION
 
 SILENCE_S = 0.5
-"""A pad that says nothing for so long while it is held has lost its browser: everything stands still."""
+"""A held pad without a message for this time has lost its browser: its robot is stopped."""
 BUTTONS = 10
 
 
@@ -26,7 +26,7 @@ class Deflection:
 
     @classmethod
     def of(cls, told: Mapping[str, Any]) -> "Deflection":
-        """Makes a deflection of what a browser tells; whatever it tells, the parts lie between -1 and 1."""
+        """Makes a deflection of the values from a browser; each part is limited to -1 .. 1."""
         forward, left, turn = (max(-1.0, min(1.0, float(part))) for part in told["at"])
         return cls(forward, left, turn, frozenset(map(int, told["buttons"])), bool(told["held"]))
 

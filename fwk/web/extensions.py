@@ -5,9 +5,10 @@ from collections.abc import Iterable, Sequence
 from fnmatch import filter as matching
 from importlib import import_module
 from importlib.metadata import entry_points
+from inspect import isabstract
 from pathlib import Path
 from types import ModuleType
-from typing import TypeVar
+from typing import Any, TypeVar
 
 from fwk.web.view import Page, View
 
@@ -24,7 +25,7 @@ class Extensions:
     """Views and pages of the modules that installed distributions announce, and of further ones.
 
     Raises:
-        ExtensionError: a module cannot be imported, or has neither views nor pages.
+        ExtensionError: a module cannot be imported, has neither views nor pages, or has one that lacks a method.
     """
 
     def __init__(self, modules: Sequence[str] = (), folder: Path | None = None) -> None:
@@ -32,8 +33,9 @@ class Extensions:
             sys.path.insert(0, str(folder.resolve()))
         announced = sorted({entry.value for entry in entry_points(group=GROUP)})
         found = [_imported(name) for name in dict.fromkeys((*announced, *modules))]
-        self.views: list[View] = [each() for module in found for each in _classes(module, View)]
-        self.pages: list[Page] = [each() for module in found for each in _classes(module, Page)]
+        made = [_made(kind) for module in found for kind in _classes(module)]
+        self.views = [each for each in made if isinstance(each, View)]
+        self.pages = [each for each in made if isinstance(each, Page)]
 
     def views_for(self, channels: Iterable[str]) -> list[View]:
         """Returns the views for a run with these channels."""
@@ -53,14 +55,23 @@ def _imported(name: str) -> ModuleType:
         module = import_module(name)
     except Exception as error:
         raise ExtensionError(f"{name}: cannot be imported: {type(error).__name__}: {error}") from error
-    if not _classes(module, View) and not _classes(module, Page):
+    if not _classes(module):
         raise ExtensionError(f"{name}: has neither a subclass of fwk.web.View nor one of fwk.web.Page")
     return module
 
 
-def _classes(module: ModuleType, base: type[E]) -> list[type[E]]:
+def _made(kind: type[Any]) -> View | Page:
+    if isabstract(kind):
+        missing = ", ".join(sorted(kind.__abstractmethods__))
+        raise ExtensionError(f"{kind.__module__}: class {kind.__name__} does not define {missing}")
+    made: View | Page = kind()
+    return made
+
+
+def _classes(module: ModuleType) -> list[type[Any]]:
+    """Returns the views and pages that a module defines."""
     return [
         each
         for each in vars(module).values()
-        if isinstance(each, type) and issubclass(each, base) and each.__module__ == module.__name__
+        if isinstance(each, type) and issubclass(each, (View, Page)) and each.__module__ == module.__name__
     ]

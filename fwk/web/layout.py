@@ -1,4 +1,4 @@
-"""The frame of all pages: navigation, choice of the run, clock, and what happens when the run ends."""
+"""The frame of all pages: navigation, choice of the run, clock, and the banner of an ended run."""
 
 from collections.abc import Awaitable, Callable, Iterator
 from contextlib import contextmanager
@@ -41,7 +41,7 @@ _OTHER_THEME = f"""() => {{
 
 
 class Frame:
-    """The frame of one open page."""
+    """The frame of an open page."""
 
     def __init__(self, console: Console, request: Request, role: Role, run: str, runs: dict[str, Any]) -> None:
         self.console = console

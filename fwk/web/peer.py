@@ -22,7 +22,7 @@ _TIMEOUT_S = 1.0
 def user_of(own: tuple[str, int], other: tuple[str, int]) -> int | None:
     """Returns the user of the socket with address `own` that is connected to `other`.
 
-    None: there is no such socket on this machine, or the kernel does not tell.
+    None: this machine has no such socket, or the kernel does not answer.
     """
     try:
         family = socket.AF_INET6 if ":" in own[0] else socket.AF_INET

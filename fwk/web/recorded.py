@@ -14,7 +14,7 @@ LOG = "log.lcm"
 _BEGIN_TICKS = 20
 """Channels that are written only at the beginning, such as the measures of a field; known at every tick."""
 _BACK_TICKS = 100
-"""After a jump, what was not written in so many ticks is not known."""
+"""After a jump, a channel without a message in so many ticks has no value."""
 
 
 class RecordedRun:

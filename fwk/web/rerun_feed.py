@@ -1,4 +1,4 @@
-"""Feeds Rerun with a run or a recording: its messages, its images, and what the views of projects draw."""
+"""Feeds Rerun with a run or a recording: its messages, its images, and the drawings of the views of projects."""
 
 import json
 import os
@@ -122,7 +122,7 @@ class RerunFeed:
                 self._output.flush()
 
     def close(self) -> None:
-        """Sends what waits; a file is complete then."""
+        """Sends all waiting data; completes a file."""
         self._draw()
         self._output.flush()
         if self._is_file:
@@ -178,7 +178,7 @@ class RerunFeed:
                 self._output.frame(camera, pixels)
 
     def _draw(self) -> None:
-        """Draws what the views of projects make of the newest messages."""
+        """Draws the newest messages with the views of projects."""
         if len(self._newest) != self._seen:
             self._seen = len(self._newest)
             self._views = self._extensions.views_for(self._newest)

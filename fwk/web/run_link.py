@@ -39,7 +39,7 @@ class Runs:
         self._links: dict[str, RunLink] = {}
 
     async def all(self) -> dict[str, dict[str, Any]]:
-        """Returns what the runs say about themselves: by name, or by port where several have that name."""
+        """Returns the descriptions of all runs: by name, or by port where several runs share a name."""
         found = await self._shared.get("look", _LOOK_AGE_S, lambda: asyncio.to_thread(self._look))
         names = [run.get("name") or run["plan"] for run in found.values()]
         return {
@@ -70,7 +70,7 @@ class RunLink:
         self._typed: set[str] = set()
 
     async def about(self) -> dict[str, Any]:
-        """Returns what the run says about itself.
+        """Returns the description of the run.
 
         Raises:
             NotRunningError: it does not exist.

@@ -18,7 +18,7 @@ class FieldError(RefusedError):
 
 
 def fields_of(kind: Any) -> dict[str, tuple[str, bool]]:
-    """Returns the fields that a person fills in: name to its type, and whether it is one plain value.
+    """Returns the fields of a form: by name the type, and whether the field is a single plain value.
 
     Header and command are filled in by the run; counts follow from the lists.
     """
@@ -34,7 +34,7 @@ def value_of(name: str, type_name: str, plain: bool, typed: Any) -> Any:
     """Returns the value of a field as the message needs it.
 
     Raises:
-        FieldError: it is no such value.
+        FieldError: the text is not a value of the type.
     """
     if plain and type_name in ("string", "boolean"):
         return typed

@@ -46,7 +46,7 @@ _WITHOUT_RUN = ("/recordings", "/runs")
 
 
 class ServeError(Exception):
-    """The console cannot be served; the text says why, and what would work."""
+    """The console cannot be served; the text names the reason and a remedy."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-// A pad that is pushed with mouse, finger or keys; it tells its deflection while it is held, and rest when it is let go.
+// A pad for mouse, finger and keys: reports its deflection while held, and rest when released.
 const KEYS = { w: [1, 0, 0], s: [-1, 0, 0], a: [0, 1, 0], d: [0, -1, 0], q: [0, 0, 1], e: [0, 0, -1],
                arrowup: [1, 0, 0], arrowdown: [-1, 0, 0], arrowleft: [0, 0, 1], arrowright: [0, 0, -1] };
 const PERIOD_MS = 100;

@@ -1,6 +1,7 @@
 """Views on a canvas and pages that projects add to the console, and their access to a run."""
 
 import asyncio
+from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
@@ -19,8 +20,8 @@ _CALL_S = 10.0
 _STEER_S = 60.0
 
 
-class View:
-    """A drawing of a run on a canvas, twenty times a second. A subclass has `channels` and `draw`.
+class View(ABC):
+    """A drawing of a run on a canvas, twenty times a second. A subclass sets `channels` and defines `draw`.
 
     The console offers a view for every run that has a channel for each pattern of `needs`.
     """
@@ -35,21 +36,21 @@ class View:
     sees: Sequence[str] = ()
     """Channels beside a camera, without their namespace, whose newest messages `sight` gets."""
     rate_hz = 20.0
-    """Highest rate at which a browser shows it."""
+    """Highest rate of the drawings in a browser."""
 
+    @abstractmethod
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""
-        raise NotImplementedError
 
-    def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
-        """Draws over an image of a camera what was found in it; lengths are in pixels, y points down."""
+    def sight(self, camera: str, newest: Newest, scene: Scene) -> None:  # noqa: B027  (optional)
+        """Draws the detections in an image of a camera over that image; lengths are in pixels, y points down."""
 
-    async def moved(self, run: "RunAccess", name: str, x_m: float, y_m: float) -> None:
+    async def moved(self, run: "RunAccess", name: str, x_m: float, y_m: float) -> None:  # noqa: B027  (optional)
         """Takes the new position of a shape that was drawn with `drag=name` and that a person has dragged."""
 
 
-class Page:
-    """A page of a project's own. A subclass has `needs` and `build`, which makes it with NiceGUI."""
+class Page(ABC):
+    """A page of a project's own. A subclass sets `needs` and defines `build`, which makes the page with NiceGUI."""
 
     title = "Page"
     path = "page"
@@ -58,9 +59,9 @@ class Page:
     needs: Sequence[str] = ()
     """Patterns of channels that a run must have for this page to be offered."""
 
+    @abstractmethod
     def build(self, page: "OpenPage") -> None:
         """Makes the elements of the page."""
-        raise NotImplementedError
 
 
 class OpenPage(Protocol):

@@ -1,4 +1,4 @@
-"""What a robot's detectors found, drawn over the images of its cameras in the web console.
+"""Draws the detections of a robot over the images of its cameras, for the web console.
 
 The calibration is that of the robots in the launch files: the default of the mirror and of the stereo pair.
 """
@@ -17,7 +17,7 @@ from procs.vision.calibration import MirrorConfig
 from procs.vision.stereo_rig import StereoRig
 
 SEES = ("ball_percept", "obstacle_percepts", "line_points", "stereo_obstacles")
-"""Channels beside a camera that say what was found in its images."""
+"""Channels beside a camera with the detections in its images."""
 _BALL = "#ffee58"
 _OBSTACLE = "#ff4081"
 _LINE = "#00e5ff"

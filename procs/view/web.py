@@ -13,7 +13,7 @@ from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
 MIND = ("pose", "world_model", "drive_target", "role", "skill_status")
-"""Channels of a robot that show what it believes, wants and does."""
+"""Channels of a robot with its beliefs, its target, its role and its skill."""
 _UNKNOWN = "#787878"
 _GRASS = "#30803c"
 _SURROUND = "#245c30"
@@ -23,7 +23,7 @@ _NOSE_M = 0.3
 
 
 class MatchView(View):
-    """The field from above: the truth, and what each robot believes, wants and does."""
+    """The field from above: the truth, and the beliefs, targets, roles and skills of the robots."""
 
     title = "Match"
     needs = (TRUTH,)
@@ -49,7 +49,7 @@ class MatchView(View):
             _draw_mind(scene, newest, robot)
 
     def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
-        """Draws over an image of a robot's camera what its detectors found there."""
+        """Draws the detections of a robot over an image of its camera."""
         draw_sight(camera, newest, scene)
 
     async def moved(self, run: RunAccess, name: str, x_m: float, y_m: float) -> None:
@@ -149,7 +149,7 @@ def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
 
 
 def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
-    """Draws where a robot believes itself and the ball to be, where it drives, and its role and skill."""
+    """Draws the positions of robot and ball in the belief of the robot, its target, role and skill."""
     colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
     model: world_model_t | None = newest(f"{robot.name}/world_model")
     pose: pose_t | None = newest(f"{robot.name}/pose")

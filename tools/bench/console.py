@@ -42,7 +42,7 @@ _LOWEST = 19
 
 @dataclass(frozen=True)
 class Window:
-    """What the processes of the run did in a window."""
+    """Ticks, wall time and CPU time of the run's processes in a window of time."""
 
     ticks: int
     wall_us: float

@@ -98,7 +98,7 @@ def path_of(row: dict[str, Any]) -> str:
 
 
 def _setting(frame: Frame, row: dict[str, Any], saves: Callable[[], bool]) -> None:
-    """Makes the field of one setting, with what is known of it; a change is kept for later runs if `saves()`."""
+    """Makes the field of a setting with its type, origin and meaning; keeps a change for later runs if `saves()`."""
     access = frame.access
     path = path_of(row)
     live = frame.may_steer and row["editable"]

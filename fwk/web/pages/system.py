@@ -106,7 +106,7 @@ def row_of(component: dict[str, Any], usage: Mapping[int, Figures]) -> dict[str,
 
 
 def states_of(rows: list[dict[str, Any]]) -> list[tuple[str, ...]]:
-    """Returns what is shown at once."""
+    """Returns the part of the rows whose changes are shown at once."""
     return [(row["name"], row["state"], row["reason"]) for row in rows]
 
 
@@ -130,7 +130,7 @@ def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:
 
 
 def sentence(process: dict[str, Any], tick: int) -> str:
-    """Returns what has become of a process."""
+    """Returns the new state of a process as a sentence."""
     reason = f": {process['reason']}" if process["reason"] else ""
     return f"{process['name']} {process['state']}, tick {tick}{reason}"
 

@@ -1,10 +1,12 @@
 """Answers that browsers share, and how a run is found again."""
 
 import asyncio
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from fwk.web.extensions import ExtensionError, Extensions
 from fwk.web.run_link import NotRunningError, Runs
 from fwk.web.shared import Shared
 
@@ -82,3 +84,10 @@ def test_runs_are_told_apart_by_name_or_by_port() -> None:
             await found.link("blue").about()
 
     asyncio.run(browser())
+
+
+def test_a_view_without_draw_is_refused_at_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(tmp_path))
+    (tmp_path / "half_lawn.py").write_text("from fwk.web import View\n\n\nclass Lawn(View):\n    title = 'Lawn'\n")
+    with pytest.raises(ExtensionError, match=r"^half_lawn: class Lawn does not define draw$"):
+        Extensions(("half_lawn",))

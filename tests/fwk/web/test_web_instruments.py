@@ -1,4 +1,4 @@
-"""Instruments: which channel gets which, and what they draw; driving by hand."""
+"""Choice and drawings of instruments; driving by hand."""
 
 import json
 import math
@@ -8,6 +8,7 @@ import pytest
 
 from fwk.web.device_view import DeviceView, devices_of
 from fwk.web.driving import Deflection, Watchman, drives, members_of
+from fwk.web.general_view import GeneralView
 from fwk.web.instruments import INSTRUMENTS, instrument_of
 from fwk.web.scene import Newest, Scene
 from fwk.web.view import View
@@ -104,15 +105,18 @@ def test_a_device_without_messages_says_so() -> None:
     assert scene.headline == "a/device: never written"
 
 
-def test_views_draw_over_images_what_was_found() -> None:
+def test_views_draw_detections_over_images() -> None:
     class Sight(View):
         sees = ("found",)
+
+        def draw(self, newest: Newest, scene: Scene) -> None:
+            raise AssertionError
 
         def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
             found = newest("a/found")
             scene.circle(found.x_m, found.y_m, 3.0, stroke="red")
 
-    view = DeviceView("a/device", [View(), Sight()])
+    view = DeviceView("a/device", [GeneralView(), Sight()])
     scene = Scene()
     view.draw(Newest({"a/device": DEVICES["Camera"], "a/found": DEVICES["Base"]}), scene)
     made = json.loads(scene.encoded())

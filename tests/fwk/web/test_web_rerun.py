@@ -1,4 +1,4 @@
-"""Messages, images and drawings of projects as entities of Rerun, read back from what was written."""
+"""Messages, images and drawings of projects as entities of Rerun, read back from the file."""
 
 import contextlib
 import signal
@@ -56,7 +56,7 @@ class Written:
 
 
 def shown(folder: Path, entries: list[Entry], channels: tuple[str, ...] = ()) -> Written:
-    """Returns what is written of a log with these messages."""
+    """Writes a log with these messages as a file of Rerun and returns its contents."""
     log = write(folder / "log.lcm", [("fwk/plan", b"", 0), *entries])
     feed = RerunFeed("log", channels, (), folder)
     feed.save(folder / "log.rrd")

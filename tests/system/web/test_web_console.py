@@ -1,4 +1,4 @@
-"""The console in a browser, on a real run of 105 components: looks, steers, and is not taken in."""
+"""The console in a browser, on a real run of 105 components."""
 
 import math
 import re
@@ -124,7 +124,7 @@ def test_devices_have_instruments_and_a_pad_drives(garden: Garden) -> None:
     page.mouse.move(box["x"] + box["width"] - 1, box["y"] + box["height"] / 2)
     page.mouse.down()
     garden.run.until("stick [0.9")
-    page.close()  # nobody holds the pad any more
+    page.close()  # a held pad whose page closes is released
     garden.run.until_count("stick [0.0, 0.0, 0.0]", 2)
 
 
