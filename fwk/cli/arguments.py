@@ -2,6 +2,7 @@
 
 import os
 import re
+from contextvars import ContextVar
 from enum import StrEnum
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,8 @@ _PART_MAX = 100_000.0
 """Largest limit of the parts of a recording, in any unit."""
 _LINE_END = re.compile(r"(?<!\n)\n(?=\S)")
 """End of a line within a paragraph."""
+_is_incomplete = ContextVar("is_incomplete", default=False)
+"""Whether the input of the command lacks a part."""
 _LAUNCH_FILES = (".yaml", ".yml")
 
 
@@ -33,6 +36,13 @@ class SeveralNames(TyperCommand):
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         return super().parse_args(ctx, spread(args))
 
+    def invoke(self, ctx: Any) -> Any:
+        _is_incomplete.set(False)
+        result = super().invoke(ctx)
+        if _is_incomplete.get():
+            raise typer.Exit(1)
+        return result
+
     def format_help(self, ctx: Any, formatter: Any) -> None:
         """Writes the help with its paragraphs as wide as the terminal; brackets, as in `fwk[plot]`, are no markup."""
         text = self.help
@@ -41,6 +51,11 @@ class SeveralNames(TyperCommand):
             super().format_help(ctx, formatter)
         finally:
             self.help = text
+
+
+def note_incomplete() -> None:
+    """Makes the command that runs end with exit code 1: its input lacks a part, which it has named."""
+    _is_incomplete.set(True)
 
 
 def spread(arguments: list[str]) -> list[str]:

@@ -1,9 +1,13 @@
 """Lines printed before a run, and at its end: result, pace, losses, failures, recording."""
 
+from pathlib import Path
+
 from fwk.display import figures
 from fwk.display.lines import losses
 from fwk.display.plan_overview import overview
 from fwk.display.scoreboard import Scoreboard
+from fwk.lcm.log_file import LogError
+from fwk.lcm.log_parts import exists, parts_of
 from fwk.model.plan import Plan
 from fwk.model.sections import choice_in_words
 from fwk.supervisor.options import Outcome, RunOptions
@@ -43,12 +47,21 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
         for component in figures.components(status)
         if component.state not in figures.WELL
     ]
-    if options.record and (not outcome.deleted or options.record.exists()):
+    if options.record and (not outcome.deleted or exists(options.record)):
         lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
-        lines.append(f"recording: {options.record}{lacks}")
+        lines.append(f"recording: {_files(options.record)}{lacks}")
     if not outcome.deleted or options.run_dir.exists():
         lines.append(f"run directory: {options.run_dir}")
     return lines
+
+
+def _files(log: Path) -> str:
+    """Returns the files of a recording as they are now: compressed ones have other names than the log."""
+    try:
+        files = parts_of(log)
+    except LogError:
+        return str(log)
+    return str(files[0]) if len(files) == 1 else f"{files[0]} to {files[-1].name}, {len(files)} files"
 
 
 def _advice() -> list[str]:

@@ -9,7 +9,8 @@ from types import TracebackType
 from typing import NamedTuple, Self
 
 from fwk.lcm.disk import has_room
-from fwk.lcm.log_parts import SYNC, LogBytes, LogError, locked, part_path, remove_parts
+from fwk.lcm.log_file import LogError, locked
+from fwk.lcm.log_parts import SYNC, LogBytes, part_path, remove_parts
 
 __all__ = ["SYNC", "Event", "LogError", "LogReader", "LogWriter"]
 

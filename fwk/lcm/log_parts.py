@@ -1,41 +1,34 @@
 """Files of one log: it may be split into numbered parts, and each part may be compressed.
 
 The parts are `log.lcm`, `log.lcm.01`, `log.lcm.02` and so on. Each is a log of its own; the numbers of its events
-continue those of the part before, so a log of another program with such a name is not taken for a part.
+continue those of the part before, so a log of another program with such a name is not taken for a part. A part that is
+missing between others is known by its number; reading continues behind it.
 """
 
-import fcntl
 import os
 import re
-import stat
 import struct
 from pathlib import Path
 from types import TracebackType
-from typing import Protocol, Self
+from typing import NamedTuple, Self
 
-from fwk.lcm.seekable_zstd import INSTALL, SUFFIX, CompressedFile, CompressedFileError, library
+from fwk.lcm.log_file import LogError, LogFile, existing, is_compressed, opened
+from fwk.lcm.seekable_zstd import SUFFIX
 
 SYNC = (0xEDA1DA01).to_bytes(4, "big")
 """First bytes of each event."""
 _NUMBER = struct.Struct(">4sq")  # sync word and number of an event
-_LATER_PART = re.compile(r"(.+)\.\d{2,}")
+_LATER_PART = re.compile(r"(.+)\.(\d{2,5})")
+_SEARCHED_BYTES = 1 << 20
+"""Beginning of a part in which its first whole event is looked for."""
 
 
-class LogError(Exception):
-    """A log cannot be opened or holds nothing usable; the text names the file and the reason."""
+class MissingFiles(NamedTuple):
+    """Files of a log that are missing between others."""
 
-
-class _File(Protocol):
-    """File whose bytes can be read at any position."""
-
-    size_bytes: int
-    mtime_ns: int
-
-    def read(self, position: int, size: int) -> bytes:
-        """Returns up to `size` bytes."""
-
-    def close(self) -> None:
-        """Closes the file."""
+    files: list[Path]
+    position: int
+    """End of the part before, in bytes from the beginning of the log."""
 
 
 class LogBytes:
@@ -46,14 +39,20 @@ class LogBytes:
     """
 
     def __init__(self, path: Path) -> None:
-        self._paths = list(map(uncompressed_name, parts_of(path)))  # a part may be compressed while others are read
-        self._open: tuple[int, _File] | None = None
+        numbered = _numbered_parts(path)
+        self._paths = list(map(uncompressed_name, numbered.values()))  # a part may be compressed while others are read
+        self._open: tuple[int, LogFile] | None = None
         self._ends: list[int] = []
+        self.missing: list[MissingFiles] = []
         self.mtime_ns = 0
         """Time at which the newest part was written, by its file system."""
-        end = 0
-        for number in range(len(self._paths)):
-            part = self._part(number)
+        end = following = 0
+        for place, number in enumerate(numbered):
+            if number > following:
+                files = [part_path(self._paths[0], each) for each in range(following, number)]
+                self.missing.append(MissingFiles(files, end))
+            following = number + 1
+            part = self._part(place)
             end += part.size_bytes
             self._ends.append(end)
             self.mtime_ns = max(self.mtime_ns, part.mtime_ns)
@@ -88,27 +87,45 @@ class LogBytes:
     ) -> None:
         self.close()
 
-    def _part(self, number: int) -> _File:
-        if self._open is None or self._open[0] != number:
+    def _part(self, place: int) -> LogFile:
+        if self._open is None or self._open[0] != place:
             self.close()
-            self._open = number, _opened_form(self._paths[number])
+            self._open = place, opened(self._paths[place])
         return self._open[1]
 
 
 def parts_of(path: Path) -> list[Path]:
-    """Returns the files of a log, of which each but the first continues the one before.
+    """Returns the files of a log, of which each but the first continues another one.
 
     Raises:
         LogError: the log does not exist, is not an ordinary file, or cannot be read.
     """
-    first = _existing(path)
+    return list(_numbered_parts(path).values())
+
+
+def _numbered_parts(path: Path) -> dict[int, Path]:
+    """Returns the files of a log by number, in order; the first one has the number 0.
+
+    Raises:
+        LogError: the log does not exist, is not an ordinary file, or cannot be read.
+    """
+    first = existing(path)
     if first is None:
-        _opened(path)  # raises with the reason
-    found = [first or path]
-    base = uncompressed_name(path)
-    while (later := _existing(part_path(base, len(found)))) and _continues(later):
-        found.append(later)
-    return found
+        opened(path)  # raises with the reason
+    return {0: first or path, **_later_parts(uncompressed_name(path))}
+
+
+def _later_parts(log: Path) -> dict[int, Path]:
+    """Returns the files that continue a log, by number, in order."""
+    try:
+        names = os.listdir(log.parent)
+    except OSError:
+        return {}
+    matched = [_LATER_PART.fullmatch(name.removesuffix(SUFFIX)) for name in names]
+    highest = max((int(each[2]) for each in matched if each and each[1] == log.name), default=0)
+    # each number is looked at: a list of names may lack a part that is compressed in this moment
+    numbered = {number: existing(part_path(log, number)) for number in range(1, highest + 1)}
+    return {number: part for number, part in numbered.items() if part and _continues(part)}
 
 
 def part_path(log: Path, number: int) -> Path:
@@ -136,45 +153,9 @@ def is_log(path: Path) -> bool:
     return is_compressed(path) or _head(path).startswith(SYNC)
 
 
-def is_compressed(path: Path) -> bool:
-    """Returns whether a file of a log is compressed."""
-    return path.name.endswith(SUFFIX)
-
-
-def check_compression() -> None:
-    """Checks that logs can be compressed here.
-
-    Raises:
-        LogError: the library is missing.
-    """
-    try:
-        library()
-    except CompressedFileError as error:
-        raise LogError(f"compressed recordings need another library: {INSTALL}") from error
-
-
 def exists(log: Path) -> bool:
     """Returns whether the first file of a log exists, compressed or not."""
-    return _existing(log) is not None
-
-
-def locked(descriptor: int, lock: int) -> bool:
-    """Takes a lock on an open file of a log until it is closed; a writer has a shared one.
-
-    Args:
-        descriptor: the open file.
-        lock: `fcntl.LOCK_SH` or `fcntl.LOCK_EX`.
-
-    Returns:
-        whether no other process has a lock that excludes this one; True where the file system has no locks.
-    """
-    try:
-        fcntl.flock(descriptor, lock | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return False
-    except OSError:
-        pass
-    return True
+    return existing(log) is not None
 
 
 def remove_parts(log: Path) -> None:
@@ -183,16 +164,9 @@ def remove_parts(log: Path) -> None:
     Raises:
         OSError: a file cannot be removed.
     """
-    number = 1
-    while (later := _existing(part_path(log, number))) and _continues(later):
-        later.unlink()
-        number += 1
+    for part in _later_parts(log).values():
+        part.unlink()
     log.with_name(log.name + SUFFIX).unlink(missing_ok=True)
-
-
-def _existing(path: Path) -> Path | None:
-    """Returns the file or its compressed form; None if neither exists."""
-    return next((form for form in (path, path.with_name(path.name + SUFFIX)) if os.path.exists(form)), None)
 
 
 def _continues(path: Path) -> bool:
@@ -200,54 +174,22 @@ def _continues(path: Path) -> bool:
     if is_compressed(path):
         return True
     try:
-        head = _head(path)
+        file = opened(path)
     except LogError:
-        return not os.path.exists(path) and exists(path)  # compressed in this moment
-    return len(head) == _NUMBER.size and head.startswith(SYNC) and _NUMBER.unpack(head)[1] > 0
+        return False
+    try:
+        head = file.read(0, _NUMBER.size)
+        if not head.startswith(SYNC):  # perhaps damaged
+            head = file.read(0, _SEARCHED_BYTES)
+            head = head[head.find(SYNC) :] if SYNC in head else b""
+    finally:
+        file.close()
+    return len(head) >= _NUMBER.size and _NUMBER.unpack_from(head)[1] > 0
 
 
 def _head(path: Path) -> bytes:
-    file = _opened(path)
+    file = opened(path)
     try:
         return file.read(0, _NUMBER.size)
     finally:
         file.close()
-
-
-def _opened_form(path: Path) -> _File:
-    """Opens a file or its compressed form, also if the one replaces the other in this moment."""
-    try:
-        return _opened(_existing(path) or path)
-    except LogError:
-        if os.path.exists(path) or not exists(path):
-            raise
-        return _opened(path.with_name(path.name + SUFFIX))
-
-
-def _opened(path: Path) -> _File:
-    try:
-        if not stat.S_ISREG(os.stat(path).st_mode):
-            raise LogError(f"{path}: not an ordinary file")
-        return CompressedFile(path) if is_compressed(path) else _PlainFile(path)
-    except (OSError, ValueError) as error:
-        reason = error.strerror if isinstance(error, OSError) else error
-        raise LogError(f"{path}: cannot read: {reason}") from error
-    except CompressedFileError as error:
-        raise LogError(f"{path}: cannot read: {error}") from error
-
-
-class _PlainFile:
-    """An ordinary file."""
-
-    def __init__(self, path: Path) -> None:
-        self._descriptor = os.open(path, os.O_RDONLY)
-        found = os.fstat(self._descriptor)
-        self.size_bytes, self.mtime_ns = found.st_size, found.st_mtime_ns
-
-    def read(self, position: int, size: int) -> bytes:
-        """Returns up to `size` bytes."""
-        return os.pread(self._descriptor, size, position)
-
-    def close(self) -> None:
-        """Closes the file."""
-        os.close(self._descriptor)

@@ -11,6 +11,7 @@ from fwk.lcm.event_log import Event
 from fwk.lcm.messages import HEADER_SIZE, Header, type_name
 from fwk.lcm.type_registry import decoded, header_of, types_of
 from fwk.model.names import NOTE
+from fwk.recording.missing_parts import MissingParts
 from fwk.recording.versions import EXCERPT
 from lcmtypes.core import excerpt_t, log_t
 
@@ -133,6 +134,8 @@ class LogInfo:
     """Whether the log was not read: numbers of lost messages have no places, and no message was decoded."""
     changed: list[ChangedBytes] = field(default_factory=list)
     """Parts that are not what was written; only if the log has an index and was read."""
+    missing: list[MissingParts] = field(default_factory=list)
+    """Files that are missing between others."""
     channels: dict[str, ChannelInfo] = field(default_factory=dict)
     """By name, in order of names."""
 

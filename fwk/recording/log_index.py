@@ -11,13 +11,14 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
-from fwk.lcm.log_parts import LogBytes, LogError, uncompressed_name
+from fwk.lcm.log_file import LogError
+from fwk.lcm.log_parts import LogBytes, uncompressed_name
 from fwk.recording.log_contents import ChangedBytes, ChannelInfo, LogInfo, Note
 
 VERSION = 1
 BLOCK_BYTES = 1 << 20
 """Least size of a block with a check sum; a block ends with a whole event."""
-_NOT_STORED = ("file", "damaged_bytes", "from_index", "changed")
+_NOT_STORED = ("file", "damaged_bytes", "from_index", "changed", "missing")
 _UNREADABLE = (OSError, ValueError, TypeError, LookupError, AttributeError)
 
 
@@ -84,10 +85,16 @@ class LogIndex:
             return False
 
     def changes(self) -> Iterator[ChangedBytes]:
-        """Reads the log and yields the blocks whose bytes are not those that were written."""
+        """Reads the log and yields the blocks whose bytes are not those that were written.
+
+        Behind a missing part the bytes have no place, and are not compared.
+        """
         begin, tick = 0, 0
         with LogBytes(self.info.file) as log:
+            end = log.missing[0].position if log.missing else self.info.size_bytes
             for block in self.blocks:
+                if block.end > end:
+                    return
                 data = log.read(begin, block.end - begin)
                 missing = len(data) < block.end - begin
                 if missing or zlib.crc32(data) != block.crc32:

@@ -8,6 +8,7 @@ from fwk.lcm.log_parts import is_later_part
 from fwk.lcm.stamped_log import StampedLog
 from fwk.recording.log_contents import ChannelInfo, LogInfo, excerpt_in, note_in
 from fwk.recording.log_index import LogIndex, changed
+from fwk.recording.missing_parts import missing_parts
 
 _EVENTS_PER_CALL = 1000
 
@@ -29,6 +30,8 @@ def log_info(path: Path, check: bool = False, progress: Callable[[int], None] = 
         return index.info
     info = _read(reader, progress)
     info.changed = changed(path)
+    info.missing = missing_parts(path)
+    info.dropped -= sum(each.events for each in info.missing)
     return info
 
 

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from fwk.lcm.log_parts import LogError, is_log, locked
+from fwk.lcm.log_file import LogError, locked
+from fwk.lcm.log_parts import is_log
 from fwk.lcm.seekable_zstd import SUFFIX, CompressedFile, CompressedFileError, compress
 
 _COMPARED_BYTES = 1 << 20

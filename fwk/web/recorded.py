@@ -4,6 +4,7 @@ import threading
 from pathlib import Path
 from typing import Any
 
+from fwk.lcm.event_log import LogReader
 from fwk.lcm.type_registry import decoded
 from fwk.recording.log_contents import LogInfo
 from fwk.recording.log_info import log_info
@@ -90,7 +91,7 @@ class RecordedRuns:
             LogError: the log cannot be read.
         """
         known = self._open.get(folder)
-        if known is None or (anew and known.path.stat().st_size != known.info.size_bytes):
+        if known is None or (anew and LogReader(known.path).size_bytes != known.info.size_bytes):
             if len(self._open) >= 4:
                 self._open.pop(next(iter(self._open)))
             self._open[folder] = RecordedRun(Path(folder))

@@ -16,6 +16,7 @@ from fwk.cli.recordings.progress import progress_of
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import RunChoice
 from fwk.clock import sleep_s
+from fwk.lcm.log_parts import uncompressed_name
 from fwk.recording.compare import plan_in
 
 if TYPE_CHECKING:
@@ -80,7 +81,7 @@ def view(
             found = find_log(log)
             plan = plan_in(found)
             use_folders(plan.folders if plan else [])
-            name = found.parent.name if found.name == "log.lcm" else found.name
+            name = found.parent.name if uncompressed_name(found).name == "log.lcm" else found.name
         try:
             if log:
                 feed = RerunFeed(name, channels or (), views or (), types)

@@ -64,6 +64,7 @@ def compare(
             typer.echo(line)
         raise typer.Exit(DIFFERENT)
     typer.echo(f"equal: {result.messages} messages on {result.channels} channels")
+    raise typer.Exit(EQUAL)  # also if both lack a part
 
 
 def _different_conditions(names: tuple[str, str], plans: tuple[Plan | None, Plan | None]) -> Iterator[str]:

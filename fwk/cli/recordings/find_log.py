@@ -1,4 +1,4 @@
-"""Finds the log of a recording, and turns unreadable files into a sentence and an exit code."""
+"""Finds the log of a recording, names missing parts, and turns unreadable files into a sentence and an exit code."""
 
 import os
 from collections.abc import Iterator
@@ -7,9 +7,12 @@ from pathlib import Path
 
 import typer
 
+from fwk.cli.arguments import note_incomplete
 from fwk.cli.run.run_directory import named
-from fwk.lcm.log_parts import LogError, is_later_part, is_log
+from fwk.lcm.log_file import LogError
+from fwk.lcm.log_parts import is_later_part, is_log
 from fwk.lcm.typegen import TypeGenerationError
+from fwk.recording.missing_parts import missing_parts
 
 
 @contextmanager
@@ -25,12 +28,20 @@ def failing(code: int) -> Iterator[None]:
 def find_log(path: Path) -> Path:
     """Returns the log: the file itself, or the only log in a run directory, which may be given by its name alone.
 
+    A log that lacks parts is read without them; the command names them on stderr and ends with exit code 1.
+
     Raises:
-        LogError: the directory contains no log, or several.
+        LogError: the directory contains no log, or several, or the file cannot be read.
     """
     path = named(path)
-    if not os.path.isdir(path):  # also False for text that cannot be a path, and without permission
-        return path
+    log = _log_in(path) if os.path.isdir(path) else path  # not a directory: also text that cannot be a path
+    for missing in missing_parts(log):
+        typer.echo(f"warning: {missing}", err=True)
+        note_incomplete()
+    return log
+
+
+def _log_in(path: Path) -> Path:
     found = [file for file in sorted(path.iterdir()) if _begins_log(file)]
     if len(found) != 1:
         names = ", ".join(file.name for file in found) or "none"

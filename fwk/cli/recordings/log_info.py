@@ -43,7 +43,7 @@ def log_info(
     else:
         say(*_summary(info))
         say_table(_table(info))
-    if check and (info.damaged_bytes or info.changed):
+    if check and (info.damaged_bytes or info.changed or info.missing):
         raise typer.Exit(1)
 
 

@@ -5,7 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from fwk.lcm.log_parts import LogBytes, LogError
+from fwk.lcm.log_file import LogError
+from fwk.lcm.log_parts import LogBytes
 
 _SMALL_BYTES = 20 << 20  # read within a moment
 

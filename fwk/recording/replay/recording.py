@@ -29,6 +29,7 @@ from fwk.model.tick_events import (
     TickEvent,
     events_of,
 )
+from fwk.recording.missing_parts import missing_parts
 from fwk.recording.pictures import FRAME, RecordedPicture, picture_of
 from fwk.recording.versions import (
     BROKEN,
@@ -123,6 +124,8 @@ class Recording:
     def _gap(self, missing: int, tick: int) -> str:
         skipped = self.skipped_bytes
         cause = f"{skipped} bytes are damaged" if skipped else "the disk was full, or they were removed"
+        if parts := missing_parts(self.path):
+            cause = str(parts[0])
         before = f"; replay the ticks before it with --to-tick {tick}" if tick else ""
         return f"{self.path}: {missing} messages are missing after tick {tick}: {cause}{before}"
 

@@ -3,8 +3,12 @@
 from dataclasses import replace
 from pathlib import Path
 
+import pytest
+
 from fwk.cli.run.run_directory import make_run_dir
 from fwk.display.summary import introduction, summary
+from fwk.lcm.event_log import LogWriter
+from fwk.recording.part_compressor import compress_part
 from fwk.supervisor.options import Outcome, RunOptions
 from tests.fwk.cli.cli_runs import MATCH, component, game_state, plan, status
 
@@ -56,6 +60,17 @@ def test_the_recording_is_named_only_if_there_is_one() -> None:
     assert lines()[-1] == "run directory: runs/1"
     assert "recording: runs/1/log.lcm" in lines(record=RUN_DIR / "log.lcm")
     assert not any(line.startswith("recording") for line in lines())
+
+
+def test_the_recording_has_the_names_of_its_files(tmp_path: Path) -> None:
+    log = tmp_path / "log.lcm"
+    with LogWriter(log, pytest.fail) as made:
+        made.append("a", b"", 0)
+        assert compress_part(made.split() or log)
+        assert f"recording: {log}.zst" in lines(record=log)
+        made.append("a", b"", 1)
+        made.flush()
+        assert f"recording: {log}.zst to log.lcm.01, 2 files" in lines(record=log)
 
 
 def test_gaps_of_the_recording_are_reported() -> None:

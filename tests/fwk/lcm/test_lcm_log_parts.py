@@ -10,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from fwk.lcm import log_parts
+from fwk.lcm import log_file, log_parts
 from fwk.lcm.event_log import LogError, LogReader, LogWriter
-from fwk.lcm.log_parts import LogBytes, exists, is_later_part, locked, parts_of
+from fwk.lcm.log_file import LogFile, locked
+from fwk.lcm.log_parts import LogBytes, exists, is_later_part, parts_of
 from fwk.lcm.seekable_zstd import FRAME_BYTES, CompressedFile, CompressedFileError, compress
 from fwk.recording.part_compressor import compress_part
 
@@ -74,15 +75,15 @@ def test_reading_goes_on_when_a_part_is_compressed_meanwhile(tmp_path: Path) -> 
 def test_a_part_may_be_compressed_while_it_is_opened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     log = tmp_path / "log.lcm"
     contents = split_log(log)
-    waiting, right = set(parts_of(log)), log_parts._opened
+    waiting, right = set(parts_of(log)), log_file.opened
 
-    def opened(path: Path) -> log_parts._File:
+    def opened(path: Path) -> LogFile:
         if path in waiting:
             waiting.remove(path)
             assert compress_part(path)
         return right(path)
 
-    monkeypatch.setattr(log_parts, "_opened", opened)
+    monkeypatch.setattr(log_parts, "opened", opened)
     assert contents_of(log) == contents
     assert not waiting
 

@@ -8,7 +8,8 @@ import pytest
 
 from fwk import Component, Writes, channel
 from fwk.lcm.event_log import LogReader
-from fwk.lcm.log_parts import is_compressed, parts_of
+from fwk.lcm.log_file import is_compressed
+from fwk.lcm.log_parts import parts_of
 from fwk.logs.rotating import RotatingFile
 from fwk.logs.text_file import TextLog
 from fwk.model.sections import RecordPlan

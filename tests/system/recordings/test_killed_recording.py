@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from fwk.clock import US_PER_S
-from fwk.lcm.log_parts import is_compressed, parts_of
+from fwk.lcm.log_file import is_compressed
+from fwk.lcm.log_parts import parts_of
 from fwk.recording.log_info import log_info
 from tests.harness.fixtures import Launch
 from tests.harness.runs import PortBlock, fwk
