@@ -48,7 +48,7 @@ def summary(plan: Plan, options: RunOptions, outcome: Outcome) -> list[str]:
         if component.state not in figures.WELL
     ]
     if options.record and (not outcome.deleted or exists(options.record)):
-        lacks = f"; {outcome.unrecorded} messages were lost on their way there" if outcome.unrecorded else ""
+        lacks = f"; {outcome.unrecorded} messages are missing in it" if outcome.unrecorded else ""
         lines.append(f"recording: {_files(options.record)}{lacks}")
     if not outcome.deleted or options.run_dir.exists():
         lines.append(f"run directory: {options.run_dir}")

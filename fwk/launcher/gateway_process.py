@@ -50,6 +50,7 @@ def run_gateway(
     if public:
         mirror = Unwrap(sinks.Mirror(plan, public, gateway.publisher), ours, gateway.dynamic.plain)
         gateway.sinks.append(targets.above(mirror, plan.log.bus))
+    recorders: list[sinks.Recorder] = []
     gateway.sinks += [
         *targets.files(plan.log, options.run_dir, gateway.log.error),
         *targets.syslog(plan.log, plan.name, gateway.log.error),
@@ -57,11 +58,12 @@ def run_gateway(
         bridge,
         *targets.components(plan, gateway.take_in, gateway.log),
         targets.above(sinks.Display(plan, display), plan.log.console),
-        sinks.Newest(plan, control, lambda: gateway.lost),
+        sinks.Newest(plan, control, lambda: gateway.lost + sum(each.dropped for each in recorders)),
     ]
     if options.record:
         try:
             recorder = _recorder(plan, options.record, rings, gateway.log.error)
+            recorders.append(recorder)
             recorded: Sink = Unwrap(recorder, plain, gateway.dynamic.plain)
             if not plan.record.has_all_channels:
                 recorded = sinks.ChosenChannels(recorded, plan.record)

@@ -11,6 +11,7 @@ NOTE = "note"
 """Source file of the log lines that `fwk note` writes: the bookmarks of a recording."""
 
 _NAME = re.compile(r"[A-Za-z_][\w-]*(/[A-Za-z_][\w-]*)*", re.ASCII)
+_NAME_CHARACTERS = re.compile(r"[\w/-]+", re.ASCII)
 _PATTERN = re.compile(r"(?=.*\*)[\w*-]+(/[\w*-]+)*/[A-Za-z_][\w-]*", re.ASCII)
 
 
@@ -23,6 +24,8 @@ def mistake_in(name: str) -> str:
     if size > CHANNEL_BYTES:
         return f"'{name}' has {size} bytes, LCM carries {CHANNEL_BYTES}; shorten it"
     if not _NAME.fullmatch(name):
+        if name and _NAME_CHARACTERS.fullmatch(name):
+            return f"'{name}' is not a valid name; each part begins with a letter or '_', such as cyan1/ball"
         return f"'{name}' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball"
     if name.startswith(RESERVED):
         return f"'{name}': names that begin with '{RESERVED}' are the framework's own; take another namespace"

@@ -153,7 +153,7 @@ def _modules_in(folders: Sequence[str]) -> list[str]:
 
 
 def _python_files(folder: str, depth: int) -> Iterator[str]:
-    """Returns the modules of a folder, and of folders below with as few files as packages have."""
+    """Returns the modules of a folder except tests, and of folders below with as few files as packages have."""
     try:
         entries = sorted(os.scandir(folder), key=lambda entry: entry.name)[:_FILES_MAX]
     except OSError:
@@ -161,7 +161,8 @@ def _python_files(folder: str, depth: int) -> Iterator[str]:
     for entry in entries:
         stem = entry.name.removesuffix(".py")
         if stem.isidentifier() and stem != entry.name and stem != "__init__":
-            yield entry.path
+            if not stem.startswith("test_") and stem != "conftest":
+                yield entry.path
         elif depth and entry.name.isidentifier() and entry.is_dir():
             yield from _python_files(entry.path, depth - 1)
 

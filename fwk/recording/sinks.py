@@ -45,6 +45,11 @@ class Recorder:
         self._after_end = 0
         self._is_full = False
 
+    @property
+    def dropped(self) -> int:
+        """Number of messages that could not be written, for example because the disk was full."""
+        return self._writer.dropped
+
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         """Adds a message, unless the recording has reached its limit."""
         if self._is_full:
@@ -178,7 +183,7 @@ class Display:
 
 
 LOST = "fwk/lost"
-"""Key of the data for the supervisor at the end: number of messages that the gateway never got."""
+"""Key of the data for the supervisor at the end: number of messages that the recording lacks."""
 
 
 class Newest:

@@ -57,6 +57,6 @@ class Outcome:
     newest: dict[str, Any] = field(default_factory=dict)
     """Newest message of each mirrored channel, decoded."""
     unrecorded: int = 0
-    """Messages that were lost on their way to the recording."""
+    """Messages that the recording lacks: lost on their way to it, or not written."""
     deleted: str = ""
     """File of the run that was deleted during the run, as text; empty: none."""

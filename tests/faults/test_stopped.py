@@ -153,6 +153,6 @@ def test_messages_lost_in_real_time_are_reported_and_replayed(
     assert "gateway: d/note: 1 messages of 5 to 5 are lost and not in the recording" in run.text
     assert "f/player: d/note: 1 messages of 5 to 5 lost" in run.text
     assert re.search(r"messages and ticks: lost [1-9]", run.text), run.text
-    assert re.search(r"recording: .*log.lcm; \d messages were lost on their way there", run.text), run.text
+    assert re.search(r"recording: .*log.lcm; \d messages are missing in it", run.text), run.text
     lost = [event for _, event in recording.events if isinstance(event, MessageLost)]
     assert {(event.host, event.sequence) for event in lost} >= {(host, 5) for host in (0, 1, 2, 4, 5)}

@@ -76,7 +76,7 @@ def test_the_recording_has_the_names_of_its_files(tmp_path: Path) -> None:
 def test_gaps_of_the_recording_are_reported() -> None:
     outcome = Outcome(0, 1200, 60.0, 30.0, "1200 ticks done", unrecorded=7)
     said = summary(plan(), RunOptions(RUN_DIR, record=RUN_DIR / "log.lcm"), outcome)
-    assert "recording: runs/1/log.lcm; 7 messages were lost on their way there" in said
+    assert "recording: runs/1/log.lcm; 7 messages are missing in it" in said
 
 
 def test_a_run_that_never_ticked_has_a_summary_too() -> None:

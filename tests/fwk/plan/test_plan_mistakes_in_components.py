@@ -138,6 +138,15 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:2: it/a: no module 'gardener'; there is probe",
+        """
+        components:
+          it/a: {use: gardener}
+        --- probe.py
+        --- test_gardener.py
+        """,
+    ),
+    Broken(
         "it.yaml:2: cyan1/a: '{temm}' in '{temm}*/odometry' has no value; did you mean 'team'?",
         """
         templates: {bot: {
@@ -182,7 +191,7 @@ def test_settings(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
-        "it.yaml:2: '1/a' is not a valid name; use letters, digits, '_', '-' and '/', such as cyan1/ball",
+        "it.yaml:2: '1/a' is not a valid name; each part begins with a letter or '_', such as cyan1/ball",
         """
         components:
           1/a: {use: plan_parts:Odometer}

@@ -3,6 +3,7 @@
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 from collections.abc import Callable
@@ -50,6 +51,7 @@ def test_a_full_disk_stops_log_and_recording_only(
     assert run.wait() == 0, run.text
     assert run.text.count("No space left on device") == 3
     assert "messages are missing in the recording" in run.text
+    assert re.search(r"^recording: .*log\.lcm; [1-9][0-9]* messages are missing in it$", run.text, re.MULTILINE)
     (folder,) = (disk / ".cache" / "fwk" / "runs").iterdir()
     reader = LogReader(folder / "log.lcm")
     numbers = [event.number for event in reader]
