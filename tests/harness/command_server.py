@@ -6,6 +6,7 @@ at its end, how it ended.
 """
 
 import ctypes
+import fcntl
 import gc
 import inspect
 import json
@@ -14,6 +15,7 @@ import selectors
 import signal
 import socket
 import sys
+import termios
 from importlib import import_module
 from pathlib import Path
 from pkgutil import walk_packages
@@ -91,7 +93,7 @@ def _leave(server: int) -> None:
 
 def carry_out(request: dict[str, Any], streams: list[int]) -> NoReturn:
     """Runs a command as its script in the environment's `bin` would run it."""
-    if request["session"]:
+    if request["session"] or request["terminal"]:
         os.setsid()
     _mark(request["environment"].get(MARK, ""))
     os.environ.clear()
@@ -99,6 +101,8 @@ def carry_out(request: dict[str, Any], streams: list[int]) -> NoReturn:
     os.chdir(request["folder"])
     for number, descriptor in enumerate(streams):
         os.dup2(descriptor, number)
+    if request["terminal"]:
+        fcntl.ioctl(0, termios.TIOCSCTTY, 0)
     os.closerange(3, max(int(name) for name in os.listdir("/proc/self/fd")) + 1)
     sys.stdin = open(0)  # noqa: SIM115 - the streams stay open until the end
     sys.stdout = open(1, "w")  # noqa: SIM115

@@ -76,20 +76,37 @@ class Command:
 
 
 def start(
-    command: list[str], folder: Path, environment: dict[str, str], output: int, error: int, *, session: bool = False
+    command: list[str],
+    folder: Path,
+    environment: dict[str, str],
+    output: int,
+    error: int,
+    *,
+    session: bool = False,
+    terminal: int | None = None,
 ) -> "Command | subprocess.Popen[bytes]":
     """Starts `fwk` or `fwk-launch`, given by its path in `BIN`, with these words.
 
+    `terminal` is its standard input and controls its session; a command in a terminal is always forked.
     Programs before it, as `unshare`, and variables that libraries read while they are imported need a real start.
     """
     if Path(command[0]).parent == BIN and all(
         key.startswith(_FORKED_WITH) or key == MARK for key, _ in environment.items() ^ _ENVIRONMENT.items()
     ):
-        request = {"command": command, "folder": str(folder), "environment": environment, "session": session}
+        request = {
+            "command": command,
+            "folder": str(folder),
+            "environment": environment,
+            "session": session,
+            "terminal": terminal is not None,
+        }
         data = json.dumps(request).encode()
         if len(data) < REQUEST_BYTES:
             # Two runs and a run and its replay never have a server in common: sets are in another order in each.
-            return _forked(data, next(_RUNS) % 2 if Path(command[0]).name == "fwk-launch" else 2, output, error)
+            return _forked(
+                data, next(_RUNS) % 2 if Path(command[0]).name == "fwk-launch" else 2, terminal, output, error
+            )
+    assert terminal is None, f"cannot be forked: {command}"
     return subprocess.Popen(
         command,
         cwd=folder,
@@ -119,11 +136,11 @@ def run(
         return subprocess.CompletedProcess(command, code, said, complained)
 
 
-def _forked(request: bytes, server: int, output: int, error: int) -> Command:
+def _forked(request: bytes, server: int, terminal: int | None, output: int, error: int) -> Command:
     report, reports = os.pipe()
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    socket.send_fds(_server(server), [request], [nothing, output, error, reports])
-    os.close(nothing)
+    typed = os.open(os.devnull, os.O_RDONLY) if terminal is None else os.dup(terminal)
+    socket.send_fds(_server(server), [request], [typed, output, error, reports])
+    os.close(typed)
     os.close(reports)
     return Command(report)
 

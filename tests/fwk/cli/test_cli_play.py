@@ -1,7 +1,6 @@
 """`fwk play`: keys, bad input, what lcm-logger hears, and a live component on a played log."""
 
 import signal
-import sys
 from pathlib import Path
 
 import pytest
@@ -125,7 +124,7 @@ def test_a_live_component_reads_a_played_log(
 def test_play_obeys_keys_in_a_terminal(tmp_path: Path, ports: PortBlock) -> None:
     recording(tmp_path / "log", ticks=100)
     words = ("play", "log", "--paused", "--url", ports.public_url)
-    terminal = Terminal(tmp_path, sys.executable, "-m", "fwk.cli.main", *words)
+    terminal = Terminal(tmp_path, "fwk", *words)
     for keys, shown in (
         ("", "tick 1, 0.05 of 5.00 s, speed 1, paused, 0 messages"),
         ("s", "tick 1, 0.05 of 5.00 s, speed 1, paused, 3 messages"),

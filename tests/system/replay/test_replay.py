@@ -4,7 +4,6 @@ import json
 import random
 import re
 import signal
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -123,7 +122,7 @@ def test_verify_names_every_component_that_differs(recorded: Path) -> None:
 
 
 def test_a_replay_stops_in_the_debugger_and_goes_on_exactly(recorded: Path) -> None:
-    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "12"]
+    command = ["fwk", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "12"]
     stopped = Terminal(recorded, *command, "--verify")
     assert "loop()" in stopped.prompt()
     assert "('e/player', 12)" in stopped.ask("p (self.name, self.clock.tick)")
@@ -143,7 +142,7 @@ def test_a_replay_stops_in_the_debugger_and_goes_on_exactly(recorded: Path) -> N
 def test_a_component_that_fails_in_replay_can_be_debugged(recorded: Path) -> None:
     file = recorded / "player.py"
     file.write_text(file.read_text().replace("        self.note.write()", "        1 / (self.clock.tick - 20)"))
-    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
+    command = ["fwk", "replay", "log.lcm", "--debug", "e/player", "--from-tick", "19"]
     failed = Terminal(recorded, *command)
     failed.prompt()
     assert "ZeroDivisionError" in failed.ask("c")

@@ -26,8 +26,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def debugged(folder: Path, name: str, *words: str) -> Terminal:
     """A replay under pdb, at its first prompt."""
-    command = [sys.executable, "-m", "fwk.cli.main", "replay", "log.lcm", "--debug", name, *words]
-    terminal = Terminal(folder, *command)
+    terminal = Terminal(folder, "fwk", "replay", "log.lcm", "--debug", name, *words)
     assert "loop()" in terminal.prompt()
     return terminal
 
