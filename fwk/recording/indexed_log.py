@@ -8,6 +8,7 @@ from pathlib import Path
 
 from fwk.lcm.envelope import STAMP
 from fwk.lcm.event_log import LogWriter
+from fwk.lcm.log_file import existing
 from fwk.lcm.log_parts import LogBytes
 from fwk.lcm.messages import Header
 from fwk.lcm.stamped_log import stamp_in
@@ -88,7 +89,8 @@ class IndexedLogWriter(LogWriter):
         if self._file.closed:
             return
         super().close()
-        if self.dropped or not self._end or not self.path.is_file():
+        first = existing(self.path)  # may have been compressed by now
+        if self.dropped or not self._end or not first or not first.is_file():
             return
         if self._end > self._begin:
             self._end_block()

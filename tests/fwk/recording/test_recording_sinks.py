@@ -1,6 +1,7 @@
 """Targets of the gateway's messages, without a gateway."""
 
 import socket
+import time
 from dataclasses import replace
 from pathlib import Path
 
