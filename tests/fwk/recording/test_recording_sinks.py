@@ -1,7 +1,6 @@
 """Targets of the gateway's messages, without a gateway."""
 
 import socket
-import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -19,6 +18,7 @@ from fwk.recording.sinks import ChosenChannels, Display, Newest, Recorder
 from fwk.testing.plans import plan_of
 from lcmtypes.core import excerpt_t, log_t
 from lcmtypes.robot import imu_t
+from tests.harness.runs import pause
 
 
 class World(Component):
@@ -104,7 +104,7 @@ def test_a_recording_in_parts_is_the_same_log(tmp_path: Path, limit: RecordPlan,
                 recorder.message("world/truth", part + b" %d" % tick, tick * 50_000)
             recorder.tick()
         while record.compress and not (tmp_path / "parts.lcm.zst").exists():
-            time.sleep(0.001)  # the recording ends long after its first part
+            pause()  # the recording ends long after its first part
         recorder.close()
     (_, *whole), (_, *split) = LogReader(tmp_path / "whole.lcm"), LogReader(tmp_path / "parts.lcm")
     assert split == whole
