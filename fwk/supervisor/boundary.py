@@ -55,7 +55,7 @@ class Boundary:
         channels: ChannelRequests,
         changes: Changes,
         requests: BoundaryRequests,
-        lifecycle: Lifecycle,
+        lifecycle: Lifecycle[HostProcess],
         barrier: Barrier,
         tick_log: TickLog,
     ) -> None:

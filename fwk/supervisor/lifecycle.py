@@ -1,7 +1,7 @@
 """Translates requests such as `restart cyan1/*` into desired states of host processes, or refuses them."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from typing import Any, Generic, Protocol, TypeVar, cast
 
 from fwk.control.dependents import users_of, with_needs, with_users
 from fwk.control.requests import Action, RequestError
@@ -20,10 +20,38 @@ _RUNNING = ("starting", "running", "waiting")
 _LOADED = "; only components of the launch file can be loaded, also those with 'start: false'"
 
 
-class Lifecycle:
+class Managed(Protocol):
+    """A host with a desired state."""
+
+    index: int
+    wanted: bool
+    fresh_code: bool
+
+    @property
+    def name(self) -> str:
+        """Name for messages."""
+
+    @property
+    def state(self) -> str:
+        """State of the host."""
+
+    def want_stop(self, now_us: int) -> None:
+        """Wants the host to stop."""
+
+    def want_start(self, now_us: int) -> None:
+        """Wants the host to run."""
+
+    def want_restart(self, now_us: int) -> None:
+        """Wants the host to start anew."""
+
+
+H = TypeVar("H", bound=Managed)
+
+
+class Lifecycle(Generic[H]):
     """Turns requests for components into desired states of their hosts."""
 
-    def __init__(self, plan: Plan, table: Sequence[HostProcess]) -> None:
+    def __init__(self, plan: Plan, table: Sequence[H]) -> None:
         self._plan = plan
         self._table = table
         self._sources = Sources(plan)
@@ -51,7 +79,7 @@ class Lifecycle:
             raise RequestError(f"no component '{name}'; {nearest(name, names)}")
         return names.index(name)
 
-    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[HostProcess]:
+    def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[H]:
         """Returns the hosts concerned; with `force`, unloading includes the components that need them.
 
         Raises:
@@ -77,7 +105,7 @@ class Lifecycle:
         self._check_whole(action, chosen, entries)
         return list(entries.values())
 
-    def request(self, action: Action, entry: HostProcess, now_us: int) -> None:
+    def request(self, action: Action, entry: H, now_us: int) -> None:
         """Sets the desired state of a host."""
         if action in _STOPS:
             entry.want_stop(now_us)
@@ -87,7 +115,7 @@ class Lifecycle:
             entry.fresh_code = entry.fresh_code or action == "reload"
             entry.want_restart(now_us)
 
-    def left_without(self, entries: Sequence[HostProcess]) -> list[dict[str, Any]]:
+    def left_without(self, entries: Sequence[H]) -> list[dict[str, Any]]:
         """Returns the channels that lose their writer when these hosts end, each with its remaining readers."""
         hosts = {entry.index for entry in entries}
         found = []
@@ -101,7 +129,7 @@ class Lifecycle:
                 found.append({"channel": channel.name, "readers": [self._name(index) for index in readers]})
         return found
 
-    def _entry(self, index: int) -> HostProcess:
+    def _entry(self, index: int) -> H:
         return self._table[self._plan.components[index].host]
 
     def _runs(self, index: int) -> bool:
@@ -140,7 +168,7 @@ class Lifecycle:
             names = ", ".join(self._name(index) for index in chosen)
             raise RequestError(f"{'; '.join(found)}; not reloaded, so the old code continues: {names}")
 
-    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, HostProcess]) -> None:
+    def _check_whole(self, action: Action, chosen: Sequence[int], entries: Mapping[int, H]) -> None:
         """Refuses to start or stop a part of a process."""
         for host, entry in entries.items():
             others = [self._name(index) for index in self._plan.hosts[host].components if index not in chosen]
@@ -154,7 +182,7 @@ class Lifecycle:
 class PluginRequests:
     """Grants requests of the plugin-control aspect."""
 
-    def __init__(self, core: Core, hosts: Hosts, lifecycle: Lifecycle) -> None:
+    def __init__(self, core: Core, hosts: Hosts, lifecycle: Lifecycle[HostProcess]) -> None:
         self._core = core
         self._hosts = hosts
         self._lifecycle = lifecycle

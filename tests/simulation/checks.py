@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from random import Random
 
+from fwk.lcm.messages import Header
 from fwk.model.plan import NOBODY
+from fwk.recording.replay.branch import Branch
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from tests.simulation.oracle import contradictions
@@ -26,7 +28,7 @@ class Failure:
     """A promise that a history breaks."""
 
     promise: str
-    """The promise in a word: stuck, error, oracle, single, lost, settings, replay, faults, hosting, end."""
+    """The promise in a word: stuck, error, oracle, single, lost, settings, replay, branch, faults, hosting, end."""
     text: str
 
     def __str__(self) -> str:
@@ -96,6 +98,7 @@ def _alone(outcome: Outcome, scenario: Scenario) -> Iterator[Failure]:
     yield from _lost(outcome, log, scenario)
     yield from _settings(outcome, log)
     yield from _replayed(outcome)
+    yield from _branched(outcome, scenario)
 
 
 def _single(outcome: Outcome) -> Iterator[Failure]:
@@ -165,6 +168,63 @@ def _replayed(outcome: Outcome) -> Iterator[Failure]:
         yield Failure("replay", str(min(replay.differences, key=lambda difference: difference.key)))
     elif replay.compared < recorded:
         yield Failure("replay", f"{replay.compared} of {recorded} messages were compared")
+
+
+def _branched(outcome: Outcome, scenario: Scenario) -> Iterator[Failure]:
+    """An unchanged branch of the recording continues with the same messages."""
+    if outcome.ticks < 2:
+        return
+    tick, sink = Random(scenario.seed).randrange(1, outcome.ticks), _Kept()
+    branch = Branch(Recording(outcome.path))
+    try:
+        branch.run(tick)
+        branch.check_state()
+        branch.go_on(outcome.ticks, sink)
+    except RecordingError as error:
+        yield Failure("branch", f"after tick {tick}: {error}")
+        return
+    begin, end = _marks_at(outcome.log, tick), _marks_at(outcome.log, outcome.ticks)
+    for channel, messages in outcome.log.messages.items():
+        if channel not in end:  # a dynamic one
+            continue
+        visible = range(begin.get(channel, 0) + 1, end[channel] + 1)
+        expected = {header.sequence: data for header, data in messages if header.sequence in visible}
+        written = {Header.of(data).sequence: data for data in sink.messages.get(channel, [])}
+        lost = set(visible) - expected.keys()  # on the way to the recording
+        written = {number: data for number, data in written.items() if number not in lost}
+        if written != expected:
+            number = next(each for each in visible if written.get(each) != expected.get(each))
+            one, other = written.get(number), expected.get(number)
+            words = [message_words(channel, each) if each else "nothing" for each in (one, other)]
+            yield Failure("branch", f"after tick {tick}: {words[0]} instead of {words[1]}")
+            return
+
+
+def _marks_at(log: Log, tick: int) -> dict[str, int]:
+    """Returns the newest visible message of each channel of the plan at the end of a tick."""
+    names = {each["index"]: each["name"] for each in log.plan["channels"]}
+    found: dict[str, int] = {}
+    for record in log.records:
+        if record.tick <= tick:
+            found |= {names[index]: mark for index, mark in record.marks.items() if index in names}
+    return found
+
+
+class _Kept:
+    """Sink that keeps the messages by channel."""
+
+    def __init__(self) -> None:
+        self.messages: dict[str, list[bytes]] = {}
+
+    def message(self, channel: str, data: bytes, _time_us: int) -> None:
+        """Keeps a message."""
+        self.messages.setdefault(channel, []).append(data)
+
+    def tick(self) -> None:
+        """Does nothing."""
+
+    def close(self) -> None:
+        """Does nothing."""
 
 
 def _compared(scenario: Scenario, outcome: Outcome, folder: Path, outcomes: list[Outcome]) -> Iterator[Failure]:

@@ -13,8 +13,9 @@ from fwk.cli.run.run_directory import make_run_dir
 from fwk.cli.run.run_files import write_run_files
 from fwk.recording.difference import Difference
 from fwk.recording.differing import differing, lines_of
-from fwk.recording.replay.branch import Branch, with_classes
+from fwk.recording.replay.branch import Branch
 from fwk.recording.replay.branch_log import begun_log, last_tick
+from fwk.recording.replay.other_classes import with_classes
 from fwk.recording.replay.recording import Recording, RecordingError
 
 LOG = "log.lcm"
@@ -64,7 +65,7 @@ def go_on_live(recording: Recording, asked: BranchRequest, as_json: bool) -> Non
     if as_json:
         rows = [row.plain() for row in differing(differences, recording.plan)]
         said: dict[str, Any] = {"log": str(log_path), "branch_tick": asked.to_tick, "last_tick": until_tick}
-        said |= {"absent": branch.absent, "ignored": sorted(branch.decisions.ignored), "differing_before": rows}
+        said |= {"absent": branch.absent, "refused": branch.decisions.participants.refused, "differing_before": rows}
         typer.echo(json.dumps(said, indent=2))
         return
     for line in _notes(branch, differences, recording, asked.to_tick):
@@ -86,9 +87,7 @@ def _last_live_tick(recording: Recording, asked: BranchRequest) -> int:
 
 def _notes(branch: Branch, differences: Sequence[Difference], recording: Recording, to_tick: int) -> list[str]:
     said = [f"not in the branch: {name}: {reason}" for name, reason in branch.absent.items()]
-    said += [
-        f"{name}: its requests to start or stop components are ignored" for name in sorted(branch.decisions.ignored)
-    ]
+    said += branch.decisions.participants.refused
     if differences:
         rows = differing(differences, recording.plan)
         names = ", ".join(row.component for row in rows)

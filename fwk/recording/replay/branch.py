@@ -1,14 +1,9 @@
 """Branch: a replay that goes on live after a tick, as a run of its own with its own recording."""
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
-from importlib import import_module
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from fwk.clock import US_PER_S
-from fwk.component.component import Component
-from fwk.component.declaration import declaration
 from fwk.component.images import Frame
-from fwk.component.port import DeclarationError
 from fwk.control.requests import RequestError
 from fwk.control.settings import NewSettings, RunSettings
 from fwk.gateway.connections import Sink
@@ -26,26 +21,33 @@ from fwk.model.tick_events import (
     HostStopped,
     IterationDone,
     MainLoopGiven,
+    OutsideTaken,
     StageBegun,
     StageDone,
     TickEvent,
     TickTold,
     events_message,
 )
+from fwk.plan.what_ran import changed_modules
 from fwk.recording.replay.decisions import Decisions
 from fwk.recording.replay.frames import FrameSource, RingFrames
-from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.replay.recording import RecordedTick, Recording, RecordingError
 from fwk.recording.replay.replay import Made, Replay
 from fwk.recording.versions import RECORD
-from lcmtypes.core import channels_change_t, protocol_t, settings_change_t, tick_record_t
+from lcmtypes.core import channels_change_t, protocol_t, settings_change_t, tick_record_t, value_t
+
+_STAGES = StageBegun, TickTold
+"""Events with which the stages of a tick begin."""
 
 
 class Branch(Replay):
     """Runs the components of a recording on its inputs up to a tick, and from there on their own outputs.
 
     Up to the tick the recorded messages count, whatever the components write, and the differences are named as in
-    any replay. Afterwards the components go on in lockstep, by the decisions of the run's main loop. Devices and
-    programs outside are absent then. If nothing was changed, the messages are those of the run.
+    any replay. Afterwards the components go on with their own outputs. If nothing was changed, the main loop decides as
+    recorded, so the messages are those of the run. Otherwise, and after the end of the recording, the main loop is in
+    lockstep and decides itself; what the outside did in the run, it does in the branch: messages from outside,
+    settings, starts and stops of hosts. Devices and programs are absent.
 
     Args:
         recording: the recording, perhaps with other classes of components (`with_classes`).
@@ -64,19 +66,23 @@ class Branch(Replay):
             )
         self.absent: dict[str, str] = {}
         """Components and channels that are silent after the branch, each with the reason."""
-        self.decisions = Decisions(recording.plan, self._ledger)
+        self.decisions = Decisions(recording.plan, self._ledger, self._is_busy)
         self._changed = changed or {}
+        self._set_components: set[int] = set()  # with settings of the branch
         self._live = False
+        self._follows = True  # the decisions of the recording
         self._log: Sink | None = None
         self._marks: dict[int, int] = {}  # moved in the running tick
         self._iterations: dict[int, tuple[int, int]] = {}  # by continuous component: newest number and its time
         self._in_envelopes: set[str] = set()
+        self._reads_lines = any(channel.name == LINES and channel.readers for channel in recording.plan.channels)
+        self._later: list[TickEvent] = []  # recorded events of hosts within a tick, for the next boundary
         self._frames_after = {
-            channel: _Frames(self._frames[channel], RingFrames(ring))
-            for channel, ring in self._rings.items()
-            if channel in self._recorded
+            channel: _Frames(self._lives.frames[channel], RingFrames(ring))
+            for channel, ring in self._lives.rings.items()
+            if channel in self._lives.recorded
         }
-        self._frames.update(self._frames_after)
+        self._lives.frames.update(self._frames_after)
 
     @property
     def in_envelopes(self) -> set[str]:
@@ -86,8 +92,8 @@ class Branch(Replay):
     @property
     def cameras_again(self) -> list[str]:
         """Cameras whose frames are recorded, and which run again: their frames come from them after the branch."""
-        writers = {channel.name: channel.writer for channel in self._plan.channels}
-        return [channel for channel in self._frames_after if writers[channel] in self._chosen]
+        writers = {channel.name: channel.writer for channel in self._run_plan.channels}
+        return [channel for channel in self._frames_after if writers[channel] in self._lives.chosen]
 
     def check(self, sets: Sequence[str]) -> list[NewSettings]:
         """Returns the components' new settings after the branch, from `NAME.SETTING=VALUE`.
@@ -96,7 +102,7 @@ class Branch(Replay):
             RecordingError: a setting does not exist, or a value does not fit.
         """
         settings = RunSettings(self._run_plan)
-        for component, changes in self._settings.items():
+        for component, changes in self._lives.settings.items():
             settings.take(NewSettings(component, value_of(changes[-1].values), {}), "the recording")
         try:
             return settings.check(sets)
@@ -110,7 +116,7 @@ class Branch(Replay):
         settings: Sequence[NewSettings] = (),
         begins: Callable[[int], None] = lambda _: None,
     ) -> None:
-        """Runs live up to a tick, after a replay up to the branch.
+        """Runs live up to a tick, after a replay up to the branch and `check_state`.
 
         Args:
             to_tick: the last tick.
@@ -122,17 +128,26 @@ class Branch(Replay):
             RecordingError: a component fails.
         """
         self._live, self._log = True, log
+        is_changed = self._changed or settings or self.left_out or self.differences
+        self._follows = not is_changed and not changed_modules(self._run_plan)
+        self._set_components = {new.component for new in settings}
         for frames in self._frames_after.values():
             frames.go_live()
-        for lives in (*self._lives.values(), *self._leaving.values()):
-            for life in lives:
-                for channel, writer in life.host.runners[life.plan.name].writers.items():
-                    writer.sequence = self._ledger.latest(self._indices[channel])
-        first = True
+        for life in [life for host in range(len(self._run_plan.hosts)) for life in self._lives.living(host)]:
+            for channel, writer in life.host.runners[life.plan.name].writers.items():
+                writer.sequence = self._ledger.latest(self._indices[channel])
+        changes = [(new.component, value_messages(new.values)) for new in settings]
         while self._now < to_tick:
             begins(self._now + 1)
-            self._live_tick(settings if first else ())
-            first = False
+            recorded = self._recorded_tick()
+            if self._follows and recorded:
+                self._follow(recorded)
+            else:
+                self._follows = False
+                self._decide_tick(changes, recorded)
+                if self._reads_lines:
+                    self.absent[LINES] = f"no component reads log lines from tick {self._now} on"
+            changes = []
 
     def check_state(self) -> None:
         """Checks that the state of the main loop is that of the run, and notes what is absent from now on.
@@ -146,98 +161,165 @@ class Branch(Replay):
             wrong = f"{plan.components[self._holder].name} has the main loop in tick {tick} and did not request it here"
         if wrong:
             raise RecordingError(f"{self.recording.path}: cannot go on live after tick {tick}: {wrong}")
-        running = {life.plan.index for lives in self._lives.values() for life in lives}
+        running = {life.plan.index for life in self._lives.all_running()}
         for component in plan.components:
             if component.name in self.left_out:
                 self.absent[component.name] = self.left_out[component.name]
             elif component.index not in running:
                 self.absent[component.name] = f"it did not run in tick {tick}"
-        self.absent |= dict.fromkeys(plan.outside, "messages from outside end")
-        if any(channel.name == LINES and channel.readers for channel in plan.channels):
-            self.absent[LINES] = "no component reads log lines after the branch"
 
-    def _live_tick(self, settings: Sequence[NewSettings]) -> None:
-        """Runs a tick as the main loop does, and records it."""
-        changed = self.decisions.schedule.decide() if self.decisions.schedule.asked else False
-        change = self.decisions.decide_channels()
-        self._begin_tick(self._now + 1, self.decisions.advance(self._time_us), [change] if change else [])
+    def _is_busy(self, host: int) -> bool:
+        """Returns whether a host is late or has not finalized yet."""
+        return host in self._lives.leaving or any(done.host == host for done in self._owed)
+
+    def _recorded_tick(self) -> RecordedTick | None:
+        """Returns the next tick of the recording; None after its end."""
+        try:
+            tick = next(self._ticks, None)
+        except RecordingError as error:
+            tick = None
+            self.absent["the rest of the recording"] = str(error)
+        if tick is None:
+            self._ticks = iter(())
+            self.absent |= dict.fromkeys(self._run_plan.outside, "messages from outside end with the recording")
+            return None
+        outside = self._outside if self._follows else self._outside - {LINES}  # the lines are those of the run
+        self._messages.hide({key: data for key, data in tick.messages.items() if key[0] in outside})
+        return tick
+
+    def _follow(self, tick: RecordedTick) -> None:
+        """Runs a tick with the recorded decisions of the main loop, and records it.
+
+        If the schedule is another one here, the components have changed: the branch decides itself from then on.
+        """
+        record, schedule = tick.record, self.decisions.schedule
+        self._begin_tick(record.tick, record.time_us, record.channels)
+        for settings in record.settings:
+            self._set(settings, record.tick)
+        place = next((at for at, event in enumerate(tick.events) if isinstance(event, _STAGES)), len(tick.events))
+        boundary, stages = tick.events[:place], tick.events[place:]
+        given = [event.component for event in boundary if isinstance(event, MainLoopGiven)]
+        events = self._taken(event for event in boundary if not isinstance(event, MainLoopGiven))
+        if self.decisions.wrong:
+            raise RecordingError(f"{self.recording.path}: cannot go on as in the run: {self.decisions.wrong}")
+        if schedule.asked:
+            schedule.decide()
+        begun = [(event.step, event.stage) for event in stages if isinstance(event, StageBegun)]
+        self._follows = schedule.holder == (given or [self._holder])[0] and [*schedule.steps[: len(begun)]] == begun
+        if schedule.holder != self._holder:
+            events += self._taken([MainLoopGiven(schedule.holder)])
+        events += self._taken(stages if self._follows else self._stages())
+        record.events = events_message(events)
+        self._write(record)
+
+    def _decide_tick(self, settings: Sequence[tuple[int, list[value_t]]], recorded: RecordedTick | None) -> None:
+        """Runs a tick with decisions of its own, and records it."""
+        self._begin_tick(self._now + 1, self.decisions.advance(self._time_us), ())
         record = tick_record_t()
         record.version, record.tick, record.time_us = protocol_t.VERSION, self._now, self._time_us
-        record.channels = [change] if change else []
-        record.settings = [self._settings_change(new) for new in settings]
+        asked = [*settings, *self._recorded_settings(recorded)]
+        record.settings = [self._settings_change(component, values) for component, values in asked]
         for made in record.settings:
             self._set(made, self._now)
-        events: list[TickEvent] = []
-        for event in self._boundary(MainLoopGiven(self.decisions.schedule.holder) if changed else None):
-            events.append(event)
-            self._take_event(event)
-        for event in self._stages():
-            events.append(event)
-            self._take_event(event)
-        record.events = events_message(events)
-        record.channel, record.sequence = list(self._marks), list(self._marks.values())
-        record.n_marks, self._marks = len(record.channel), {}
-        assert self._log
+        events = self._taken(self._boundary(recorded))
+        events += self._taken(self._stages())
+        record.channels, record.events = list(self._changes.values()), events_message(events)
         record.n_settings, record.n_channels = len(record.settings), len(record.channels)
-        self._log.message(RECORD, record.encode(), self._time_us)
-        self._log.tick()
+        self._write(record)
 
-    def _boundary(self, given: MainLoopGiven | None) -> list[TickEvent]:
-        """Returns the decisions before the first stage; at first those about what was late at the branch."""
-        events: list[TickEvent] = [given] if given else []
-        events += [ChannelsChanged(number) for number in self._changes]
-        events += list(self._owed)
-        events += [FinalDone(host, self._now - 1) for host in self._leaving]
-        return events
+    def _taken(self, events: Iterable[TickEvent]) -> list[TickEvent]:
+        """Carries out events; returns them."""
+        made = []
+        for event in events:
+            made.append(event)
+            self._take_event(event)
+        return made
 
-    def _stages(self) -> list[TickEvent]:
-        """Returns the stages of a tick with the dones of their hosts, and the iterations of continuous components."""
-        continuous = [life for lives in self._lives.values() for life in lives if life.plan.rate_hz is not None]
-        events: list[TickEvent] = [TickTold()] if continuous else []
+    def _recorded_settings(self, recorded: RecordedTick | None) -> Iterator[tuple[int, list[value_t]]]:
+        """Yields the settings that the outside gave components in the run, but not to those with `--set`."""
+        for change in recorded.record.settings if recorded else ():
+            if change.component in self._set_components:
+                name = self._run_plan.components[change.component].name
+                self.absent[f"settings of {name}"] = "those of the run after the tick; it has other ones here"
+            else:
+                yield change.component, change.values
+
+    def _boundary(self, recorded: RecordedTick | None) -> Iterator[TickEvent]:
+        """Yields the decisions before the first stage; at first those about what was late at the branch."""
+        here, self._later = [*self._later, *_of_hosts(recorded, True)], [*_of_hosts(recorded, False)]
+        turnover = self.decisions.participants.decide(here)
+        yield from list(self._owed)
+        yield from map(HostStopped, turnover.stopped)
+        leaving = list(self._lives.leaving)
+        yield from [FinalDone(host, self._now - 1) for host in leaving]
+        yield from map(HostLost, dict.fromkeys([*leaving, *turnover.lost]))
+        schedule = self.decisions.schedule
+        if schedule.asked and schedule.decide():
+            yield MainLoopGiven(schedule.holder)
+        if change := self.decisions.decide_channels():
+            self._open([change])
+            yield ChannelsChanged(change.number)
+        for host, incarnation in turnover.coming:
+            yield HostStarted(host, incarnation, self.decisions.newest_change)
+        if self._messages.has_any(self._outside):
+            yield OutsideTaken()
+
+    def _stages(self) -> Iterator[TickEvent]:
+        """Yields the stages of a tick with the dones of their hosts, and the iterations of continuous components."""
+        continuous = [life for life in self._lives.all_running() if life.plan.rate_hz is not None]
+        if continuous:
+            yield TickTold()
         for step, stage in self.decisions.schedule.steps:
-            events.append(StageBegun(stage, step))
-            events += [
-                StageDone(host, self._now, step)
-                for host, lives in sorted(self._lives.items())
-                if any(stage in life.plan.stages for life in lives)
-            ]
+            yield StageBegun(stage, step)
+            for host, lives in sorted(self._lives.running.items()):
+                if any(stage in life.plan.stages for life in lives):
+                    yield StageDone(host, self._now, step)
         for life in continuous:
             number, time_us = self._iterations.get(life.plan.index, (0, -US_PER_S))
             if self._time_us >= time_us + US_PER_S / (life.plan.rate_hz or US_PER_S):
-                events.append(IterationDone(self._run_plan.components[life.plan.index].host, self._now, number + 1))
-        return events
+                yield IterationDone(self._run_plan.components[life.plan.index].host, self._now, number + 1)
 
-    def _settings_change(self, new: NewSettings) -> settings_change_t:
+    def _write(self, record: tick_record_t) -> None:
+        """Records the end of a tick."""
+        assert self._log
+        record.channel, record.sequence = list(self._marks), list(self._marks.values())
+        record.n_marks, self._marks = len(record.channel), {}
+        self._log.message(RECORD, record.encode(), self._time_us)
+        self._log.tick()
+
+    def _settings_change(self, component: int, values: list[value_t]) -> settings_change_t:
         made = settings_change_t()
         self.decisions.newest_change += 1
-        made.number, made.component = self.decisions.newest_change, new.component
-        made.values = value_messages(new.values)
+        made.number, made.component, made.values = self.decisions.newest_change, component, values
         return made
 
     def _take_event(self, event: TickEvent) -> None:
-        components = self._run_plan.hosts
         if isinstance(event, MainLoopGiven) and not self._live:
             self.decisions.check_holder(event.component, self._now)
         elif isinstance(event, StageBegun) and not self._live and self._stage < 0:  # the boundary has ended
             self.decisions.check_holder(self._holder, self._now)
         elif isinstance(event, ChannelsChanged):
             change = self._changes[event.change]
-            if not self._live:
+            if self._follows:
                 self.decisions.check_channels(change)
             opened = [fact.channel for fact in facts_in(change) if fact.channel]
             self._in_envelopes |= {each.name for each in opened if envelope.is_plain(each.type_name)}
         elif isinstance(event, HostStarted):
-            self.decisions.came(components[event.host].components, event.incarnation)
+            self.decisions.came(event.host, event.incarnation)
+            for index in self._run_plan.hosts[event.host].components:
+                if index in self._lives.chosen:
+                    self.absent.pop(self._run_plan.components[index].name, None)
         elif isinstance(event, HostLost | HostStopped):
-            self.decisions.left(components[event.host].components)
+            self.decisions.left(event.host)
         elif isinstance(event, IterationDone):
-            for index in components[event.host].components:
+            for index in self._run_plan.hosts[event.host].components:
                 self._iterations[index] = event.iteration, self._time_us
         super()._take_event(event)
 
     def _begin_tick(self, tick: int, time_us: int, channels: Sequence[channels_change_t]) -> None:
-        if not self._live:
+        if self._follows:
             self.decisions.advance(time_us)  # the recorded time counts
+            self.decisions.participants.forget()
         super()._begin_tick(tick, time_us, channels)
 
     def _set(self, change: settings_change_t, tick: int) -> None:
@@ -248,24 +330,48 @@ class Branch(Replay):
         """Compares what a host's done published up to the branch; afterwards publishes and records it."""
         for life, _ in made:
             if life.done:
-                self.decisions.heed(life.done, self._live)
+                self.decisions.heed(life.done)
         if not self._live:
             super()._compare(host, tick, step, [each for each in made if each[0].plan.name not in self._changed])
             return
-        assert self._log
         for _, written in made:
             by_channel: dict[str, list[bytes]] = {}
             for channel, data in written:
                 by_channel.setdefault(channel, []).append(data)
-                self._log.message(channel, data, self._time_us)
             for channel, messages in by_channel.items():
-                self._publish(channel, messages)
-                self._marks[self._indices[channel]] = sequence_of(messages[-1])
+                self._record(channel, messages)
+
+    def _take_in(self) -> None:
+        """Makes messages from outside visible; after the branch it also records them."""
+        if not self._live:
+            super()._take_in()
+            return
+        for channel, messages in self._messages.take_all(self._outside):
+            self._record(channel, messages)
+
+    def _record(self, channel: str, messages: list[bytes]) -> None:
+        """Publishes messages and records them."""
+        assert self._log
+        for data in messages:
+            self._log.message(channel, data, self._time_us)
+        self._publish(channel, messages)
+        self._marks[self._indices[channel]] = sequence_of(messages[-1])
 
     def _failure(self, component: ComponentPlan, moment: str) -> str:
         return (
             f"{component.name} fails in {moment} of the branch" if self._live else super()._failure(component, moment)
         )
+
+
+def _of_hosts(tick: RecordedTick | None, at_boundary: bool) -> list[TickEvent]:
+    """Returns the recorded starts and ends of hosts at the boundary of a tick, or within the tick."""
+    found: list[TickEvent] = []
+    is_boundary = True
+    for event in tick.events if tick else ():
+        is_boundary = is_boundary and not isinstance(event, _STAGES)
+        if isinstance(event, HostStarted | HostStopped | HostLost) and is_boundary is at_boundary:
+            found.append(event)
+    return found
 
 
 class _Frames:
@@ -280,31 +386,3 @@ class _Frames:
 
     def take(self, number: int, size: int) -> Callable[[], Frame | None]:
         return self._source.take(number, size)
-
-
-def with_classes(recording: Recording, classes: Mapping[str, str]) -> None:
-    """Gives components of a recorded plan other classes, as `module:Class` by component.
-
-    Raises:
-        RecordingError: no such component or class, or the class has other ports.
-    """
-    plan = recording.plan
-    names = {component.name: component for component in plan.components}
-    changed = list(plan.components)
-    for name, word in classes.items():
-        if name not in names:
-            raise RecordingError(f"--with {name}: no such component in this run; there are: {', '.join(names)}")
-        component = names[name]
-        module, _, class_name = word.partition(":")
-        try:
-            kind = getattr(import_module(module), class_name)
-            ports = {port.attribute for port in declaration(kind).ports}
-        except (ImportError, AttributeError, ValueError, TypeError, DeclarationError) as error:
-            raise RecordingError(f"--with {name}={word}: {type(error).__name__}: {error}") from error
-        if not issubclass(kind, Component) or ports != set(component.channels):
-            raise RecordingError(
-                f"--with {name}={word}: its ports are {', '.join(sorted(ports)) or 'none'}, those of the run "
-                f"{', '.join(sorted(component.channels)) or 'none'}; they have to be the same"
-            )
-        changed[component.index] = replace(component, module=module, class_name=class_name)
-    recording.plan = replace(plan, components=tuple(changed))

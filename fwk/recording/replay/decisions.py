@@ -1,6 +1,6 @@
-"""Decisions of the main loop that a replay takes itself when it goes on live: schedule, dynamic channels, time."""
+"""Decisions of the main loop that a replay takes itself when it goes on live: schedule, channels, hosts, time."""
 
-from collections.abc import Iterable
+from collections.abc import Callable
 
 from fwk.bus.sync import place_of
 from fwk.engine.channel_grants import ChannelGrants
@@ -9,6 +9,7 @@ from fwk.engine.visibility import Visibility
 from fwk.model.channel_table import change_message, facts_in
 from fwk.model.plan import Plan
 from fwk.model.requests import channel_request_of
+from fwk.recording.replay.participants import Participants
 from lcmtypes.core import channels_change_t, done_t
 
 
@@ -18,23 +19,24 @@ class Decisions:
     Args:
         plan: the plan of the run.
         ledger: the marks of the run.
+        busy: returns whether a host is late or has not finalized yet.
     """
 
-    def __init__(self, plan: Plan, ledger: Visibility) -> None:
+    def __init__(self, plan: Plan, ledger: Visibility, busy: Callable[[int], bool]) -> None:
         self.schedule = Schedule(plan)
         self.newest_change = 0
         """Number of the newest change of settings or channels."""
         self.wrong = ""
         """Why the decisions are not those of the run; empty: they are."""
-        self.ignored: set[str] = set()
-        """Components whose requests to start or stop others were not carried out after the branch."""
+        self.participants = Participants(plan)
         self._plan = plan
         self._ledger = ledger
+        self._busy = busy
         self._grants = ChannelGrants(plan)
         self._opens = any(component.opens for component in plan.components)
         self._next_us = -1  # logical time of the next tick, as the time source set it
 
-    def heed(self, done: done_t, live: bool) -> None:
+    def heed(self, done: done_t) -> None:
         """Takes what a done requests, before or after the branch."""
         if done.next_time_us >= 0:
             self._next_us = done.next_time_us
@@ -43,17 +45,19 @@ class Decisions:
         for asked in done.channels:
             name = self._plan.components[asked.component].name
             self._grants.ask(done.tick, place_of(done), name, [channel_request_of(asked)])
-        if live:
-            self.ignored |= {self._plan.components[asked.component].name for asked in done.plugins}
+        for starts in done.plugins:
+            self.participants.ask(done.tick, place_of(done), starts)
 
-    def came(self, components: Iterable[int], incarnation: int) -> None:
-        """Notes that components take part from now on."""
-        for component in components:
+    def came(self, host: int, incarnation: int) -> None:
+        """Notes that a host takes part from now on."""
+        self.participants.came(host, incarnation)
+        for component in self._plan.hosts[host].components:
             self._grants.came(component, incarnation)
 
-    def left(self, components: Iterable[int]) -> None:
-        """Notes that components take no part any more."""
-        components = tuple(components)
+    def left(self, host: int) -> None:
+        """Notes that a host takes no part any more."""
+        self.participants.left(host)
+        components = self._plan.hosts[host].components
         self.schedule.left(components)
         for component in components:
             self._grants.left(component)
@@ -76,7 +80,7 @@ class Decisions:
         """Decides about dynamic channels at a boundary; None: nothing changes."""
         if not (self._opens and self._grants.asked):
             return None
-        facts, _ = self._grants.decide()
+        facts, _ = self._grants.decide(lambda component: self._busy(self._plan.components[component].host))
         if not facts:
             return None
         latest = self._ledger.latest

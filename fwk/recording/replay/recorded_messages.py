@@ -68,6 +68,14 @@ class RecordedMessages:
         keys = sorted(key for key in self._hidden if key[0] == channel and key[2] == step)
         return [data for key in keys for data in self._hidden.pop(key)]
 
+    def hide(self, messages: Mapping[tuple[str, int, int], list[bytes]]) -> None:
+        """Takes messages, by channel, tick and step, without a record of the main loop."""
+        self._hidden.update(messages)
+
+    def has_any(self, channels: Container[str]) -> bool:
+        """Returns whether messages of these channels are kept."""
+        return any(key[0] in channels for key in self._hidden)
+
     def take_all(self, channels: Container[str]) -> Iterator[tuple[str, list[bytes]]]:
         """Yields all messages of these channels, each with its channel."""
         for key in [key for key in self._hidden if key[0] in channels]:

@@ -77,11 +77,11 @@ class Recording:
         """Number of bytes that the last reading skipped: at the end of a log whose run was cut off."""
         return self._reader.skipped_bytes
 
-    def ticks(self, to_tick: int | None = None, types: Mapping[str, bytes] | None = None) -> Iterator[RecordedTick]:
-        """Yields all ticks in order, up to `to_tick` if given.
+    def ticks(self, types: Mapping[str, bytes] | None = None) -> Iterator[RecordedTick]:
+        """Yields all ticks in order.
 
         Raises:
-            RecordingError: the log is damaged before that, or lacks messages, or a message of a channel in `types`
+            RecordingError: the log is damaged there, or lacks messages, or a message of a channel in `types`
                 does not begin with that fingerprint.
         """
         messages: dict[tuple[str, int, int], list[bytes]] = {}
@@ -103,8 +103,6 @@ class Recording:
                 record, events = self._record(event)
                 yield RecordedTick(record, events, messages, frames)
                 tick, messages, frames = record.tick, {}, []
-                if to_tick is not None and tick >= to_tick:
-                    return
             elif event.channel == FRAME:
                 frames += [picture] if (picture := picture_of(event.data)) else []
             elif event.channel == LINES or not event.channel.startswith("fwk/"):

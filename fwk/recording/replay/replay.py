@@ -1,16 +1,9 @@
 """Replays a recording tick by tick and compares what the components write with what they wrote."""
 
-import json
-import traceback
-from bdb import BdbQuit
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
 from typing import Any
 
-from fwk.engine.assignment import Start
 from fwk.engine.component_group import Written
-from fwk.engine.failures import ComponentFailedError
-from fwk.engine.visibility import Visibility
 from fwk.lcm.messages import sequence_of
 from fwk.model.channel_table import ChannelTable, facts_in
 from fwk.model.plain_values import value_of
@@ -34,12 +27,12 @@ from fwk.model.tick_events import (
 )
 from fwk.recording.difference import Difference
 from fwk.recording.replay.comparison import OutputComparison
-from fwk.recording.replay.frames import FrameSource, RecordedFrames, RingFrames, private_ring
-from fwk.recording.replay.guard import Guard, ReachesOutsideError
-from fwk.recording.replay.life import Life, Owed, blackboard_at, one_component_a_host
+from fwk.recording.replay.guard import Guard
+from fwk.recording.replay.life import Life, Owed
+from fwk.recording.replay.lives import Lives, opened_in
 from fwk.recording.replay.recorded_messages import RecordedMessages
 from fwk.recording.replay.recording import RecordedTick, Recording, RecordingError
-from fwk.recording.replay.selection import choose, first_bytes, reaches_outside, unrepeatable
+from fwk.recording.replay.selection import choose, first_bytes, unrepeatable
 from lcmtypes.core import channels_change_t, header_t, settings_change_t
 
 Made = list[tuple[Life, Written]]
@@ -69,35 +62,29 @@ class Replay:
         self._comparison = OutputComparison()
         self._messages = RecordedMessages(recording.path, self._comparison.lost)
         self._run_plan = plan
-        self._plan = one_component_a_host(plan)
         self._guard = Guard()
         choice = choose(recording, only, self._guard)
-        self._chosen = choice.components
-        self.left_out = {plan.components[index].name: reason for index, reason in choice.left_out.items()}
-        """Components that are not run, with the reason."""
-        self._recorded = {channel: RecordedFrames(recording.path, channel) for channel in plan.record.frames}
-        self._rings = {channel.name: private_ring(channel.name) for channel in plan.channels if channel.images}
-        live = {channel: RingFrames(ring) for channel, ring in self._rings.items()}
-        self._frames: dict[str, FrameSource] = {**live, **self._recorded}
+        self._lives = Lives(recording, choice, self._guard, self._failure)
+        self._ledger = self._lives.ledger
         self._host_channels = [
             [channel.name for channel in plan.channels if channel.writer in host.components] for host in plan.hosts
         ]
-        self._ledger = Visibility(self._plan)
         self._table = ChannelTable(plan)
         self._names = {channel.index: channel.name for channel in plan.channels}  # with dynamic channels
         self._indices = {channel.name: channel.index for channel in plan.channels}  # of the messages written now
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
-        self._lives: dict[int, list[Life]] = {}  # by host of the run
-        self._leaving: dict[int, list[Life]] = {}  # incarnations that were asked to stop and have not finalized yet
         self._owed: dict[StageDone, list[Owed]] = {}
         self._holder = NOBODY  # component that has the main loop
         self._now = self._time_us = 0  # the running tick and its logical time
         self._stage = self._step = -1  # of the running tick
         self._changes: dict[int, channels_change_t] = {}  # of channels that the tick begins with, by number
-        self._settings: dict[int, list[settings_change_t]] = {}  # by component
-        self._decided: list[channels_change_t] = []
-        self._newest: dict[int, bytes] = {}
         self._revealed: list[tuple[int, list[bytes]]] = []  # messages that the next step of the tick makes visible
+        self._ticks: Iterator[RecordedTick] = iter(())  # that have not been replayed
+
+    @property
+    def left_out(self) -> dict[str, str]:
+        """Components that are not run, with the reason."""
+        return self._lives.left_out
 
     @property
     def compared(self) -> int:
@@ -116,32 +103,44 @@ class Replay:
 
     def run(self, to_tick: int | None = None, begins: Callable[[int], None] = lambda _: None) -> None:
         """Replays all ticks, or until `to_tick`; calls `begins(tick)` before each."""
-        for tick in self.recording.ticks(to_tick, first_bytes(self.recording, self._chosen)):
+        self._ticks = self.recording.ticks(first_bytes(self.recording, self._lives.chosen))
+        for tick in self._ticks:
             begins(tick.record.tick)
             self._tick(tick)
-        for component in self._plan.components:
-            if component.name in self._guard.refused and component.index in self._chosen:  # one of its threads did
-                self._leave_out(component, self._guard.refused[component.name])
+            if to_tick is not None and tick.record.tick >= to_tick:
+                break
+        for component in self._run_plan.components:
+            if component.name in self._guard.refused and component.index in self._lives.chosen:  # one of its threads
+                self._lives.leave_out(component, self._guard.refused[component.name])
 
     def _tick(self, tick: RecordedTick) -> None:
         for picture in tick.frames:
-            if picture.camera in self._recorded:
-                self._recorded[picture.camera].add(picture)
+            if picture.camera in self._lives.recorded:
+                self._lives.recorded[picture.camera].add(picture)
         record = tick.record
         self._begin_tick(record.tick, record.time_us, record.channels)
         self._messages.add(tick, self._names)
-        for settings in record.settings:
-            self._set(settings, record.tick)
-        for event in tick.events:
-            self._take_event(event)
+        self._take_changes(tick)
         for index, mark in zip(record.channel, record.sequence, strict=True):
             self._ledger.publish(index, mark)  # includes messages that the recording lost
 
+    def _take_changes(self, tick: RecordedTick) -> None:
+        """Takes the settings and the events of a recorded tick."""
+        for settings in tick.record.settings:
+            self._set(settings, tick.record.tick)
+        for event in tick.events:
+            self._take_event(event)
+
     def _begin_tick(self, tick: int, time_us: int, channels: Sequence[channels_change_t]) -> None:
         self._now, self._time_us, self._stage, self._step = tick, time_us, -1, -1
-        self._changes = {change.number: change for change in channels}
+        self._changes = {}
+        self._open(channels)
+
+    def _open(self, channels: Sequence[channels_change_t]) -> None:
+        """Takes changes of channels that events of the tick name by number."""
         for change in channels:
-            self._names |= {fact.channel.index: fact.channel.name for fact in facts_in(change) if fact.channel}
+            self._changes[change.number] = change
+            self._names |= opened_in(change)
 
     def _take_event(self, event: TickEvent) -> None:
         """Carries out a decision of the main loop."""
@@ -164,8 +163,8 @@ class Replay:
         elif isinstance(event, FinalDone):
             self._compare(event.host, event.tick, header_t.FINAL, self._finalize(event.host))
         elif isinstance(event, HostLate):
-            for life in self._lives.get(event.host, []):
-                life.hold_newest_frames(self._newest)
+            for life in self._lives.of(event.host):
+                life.hold_newest_frames(self._lives.newest)
             self._owe(StageDone(event.host, self._now, self._step))
         elif isinstance(event, MainLoopGiven):
             self._holder = event.component
@@ -175,34 +174,30 @@ class Replay:
     def _take_change(self, event: TickEvent) -> None:
         """Handles an event that changes the participants, or the missing messages."""
         if isinstance(event, HostStarted):
-            self._start(event.host, event.incarnation, event.change)
+            self._forget(event.host)
+            self._lives.start(event.host, event.incarnation, event.change)
         elif isinstance(event, HostStopped):
-            self._leaving[event.host] = self._lives.pop(event.host, [])
-            for life in self._leaving[event.host]:
-                life.hold_last_frames()
+            self._lives.stop(event.host)
         elif isinstance(event, HostLost):
-            self._end(event.host)
+            self._forget(event.host)
+            self._lives.end(event.host)
         elif isinstance(event, MessageLost):
-            for life in self._living(event.host):
+            for life in self._lives.living(event.host):
                 life.host.lose(event.channel, event.sequence)
         elif isinstance(event, FrameLost):
             component = self._run_plan.components[event.component]
-            for life in self._living(component.host):
+            for life in self._lives.living(component.host):
                 if life.plan.index == component.index:
                     life.miss_frame(self._run_plan.channels[event.channel].name, event.frame)
 
     def _set(self, change: settings_change_t, tick: int) -> None:
         """Takes new settings of a component."""
         self._check_repeatable(change.component, value_of(change.values), tick)
-        self._settings.setdefault(change.component, []).append(change)
-        for life in self._lives.get(self._run_plan.components[change.component].host, []):
-            if life.plan.index == change.component:
-                life.host.set(change)
+        self._lives.set(change)
 
     def _decide(self, change: channels_change_t) -> None:
         """Takes decisions about channels."""
         facts = facts_in(change)
-        self._decided.append(change)
         self._table.apply(facts)
         self._ledger.opened(self._table)
         for fact in facts:
@@ -213,64 +208,18 @@ class Replay:
                     if name in channels:
                         channels.remove(name)
                 self._host_channels[self._run_plan.components[fact.component].host].append(name)
-        for lives in self._lives.values():
-            for life in lives:
-                if life.plan.opens:
-                    life.host.decide(change, self._newest)
-
-    def _living(self, host: int) -> list[Life]:
-        """Returns the lives of a host that run, and those that have not finalized yet."""
-        return [*self._lives.get(host, []), *self._leaving.get(host, [])]
+        self._lives.decide(change)
 
     def _check_repeatable(self, component: int, settings: Any, tick: int) -> None:
         plan = self._run_plan.components[component]
-        if component in self._chosen and (reason := unrepeatable(plan, settings)):
+        if component in self._lives.chosen and (reason := unrepeatable(plan, settings)):
             raise RecordingError(
                 f"{self.recording.path}: {plan.name} cannot be replayed with the settings of tick {tick}: {reason}; "
                 f"replay the ticks before it with --to-tick {tick - 1}, or others with --only"
             )
 
-    def _start(self, host: int, incarnation: int, newest_change: int) -> None:
-        """Starts the chosen components of a host as they were started after that change."""
-        self._end(host)
-        self._lives[host] = []
-        for index in self._run_plan.hosts[host].components:
-            if index in self._chosen:
-                self._begin_life(self._plan.components[index], host, incarnation, newest_change)
-
-    def _begin_life(self, component: ComponentPlan, host: int, incarnation: int, newest_change: int) -> None:
-        changed = [each for each in self._settings.get(component.index, []) if each.number <= newest_change]
-        start = Start(
-            incarnation,
-            self._ledger.sequences(component.index),
-            {component.name: json.dumps(value_of(changed[-1].values))} if changed else {},
-            blackboard_at(self._run_plan, self._decided, newest_change) if component.opens else "[]",
-            newest_change,
-        )
-        with self._failing(component, "its start"):
-            beside = self._run_plan.hosts[self._run_plan.components[component.index].host].components
-            stages = sorted({stage for index in beside for stage in self._run_plan.components[index].stages})
-            self._lives[host].append(
-                Life(self._plan, component, start, self._rings, self._frames, self._ledger, stages)
-            )
-        if component.index not in self._chosen:  # it reached outside
-            return
-        life = self._lives[host][-1]
-        for settings in self._settings.get(component.index, []):
-            if settings.number > newest_change:
-                life.host.set(settings)
-        for change in self._decided if component.opens else ():
-            if change.number > newest_change:
-                life.host.decide(change, self._newest)
-        for channel, data in self._newest.items():
-            life.see(channel, data)
-
-    def _end(self, host: int) -> None:
-        """Ends the lives of a host and drops its unanswered ticks."""
-        for life in self._living(host):
-            life.host.close()
-        self._lives.pop(host, None)
-        self._leaving.pop(host, None)
+    def _forget(self, host: int) -> None:
+        """Drops the unanswered ticks of a host."""
         self._owed = {done: owed for done, owed in self._owed.items() if done.host != host}
 
     def _owe(self, done: StageDone) -> None:
@@ -280,67 +229,42 @@ class Replay:
         """
         self._owed[done] = [
             Owed(life, life.host.compose(done.tick, done.step, self._time_us, self._holder), self._stage)
-            for life in self._lives.get(done.host, [])
+            for life in self._lives.of(done.host)
             if life.hears(done.tick, self._stage)
         ]
 
     def _iterate(self, done: StageDone) -> Made:
         made = []
         for owed in self._owed.pop(done):
-            if owed.life.plan.index not in self._chosen:
+            if owed.life.plan.index not in self._lives.chosen:
                 continue
-            with self._failing(owed.life.plan, f"tick {done.tick}"):
+            with self._lives.failing(owed.life.plan, f"tick {done.tick}"):
                 made.append((owed.life, owed.life.iterate(owed.tick, owed.stage)))
                 self.iterations += owed.stage in owed.life.plan.stages
         return made
 
     def _tell(self) -> None:
         """Gives the continuous components the marks of a tick."""
-        for lives in self._lives.values():
-            for life in lives:
-                if life.plan.rate_hz is not None:
-                    life.tell(life.host.compose(self._now, 0, self._time_us, self._holder))
+        for life in self._lives.all_running():
+            if life.plan.rate_hz is not None:
+                life.tell(life.host.compose(self._now, 0, self._time_us, self._holder))
 
     def _iterate_on(self, host: int, tick: int, number: int) -> Made:
         """Runs an iteration of a continuous component on the marks of a tick, perhaps one of long ago."""
         made = []
-        for life in [*(self._lives.get(host) or self._leaving.get(host, []))]:
-            with self._failing(life.plan, f"iteration {number} on tick {tick}"):
+        for life in [*(self._lives.of(host) or self._lives.living(host))]:
+            with self._lives.failing(life.plan, f"iteration {number} on tick {tick}"):
                 made.append((life, life.iterate_on(tick)))
                 self.iterations += 1
         return made
 
     def _finalize(self, host: int) -> Made:
+        self._forget(host)
         made = []
-        for life in reversed(self._leaving.pop(host, [])):
-            with self._failing(life.plan, "finalize"):
+        for life in reversed(self._lives.leaving.pop(host, [])):
+            with self._lives.failing(life.plan, "finalize"):
                 made.append((life, life.finalize()))
         return made
-
-    @contextmanager
-    def _failing(self, component: ComponentPlan, moment: str) -> Iterator[None]:
-        """Reports a failure of a component; leaves a component out that reaches outside.
-
-        Raises:
-            RecordingError: the component failed, unless its exception left the debugger.
-        """
-        watching = nullcontext() if reaches_outside(component) is False else self._guard.watching(component.name)
-        try:
-            with watching:
-                yield
-        except (BdbQuit, RecordingError):
-            raise
-        except ReachesOutsideError as error:
-            self._leave_out(component, str(error))
-        except Exception as error:
-            if isinstance(error.__cause__, ReachesOutsideError):
-                self._leave_out(component, str(error.__cause__))
-                return
-            cause = error.__cause__ if isinstance(error, ComponentFailedError) and error.__cause__ else error
-            if isinstance(cause, RecordingError):  # a frame is not in the recording
-                raise cause from error
-            trace = "".join(traceback.format_exception(cause)).rstrip()
-            raise RecordingError(f"{self._failure(component, moment)}\n{trace}") from cause
 
     def _failure(self, component: ComponentPlan, moment: str) -> str:
         """Returns the message that a component failed."""
@@ -348,16 +272,6 @@ class Replay:
             f"{self.recording.path}: {component.name} fails in {moment}, unlike in the run: the recording is "
             "damaged, or the component was changed or depends on something else"
         )
-
-    def _leave_out(self, component: ComponentPlan, reason: str) -> None:
-        """Ends a component that a replay must not run; its recorded messages replace it."""
-        said = f"{reason}, which would reach the real world; declare 'reaches_outside' in its class"
-        self.left_out[component.name] = said
-        self._chosen.discard(component.index)
-        for lives in (*self._lives.values(), *self._leaving.values()):
-            for life in [life for life in lives if life.plan.index == component.index]:
-                life.host.close()
-                lives.remove(life)
 
     def _compare(self, host: int, tick: int, step: int, made: Made) -> None:
         """Compares what a host's done published, and makes it visible from the next step on."""
@@ -387,9 +301,5 @@ class Replay:
         """Begins a step of the tick: everything published so far is visible from here on."""
         self._ledger.begin()
         for channel, data in self._revealed:
-            self._newest[channel] = data[-1]
-            for lives in self._lives.values():
-                for life in lives:
-                    for each in data:
-                        life.see(channel, each)
+            self._lives.see(channel, data)
         self._revealed = []

@@ -51,7 +51,7 @@ class Control:
         hosts: Hosts,
         loop: Loop,
         settings: RunSettings,
-        lifecycle: Lifecycle,
+        lifecycle: Lifecycle[HostProcess],
         attach: Attach,
         listen: Listen | None,
     ) -> None:

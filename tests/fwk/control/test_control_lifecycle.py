@@ -40,7 +40,7 @@ def table() -> list[HostProcess]:
 
 
 @pytest.fixture
-def steering(table: list[HostProcess]) -> Lifecycle:
+def steering(table: list[HostProcess]) -> Lifecycle[HostProcess]:
     components = {"r/camera": Camera, "r/finder": Finder, "r/base": Base, "s/base": Base}
     plan = plan_of(components, groups=[["r/base", "s/base"]])
     planned = list(plan.components)
@@ -85,12 +85,16 @@ def names(entries: list[HostProcess]) -> list[str]:
         ("restart", ["s/base"], "the process 'r/base+s/base' holds r/base as well; restart all of them"),
     ],
 )
-def test_impossible_requests_are_refused(steering: Lifecycle, action: Action, patterns: list[str], error: str) -> None:
+def test_impossible_requests_are_refused(
+    steering: Lifecycle[HostProcess], action: Action, patterns: list[str], error: str
+) -> None:
     with pytest.raises(RequestError, match=re.escape(error)):
         steering.hosts(action, patterns)
 
 
-def test_a_user_does_not_start_without_its_vision_master(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_a_user_does_not_start_without_its_vision_master(
+    steering: Lifecycle[HostProcess], table: list[HostProcess]
+) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
     for action in ("start", "restart", "reload"):
@@ -99,13 +103,13 @@ def test_a_user_does_not_start_without_its_vision_master(steering: Lifecycle, ta
     assert names(steering.hosts("start", ["r/finder", "r/camera"])) == ["r/camera", "r/finder"]
 
 
-def test_load_includes_needs_and_does_not_run(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_load_includes_needs_and_does_not_run(steering: Lifecycle[HostProcess], table: list[HostProcess]) -> None:
     for name in ("r/camera", "r/finder"):
         state(table, name, running=False)
     assert names(steering.hosts("load", ["r/finder"])) == ["r/camera", "r/finder"]
 
 
-def test_a_master_is_unloaded_once_it_has_no_users(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_a_master_is_unloaded_once_it_has_no_users(steering: Lifecycle[HostProcess], table: list[HostProcess]) -> None:
     state(table, "r/finder", running=False)
     assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
     state(table, "r/finder", running=True)
@@ -113,18 +117,20 @@ def test_a_master_is_unloaded_once_it_has_no_users(steering: Lifecycle, table: l
     assert names(steering.hosts("unload", ["r/camera"], force=True)) == ["r/camera", "r/finder"]
 
 
-def test_readers_that_lose_their_writer_are_named(steering: Lifecycle, table: list[HostProcess]) -> None:
+def test_readers_that_lose_their_writer_are_named(steering: Lifecycle[HostProcess], table: list[HostProcess]) -> None:
     (camera,) = steering.hosts("stop", ["r/camera"])
     assert steering.left_without([camera]) == [{"channel": "r/image", "readers": ["r/finder"]}]
     state(table, "r/finder", running=False)
     assert steering.left_without([camera]) == []
 
 
-def test_a_namespace_means_all_in_it(steering: Lifecycle) -> None:
+def test_a_namespace_means_all_in_it(steering: Lifecycle[HostProcess]) -> None:
     assert names(steering.hosts("restart", ["r", "s"])) == ["r/camera", "r/finder", "r/base+s/base"]
 
 
-def test_reload_checks_the_code_first(steering: Lifecycle, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_reload_checks_the_code_first(
+    steering: Lifecycle[HostProcess], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     broken = tmp_path / "broken.py"
     broken.write_text("x = 1\ndef (:\n")
     monkeypatch.setattr(Sources, "files", lambda *_: {broken})

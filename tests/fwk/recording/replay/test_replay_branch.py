@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from fwk import Component, MainLoop, Reads, Writes
+from fwk import Clock, Component, MainLoop, PluginControl, Reads, Writes
 from fwk.lcm.messages import sequence_of
 from fwk.model.plan import Plan
 from fwk.model.tick_events import (
+    FinalDone,
     HostLate,
     HostLost,
     HostStarted,
@@ -19,7 +20,8 @@ from fwk.model.tick_events import (
     TickEvent,
     events_of,
 )
-from fwk.recording.replay.branch import Branch, with_classes
+from fwk.recording.replay.branch import Branch
+from fwk.recording.replay.other_classes import with_classes
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.testing.plans import plan_of
 from lcmtypes.core import tick_record_t
@@ -35,6 +37,7 @@ class Sensor(Component):
     """Counts its iterations."""
 
     stage = "sensor_acquire"
+    clock: Clock
     imu: Writes[imu_t]
 
     def loop(self) -> None:
@@ -61,6 +64,17 @@ class Doubling(Sensor):
     def loop(self) -> None:
         super().loop()
         super().loop()
+
+
+class Director(Sensor):
+    """Stops the counter in its fourth iteration and starts it again in the sixth."""
+
+    plugins: PluginControl
+
+    def loop(self) -> None:
+        super().loop()
+        if self.clock.tick in (4, 6):
+            (self.plugins.stop if self.clock.tick == 4 else self.plugins.start)("r/counter")
 
 
 class Loud:
@@ -155,6 +169,33 @@ def test_a_host_that_leaves_finalizes_and_stays_absent(tmp_path: Path) -> None:
     lost, sink = branched(recorded(tmp_path / "lost", last=lambda events: [*events[:-2], HostLost(COUNTER)]))
     assert lost.absent == branch.absent
     assert all(channel == "r/imu" for channel, _, _ in sink.messages)
+
+
+def test_requests_of_components_are_carried_out(tmp_path: Path) -> None:
+    recording = recorded(tmp_path / "log")
+    with_classes(recording, {"r/sensor": f"{__name__}:Director"})
+    branch, sink = Branch(recording, {"r/sensor": ""}), Loud()
+    branch.run(3)
+    branch.check_state()
+    branch.go_on(8, sink)
+    events = {record.tick: list(events_of(record.events)) for record in sink.records}
+    assert events[5][:3] == [HostStopped(COUNTER), FinalDone(COUNTER, 4), HostLost(COUNTER)]
+    assert StageDone(COUNTER, 6, THINK) not in events[6]
+    assert events[7][0] == HostStarted(COUNTER, 2, 0)
+    assert sink.poses() == [(4, 10.0), (5, 7.0), (6, 15.0)], "a new incarnation begins anew with its numbers"
+    assert (branch.absent, branch.decisions.participants.refused) == ({}, [])
+
+
+@pytest.mark.parametrize("change", ["", "changed"])
+def test_recorded_stops_happen_in_the_branch(tmp_path: Path, change: str) -> None:
+    stopped = [HostStopped(COUNTER), FinalDone(COUNTER, 3), HostLost(COUNTER)]
+    recording = recorded(tmp_path / "log", 4, lambda events: [*stopped, *events[:2]])
+    branch, sink = Branch(recording, {"r/sensor": change} if change else {}), Loud()
+    branch.run(2)
+    branch.check_state()
+    branch.go_on(6, sink)
+    assert [events_of(record.events)[:3] == stopped for record in sink.records] == [False, True, False, False]
+    assert sink.poses() == [(3, 6.0)]
 
 
 def test_a_main_loop_that_cannot_be_rebuilt_is_refused(tmp_path: Path) -> None:
