@@ -1,6 +1,7 @@
-// Shows the drawings of a view. Asks for the next one only after the last was shown, so a hidden page asks for nothing.
+// Shows the drawings of a view. Asks for a drawing only after the last drawing was shown; a hidden page asks for nothing.
 const TRAIL_MS = 2000;
 const LEAST_PX = 3.7;
+const RETRY_MS = 1000;
 
 export default {
   template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
@@ -16,6 +17,9 @@ export default {
     this.layers = "";
     this.open = true;
     this.frames = 0;
+    this.have = ""; // name of the drawing that is shown
+    this.ground = { name: "", shapes: [] };
+    [this.due, this.pace] = [0, this.period];
     const on = (name, handle, options) => this.canvas.addEventListener(name, handle, options);
     on("wheel", (e) => { e.preventDefault(); this.zoom(e.deltaY < 0 ? 1.15 : 1 / 1.15, e.offsetX, e.offsetY); },
        { passive: false });
@@ -23,25 +27,24 @@ export default {
     on("keydown", this.key); on("dblclick", () => { this.scale = 0; this.paint(); });
     this.pointers = new Map();
     new ResizeObserver(() => this.paint()).observe(this.canvas);
-    requestAnimationFrame(this.ask);
+    this.ask();
   },
   beforeUnmount() { this.open = false; },
   watch: { hidden() { this.paint(); } },
   methods: {
-    async ask(now) {
+    async ask() {
       if (!this.open) return;
-      const began = performance.now();
+      if (document.hidden) return document.addEventListener("visibilitychange", this.ask, { once: true });
+      this.due += this.pace;
+      if (this.due < performance.now() - this.pace) this.due = performance.now();
       try {
-        const answer = await fetch(this.url);
-        if (answer.ok) {
-          const drawing = await answer.json();
-          if (drawing.picture) await this.load(drawing.picture);
-          this.take(drawing);
-        }
-      } catch (error) { /* the console restarts; the next request finds out */ }
-      setTimeout(() => requestAnimationFrame(this.ask), Math.max(0, this.period - (performance.now() - began)));
+        const answer = await fetch(`${this.url}&have=${this.have}&ground=${this.ground.name}`);
+        this.pace = Math.max(this.period, Number(answer.headers.get("fwk-period-ms")));
+        if (answer.ok) await this.take(answer);
+      } catch (error) { this.pace = RETRY_MS; }
+      setTimeout(this.ask, this.due + this.pace - performance.now());
     },
-    fitAgain() { this.scale = 0; this.trails.clear(); this.image = this.loaded = null; },
+    fitAgain() { this.scale = 0; this.trails.clear(); this.image = this.loaded = null; this.have = ""; },
     async load(picture) {
       const url = `${this.images}&channel=${encodeURIComponent(picture.camera)}&frame=${picture.frame}`;
       if (url === this.loaded) return;
@@ -51,11 +54,20 @@ export default {
       this.loaded = url;
       this.canvas.dataset.picture = picture.frame;
     },
-    take(drawing) {
-      this.drawing = drawing;
-      this.up = drawing.picture ? -1 : 1;
+    async take(answer) {
+      if (answer.status === 200) {
+        const drawing = await answer.json();
+        if (drawing.picture) await this.load(drawing.picture);
+        this.have = drawing.picture && !this.image ? "" : answer.headers.get("fwk-drawing");
+        if (drawing.ground) this.ground = drawing.ground;
+        this.show(drawing);
+      }
       this.frames += 1;
       this.canvas.dataset.frames = this.frames;
+    },
+    show(drawing) {
+      this.drawing = drawing;
+      this.up = drawing.picture ? -1 : 1;
       const now = performance.now();
       for (const shape of drawing.shapes) if (shape.trail) {
         const trail = this.trails.get(shape.trail) || [];
@@ -63,7 +75,7 @@ export default {
         while (trail.length && trail[0][0] < now - TRAIL_MS) trail.shift();
         this.trails.set(shape.trail, trail);
       }
-      const layers = [...new Set(drawing.shapes.map((shape) => shape.l).filter(Boolean))].sort();
+      const layers = [...new Set([...this.ground.shapes, ...drawing.shapes].map((s) => s.l).filter(Boolean))].sort();
       if (layers.join("\n") !== this.layers) {
         this.layers = layers.join("\n");
         this.$emit("layers", layers);
@@ -74,7 +86,7 @@ export default {
     fit(width, height) {
       let box = this.drawing.bounds;
       if (!box) {
-        const points = this.drawing.shapes.flatMap((s) => s.p || [[s.x, s.y]]);
+        const points = [...this.ground.shapes, ...this.drawing.shapes].flatMap((s) => s.p || [[s.x, s.y]]);
         const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
         box = points.length ? [Math.min(...xs) - 1, Math.min(...ys) - 1, Math.max(...xs) + 1, Math.max(...ys) + 1]
                             : [-5, -5, 5, 5];
@@ -95,17 +107,33 @@ export default {
       const pen = this.canvas.getContext("2d");
       pen.setTransform(1, 0, 0, 1, 0, 0);
       pen.clearRect(0, 0, this.canvas.width, this.canvas.height);
-      pen.fillStyle = this.drawing.background || "transparent";
-      pen.fillRect(0, 0, this.canvas.width, this.canvas.height);
       const s = this.scale * dots;
-      pen.setTransform(s, 0, 0, -s * this.up, (width * dots) / 2 - this.middle[0] * s,
-                       (height * dots) / 2 + this.middle[1] * s * this.up);
+      const place = [s, 0, 0, -s * this.up, (width * dots) / 2 - this.middle[0] * s,
+                     (height * dots) / 2 + this.middle[1] * s * this.up];
+      this.paintGround(pen, place);
+      pen.setTransform(...place);
       if (this.drawing.picture && this.image)
         pen.drawImage(this.image, -0.5, -0.5, this.drawing.picture.width, this.drawing.picture.height);
       pen.lineCap = "round"; pen.lineJoin = "round";
       const shown = this.drawing.shapes.filter((shape) => !this.hidden.includes(shape.l));
       for (const shape of shown) if (shape.trail) this.paintTrail(pen, shape);
       for (const shape of shown) this.paintShape(pen, shape);
+    },
+    paintGround(pen, place) {
+      const { width, height } = this.canvas;
+      const background = this.drawing.background || "transparent";
+      const key = [this.ground.name, background, width, height, ...place, ...this.hidden].join();
+      if (key !== this.groundKey) {
+        this.groundKey = key;
+        this.groundLayer = new OffscreenCanvas(width, height);
+        const below = this.groundLayer.getContext("2d");
+        below.fillStyle = background;
+        below.fillRect(0, 0, width, height);
+        below.setTransform(...place);
+        below.lineCap = "round"; below.lineJoin = "round";
+        for (const shape of this.ground.shapes) if (!this.hidden.includes(shape.l)) this.paintShape(below, shape);
+      }
+      pen.drawImage(this.groundLayer, 0, 0);
     },
     paintTrail(pen, shape) {
       const trail = this.trails.get(shape.trail) || [];

@@ -25,11 +25,13 @@ from fwk.web.console import Console
 from fwk.web.device_view import DeviceView
 from fwk.web.general_view import GeneralView
 from fwk.web.rates import Rates
-from fwk.web.scene import Newest, Scene
+from fwk.web.scene import Drawing, Newest, Scene
 from fwk.web.view import View
 
 _DRAWING_AGE_S = 0.04
 _IMAGE_AGE_S = 0.15
+_LAG_PERIOD_MS = 300
+"""Time from drawing to drawing while a run needs all processors."""
 _NO_STORE = {"cache-control": "no-store"}
 
 
@@ -39,16 +41,17 @@ def add_drawings(app: FastAPI, console: Console) -> None:
     async def drawing(request: Request) -> Response:
         run, number, device = (request.query_params.get(key, "") for key in ("run", "view", "device"))
 
-        async def draw() -> bytes:
+        async def draw() -> Drawing:
             view = chosen(await views_of(console, run), number, device)
             newest = await console.runs.link(run).newest(view.channels, view.members)
-            return await asyncio.to_thread(drawn, view, newest)
+            return await asyncio.to_thread(lambda: drawn(view, newest).drawing())
 
         try:
-            data = await console.shared.get(("drawing", run, number, device), _DRAWING_AGE_S, draw)
+            found = await console.shared.get(("drawing", run, number, device), _DRAWING_AGE_S, draw)
+            lags = await console.runs.link(run).lags()
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
-        return Response(data, 200, _NO_STORE, "application/json")
+        return _answer(request, found, _LAG_PERIOD_MS if lags else 0)
 
     async def image(request: Request) -> Response:
         run, channel, frame = (request.query_params.get(key, "") for key in ("run", "channel", "frame"))
@@ -86,7 +89,7 @@ def add_drawings(app: FastAPI, console: Console) -> None:
         except (LogError, MomentError) as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
         wanted = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
-        return Response(await asyncio.to_thread(drawn, view, wanted), 200, _NO_STORE, "application/json")
+        return _answer(request, await asyncio.to_thread(lambda: drawn(view, wanted).drawing()))
 
     async def recorded_image(request: Request) -> Response:
         try:
@@ -134,15 +137,23 @@ def wants(view: View, channel: str, value: Any) -> bool:
     return named and {*view.members} <= {*value.__slots__}
 
 
-def drawn(view: View, newest: dict[str, Any]) -> bytes:
-    """Returns the drawing of a view for the browser; a view that fails shows its mistake."""
+def drawn(view: View, newest: dict[str, Any]) -> Scene:
+    """Returns the drawing of a view; a view that fails shows its mistake."""
     scene = Scene()
     try:
         view.draw(Newest(newest), scene)
     except Exception as error:  # of a project's code; the page shows it
         scene = Scene()
         scene.headline = f"{type(view).__name__}: {type(error).__name__}: {error}"
-    return scene.encoded()
+    return scene
+
+
+def _answer(request: Request, found: Drawing, period_ms: int = 0) -> Response:
+    """Returns as much of a drawing as the browser does not have yet; `period_ms` asks it to wait for the next one."""
+    about = {**_NO_STORE, "fwk-drawing": found.name, "fwk-period-ms": str(period_ms)}
+    if request.query_params.get("have") == found.name:
+        return Response(None, 204, about)
+    return Response(found.beyond(request.query_params.get("ground", "")), 200, about, "application/json")
 
 
 def _image(pid: int, channel: str, number: int) -> bytes | None:

@@ -3,8 +3,10 @@
 import asyncio
 import os
 import signal
+import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from fwk.clock import US_PER_S, monotonic_us
@@ -12,6 +14,13 @@ from fwk.model.parent_death import die_with_parent
 
 _BIN = Path(sys.executable).parent
 _CHUNK_BYTES = 1 << 16
+_STARTER = ThreadPoolExecutor(1, "commands")
+"""Starts all commands; a command inherits the priority of the thread that starts it."""
+
+
+def keep_priority() -> None:
+    """Lets commands run with the present priority of this thread, also if the console lowers its own later."""
+    _STARTER.submit(int).result()  # creates the thread
 
 
 class Job:
@@ -28,7 +37,7 @@ class Job:
         """Exit code; None while it runs."""
         self._take = take
         self._began_us = monotonic_us()
-        self._process: asyncio.subprocess.Process | None = None
+        self._process: subprocess.Popen[bytes] | None = None
 
     @property
     def age_s(self) -> float:
@@ -37,26 +46,35 @@ class Job:
 
     async def run(self) -> int:
         """Runs the command to its end; returns the exit code."""
-        parent = os.getpid()
-        self._process = await asyncio.create_subprocess_exec(
-            str(_BIN / self.words[0]),
-            *self.words[1:],
-            stdin=asyncio.subprocess.DEVNULL,
-            stdout=asyncio.subprocess.PIPE,
-            stderr=asyncio.subprocess.STDOUT,
-            env={**os.environ, "NO_COLOR": "1", "TERM": "dumb", "PYTHONUNBUFFERED": "1"},
-            preexec_fn=lambda: _prepare(parent),
-        )
-        assert self._process.stdout is not None
-        while data := await self._process.stdout.read(_CHUNK_BYTES):
-            self._take(data.decode(errors="replace"))
-        self.code = await self._process.wait()
+        loop = asyncio.get_running_loop()
+        self._process = process = await loop.run_in_executor(_STARTER, _started, self.words)
+        output = asyncio.StreamReader()
+        pipe, _ = await loop.connect_read_pipe(lambda: asyncio.StreamReaderProtocol(output), process.stdout)
+        try:
+            while data := await output.read(_CHUNK_BYTES):
+                self._take(data.decode(errors="replace"))
+        finally:
+            pipe.close()
+        self.code = await asyncio.to_thread(process.wait)
         return self.code
 
     def end(self) -> None:
         """Ends the command as Ctrl-C does."""
-        if self._process and self._process.returncode is None:
+        if self._process:
             self._process.send_signal(signal.SIGINT)
+
+
+def _started(words: Sequence[str]) -> subprocess.Popen[bytes]:
+    parent = os.getpid()
+    return subprocess.Popen(
+        [str(_BIN / words[0]), *words[1:]],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        env={**os.environ, "NO_COLOR": "1", "TERM": "dumb", "PYTHONUNBUFFERED": "1"},
+        start_new_session=True,  # the session of the console has the lowest priority
+        preexec_fn=lambda: _prepare(parent),
+    )
 
 
 def _prepare(parent: int) -> None:

@@ -8,6 +8,7 @@ from urllib.parse import urlencode
 from nicegui import ui
 from starlette.requests import Request
 
+from fwk.clock import US_PER_S, monotonic_us
 from fwk.control.client import ControlError
 from fwk.web.access import Role
 from fwk.web.console import STATIC, Console
@@ -31,6 +32,8 @@ PAGES = {
 """Address of a page to its title and icon."""
 SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}
 _REFRESH_S = 0.5
+_LAG_FACTOR = 4
+"""Pages of a run that needs all processors are refreshed so many times more rarely."""
 _STATUS_S = 2.0
 """Age of the state of all components where a page needs it for its head alone."""
 _OTHER_THEME = f"""() => {{
@@ -38,6 +41,11 @@ _OTHER_THEME = f"""() => {{
     setDark(dark);
     document.cookie = `{THEME}=${{dark ? 'dark' : 'light'}}; path=/; max-age=31536000; SameSite=Strict`;
 }}"""
+
+
+_TELL_HIDDEN = (
+    '<script>document.addEventListener("visibilitychange", () => emitEvent("visibility", document.hidden))</script>'
+)
 
 
 class Frame:
@@ -51,6 +59,8 @@ class Frame:
         self.role = role
         self.may_steer = role is Role.STEER
         self._runs = runs
+        self._hidden = False
+        self._lags = False
         self._on_status: list[Callable[[dict[str, Any]], None]] = []
 
     @property
@@ -68,9 +78,18 @@ class Frame:
         self._on_status.append(take)
 
     def every(self, period_s: float, refresh: Callable[[], Awaitable[None]]) -> None:
-        """Calls a function repeatedly while the page is open; it waits while the run does not exist."""
+        """Calls a function repeatedly while the page is visible, more rarely while the run needs all processors.
+
+        The function waits while the run does not exist.
+        """
+        called_us = 0
 
         async def guarded() -> None:
+            nonlocal called_us
+            wait_us = period_s * US_PER_S * (_LAG_FACTOR - 0.5 if self._lags else 0)
+            if self._hidden or monotonic_us() < called_us + wait_us:
+                return
+            called_us = monotonic_us()
             try:
                 await refresh()
             except ControlError:
@@ -123,7 +142,9 @@ class Frame:
         menu.on_click(drawer.toggle)
         self._banner = ui.label("").classes("fwk-banner").props("data-name=banner")
         self._banner.set_visibility(False)
-        ui.timer(_REFRESH_S, self._refresh)
+        self.every(_REFRESH_S, self._refresh)
+        ui.add_body_html(_TELL_HIDDEN)
+        ui.on("visibility", lambda event: self._show_or_hide(bool(event.args)))
 
     def _build_steering(self) -> None:
         if not self.may_steer or not self.run:
@@ -155,6 +176,9 @@ class Frame:
         if run and run != self.run:
             ui.navigate.to(f"{path}?{urlencode({'run': run})}")
 
+    def _show_or_hide(self, hidden: bool) -> None:
+        self._hidden = hidden
+
     async def _refresh(self) -> None:
         if not self.run:
             if await self.console.runs.all():
@@ -163,6 +187,7 @@ class Frame:
         try:
             about = await (self.link.status() if self._on_status else self.link.status(_STATUS_S))
             status = {**about, **await self.link.clock()}
+            self._lags = await self.link.lags()
         except ControlError as error:
             self._say(f"{error}; this page goes on when it is started again")
             self._state.set_text("ended")

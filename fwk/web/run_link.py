@@ -24,6 +24,9 @@ _SHOW_AGE_S = 0.2
 _TIMES_AGE_S = 1.5
 _FRAME_AGE_S = 0.04
 _TIMEOUT_S = 3.0
+_LAG_AGE_S = 2.0
+_LAG = 0.9
+"""Share of its desired speed below which a run lags."""
 
 
 class NotRunningError(ControlError):
@@ -89,6 +92,11 @@ class RunLink:
     async def status(self, age_s: float = _STATUS_AGE_S) -> dict[str, Any]:
         """Returns the state of the run and of its components, at most so old."""
         return await self._kept("status", age_s)
+
+    async def lags(self) -> bool:
+        """Tells whether the run needs all processors: it is behind its desired speed, or runs as fast as possible."""
+        clock, status = await self.clock(), await self.status(_LAG_AGE_S)
+        return not clock["paused"] and (not clock["pace"] or status["speed"] < _LAG * clock["pace"])
 
     async def times(self) -> dict[str, Any]:
         """Returns histograms of the times of ticks, stages and components."""

@@ -2,12 +2,39 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Hashable, Mapping, Sequence
 from fnmatch import filter as matching
-from typing import Any
+from functools import lru_cache
+from typing import Any, NamedTuple, TypeVar
+from zlib import crc32
 
 Point = tuple[float, float]
 _SIGMAS = 2.0
+K = TypeVar("K", bound=Hashable)
+
+
+class Drawing(NamedTuple):
+    """A drawing as browsers get it, in JSON."""
+
+    moving: bytes
+    ground: bytes
+    """Shapes that seldom change; a browser that has them does not get them again."""
+
+    @property
+    def name(self) -> str:
+        """Name of this drawing; equal drawings have equal names."""
+        return f"{crc32(self.moving):x}.{self.ground_name}"
+
+    @property
+    def ground_name(self) -> str:
+        """Name of the ground."""
+        return f"{crc32(self.ground):x}"
+
+    def beyond(self, ground_name: str) -> bytes:
+        """Returns the drawing for a browser that has the ground of this name."""
+        if ground_name == self.ground_name:
+            return self.moving
+        return b'{"ground":{"name":"%s","shapes":%s},%s' % (self.ground_name.encode(), self.ground, self.moving[1:])
 
 
 class Newest:
@@ -42,11 +69,21 @@ class Scene:
         self._picture: dict[str, Any] | None = None
         self._layer = ""
         self._shapes: list[dict[str, Any]] = []
+        self._ground: tuple[list[dict[str, Any]], bytes] = [], b"[]"
 
     def picture(self, camera: str, frame: int, width_px: int, height_px: int) -> None:
         """Draws over the newest image of a camera: lengths are then in pixels, and y points down."""
         self._picture = {"camera": camera, "frame": frame, "width": width_px, "height": height_px}
         self.bounds = (-0.5, -0.5, width_px - 0.5, height_px - 0.5)
+
+    def ground(self, draw: "Callable[[Scene, K], None]", of: K) -> None:
+        """Draws shapes below all others that depend on one hashable value; browsers get and paint them once.
+
+        Args:
+            draw: a function of a module, called once for each value.
+            of: the value, such as the measures of a field.
+        """
+        self._ground = _ground(draw, of)
 
     def layer(self, name: str) -> None:
         """Names the layer of the shapes that follow."""
@@ -91,14 +128,35 @@ class Scene:
         self._add("text", {"x": x_m, "y": y_m, "h": height_m, "s": text}, fill=fill)
 
     def encoded(self) -> bytes:
-        """Returns the drawing for the browser; shapes at positions that are not numbers are left out."""
-        shapes = [shape for shape in self._shapes if _finite(shape)]
+        """Returns all of the drawing in JSON; shapes at positions that are not numbers are left out."""
+        return self._encoded([*self._ground[0], *self._finite()])
+
+    def drawing(self) -> Drawing:
+        """Returns the drawing for browsers, its ground apart."""
+        return Drawing(self._encoded(self._finite()), self._ground[1])
+
+    def _finite(self) -> list[dict[str, Any]]:
+        return [shape for shape in self._shapes if _finite(shape)]
+
+    def _encoded(self, shapes: list[dict[str, Any]]) -> bytes:
         about = {"bounds": self.bounds, "background": self.background, "headline": self.headline}
-        made = {"shapes": shapes, **about, "picture": self._picture}
-        return json.dumps(made, separators=(",", ":"), allow_nan=False).encode()
+        return _json({"shapes": shapes, **about, "picture": self._picture})
 
     def _add(self, kind: str, where: dict[str, Any], **look: Any) -> None:
         self._shapes.append({"k": kind, "l": self._layer, **_rounded(where), **{k: v for k, v in look.items() if v}})
+
+
+@lru_cache(maxsize=16)
+def _ground(draw: Callable[[Scene, Any], None], of: Hashable) -> tuple[list[dict[str, Any]], bytes]:
+    """Returns the shapes that a function draws of a value, also as JSON."""
+    scene = Scene()
+    draw(scene, of)
+    shapes = scene._finite()
+    return shapes, _json(shapes)
+
+
+def _json(value: Any) -> bytes:
+    return json.dumps(value, separators=(",", ":"), allow_nan=False).encode()
 
 
 def _rounded(where: dict[str, Any]) -> dict[str, Any]:

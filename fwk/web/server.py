@@ -1,6 +1,5 @@
 """Serves the console: pages of NiceGUI behind the gate."""
 
-import os
 import socket
 from collections.abc import Callable
 from contextlib import suppress
@@ -15,17 +14,17 @@ from nicegui import ui
 from starlette.requests import Request
 
 from fwk.web.access import Access, Gate, Role
+from fwk.web.background import give_way
 from fwk.web.console import Console
 from fwk.web.drawings import add_drawings
 from fwk.web.extensions import Extensions
+from fwk.web.job import keep_priority
 from fwk.web.layout import Frame
 from fwk.web.log_tail import LogTails
 from fwk.web.pages import board, devices, graph, log, plots, recordings, runs, settings, system, view
 from fwk.web.run_link import Runs
 from fwk.web.shared import Shared
 
-NICENESS = 15
-"""The console leaves the processors to the run: where both need one, it gets about 3 % of it."""
 _RECONNECT_S = 30.0
 """A page survives so long without a sign of life, on a busy machine or while the browser sleeps; then it loads anew."""
 _BUILDERS: dict[str, Callable[[Frame], None]] = {
@@ -45,10 +44,6 @@ _WITHOUT_RUN = ("/recordings", "/runs")
 """Pages that show something when nothing runs."""
 
 
-class ServeError(Exception):
-    """The console cannot be served; the text names the reason and a remedy."""
-
-
 @dataclass(frozen=True)
 class Options:
     """Options of the console's server."""
@@ -60,24 +55,8 @@ class Options:
     """Further modules with views and pages."""
     certificate: Path | None = None
     key: Path | None = None
-
-
-def listen(address: str, port: int) -> socket.socket:
-    """Opens the port; 0 stands for any free one.
-
-    Raises:
-        ServeError: the port is taken, or the address is not one of this machine.
-    """
-    family = socket.AF_INET6 if ":" in address else socket.AF_INET
-    listener = socket.socket(family, socket.SOCK_STREAM)
-    listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    try:
-        listener.bind((address, port))
-        listener.listen()  # browsers that come before the first page is ready wait
-    except OSError as error:
-        listener.close()
-        raise ServeError(f"cannot serve on {address}:{port}: {error.strerror}; choose another with --port") from error
-    return listener
+    normal_priority: bool = False
+    """Whether the console competes with runs for the processors."""
 
 
 def serve(options: Options, listener: socket.socket, recordings: Callable[[], list[dict[str, Any]]]) -> None:
@@ -86,8 +65,9 @@ def serve(options: Options, listener: socket.socket, recordings: Callable[[], li
     Raises:
         ExtensionError: a module with views and pages cannot be used.
     """
-    with suppress(OSError):
-        os.nice(NICENESS)
+    keep_priority()
+    if not options.normal_priority:
+        give_way()
     shared = Shared()
     extensions = Extensions(options.modules, Path())
     console = Console(Runs(shared), shared, extensions, LogTails(), recordings, options.run)

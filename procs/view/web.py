@@ -39,7 +39,7 @@ class MatchView(View):
         scene.background = _SURROUND
         x_m, y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
         scene.bounds = (-x_m, -y_m, x_m, y_m)
-        _draw_ground(scene, field)
+        scene.ground(_draw_ground, field)
         if truth is None:
             return
         for robot in truth.robots:

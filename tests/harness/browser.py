@@ -25,7 +25,7 @@ class Console:
         environment = {**os.environ, "HOME": str(folder), "PYTHONPATH": python_path, "PYTHONUNBUFFERED": "1"}
         with open(self._output, "wb") as output:
             self.process = subprocess.Popen(
-                [str(BIN / "fwk"), "web", "--port", "0", *words],
+                [str(BIN / "fwk"), "web", "--port", "0", "--normal-priority", *words],
                 cwd=folder,
                 env=environment,
                 stdout=output,

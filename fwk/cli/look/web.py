@@ -40,6 +40,10 @@ def web(
         typer.Option("--view", metavar="MODULE", help="Python module with views and pages; repeatable"),
     ] = None,
     read_only: Annotated[bool, typer.Option("--read-only", help="show everything, steer nothing")] = False,
+    normal_priority: Annotated[
+        bool,
+        typer.Option("--normal-priority", help="compete with runs for the processors, instead of giving way to them"),
+    ] = False,
 ) -> None:
     """Serves a console in which a browser sees and steers the runs of this machine; Ctrl-C ends it.
 
@@ -61,18 +65,27 @@ def web(
         )
     if local and (certificate or key):
         raise typer.BadParameter("--certificate and --key are for addresses beyond this machine; leave them out")
-    from fwk.web.extensions import ExtensionError
-    from fwk.web.server import Options, ServeError, listen, serve
+    from fwk.web.background import continue_in_background
+    from fwk.web.listener import ServeError, listen
 
     try:
         listener = listen("127.0.0.1" if address == "localhost" else address, port)
-        tokens = {} if local else new_tokens(read_only)
-        access = Access(address, listener.getsockname()[1], read_only, tuple(names or ()), tokens)
-        for role, link in access.links().items():
-            typer.echo(f"console ({role}): {link}")
+    except ServeError as error:
+        typer.echo(f"error: {error}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
+    tokens = {} if local else new_tokens(read_only)
+    access = Access(address, listener.getsockname()[1], read_only, tuple(names or ()), tokens)
+    for role, link in access.links().items():
+        typer.echo(f"console ({role}): {link}")
+    continue_in_background()
+    from fwk.web.extensions import ExtensionError
+    from fwk.web.server import Options, serve
+
+    try:
         with listener:
-            serve(Options(access, run, tuple(views or ()), certificate, key), listener, recordings)
-    except (ServeError, ExtensionError) as error:
+            options = Options(access, run, tuple(views or ()), certificate, key, normal_priority)
+            serve(options, listener, recordings)
+    except ExtensionError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT) from error
 

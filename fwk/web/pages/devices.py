@@ -99,4 +99,4 @@ def _pad(frame: Frame, channel: str, members: set[str]) -> None:
             await send(Deflection())
 
     stick.on_stick(take)
-    frame.every(_WATCH_S, watch)
+    ui.timer(_WATCH_S, watch)  # also while the page is hidden

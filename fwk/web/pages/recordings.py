@@ -36,7 +36,7 @@ def build(frame: Frame) -> None:
         if rows != table.rows:
             table.rows = rows
 
-    ui.timer(_LIST_S, refresh)
+    frame.every(_LIST_S, refresh)
 
 
 def row_of(found: dict[str, Any]) -> dict[str, Any]:

@@ -36,7 +36,7 @@ def build(frame: Frame) -> None:
                 with area:
                     cards[name] = _card(frame, name)
 
-    ui.timer(_REFRESH_S, refresh)
+    frame.every(_REFRESH_S, refresh)
 
 
 def launch_files(folder: Path) -> list[str]:
@@ -89,5 +89,5 @@ def _card(frame: Frame, name: str) -> ui.card:
             )
             about.set_text(f"{status['plan']}, {len(status['components'])} components, {Path(status['run_dir']).name}")
 
-        ui.timer(_REFRESH_S, refresh)
+        frame.every(_REFRESH_S, refresh)
     return card

@@ -23,7 +23,7 @@ from fwk.control import address
 from fwk.gateway.channel_server import plain
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
-from fwk.web import server
+from fwk.web import background
 from tests.harness.components import sources
 from tests.harness.fuzz import HOSTILE_TEXT, all_types
 from tests.harness.runs import PortBlock, write_files
@@ -51,7 +51,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(address, "running", list)  # no command may act on a run that goes on beside the tests
     monkeypatch.setattr(launching, "run", run)
     monkeypatch.setattr(log, "running", list)
-    monkeypatch.setattr(server, "serve", run)
+    monkeypatch.setattr(background, "continue_in_background", run)
     for command in ("view", "foxglove"):  # they would follow another user's run on this machine
         monkeypatch.setattr(f"fwk.cli.look.{command}.listening", run)
     return tmp_path

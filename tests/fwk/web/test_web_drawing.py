@@ -64,6 +64,6 @@ def test_the_mistake_of_a_view_is_shown_in_its_place() -> None:
             scene.circle(0.0, 0.0, 1.0)
             raise ZeroDivisionError("no field")
 
-    made = json.loads(drawn(Broken(), {}))
+    made = json.loads(drawn(Broken(), {}).encoded())
     assert made["shapes"] == []
     assert made["headline"] == "Broken: ZeroDivisionError: no field"

@@ -3,6 +3,7 @@
 import asyncio
 import os
 import signal
+import threading
 from pathlib import Path
 from typing import Any, cast
 
@@ -11,7 +12,7 @@ import pytest
 from fwk.control.client import RefusedError
 from fwk.web.access import Role
 from fwk.web.file_settings import differing
-from fwk.web.job import Job
+from fwk.web.job import Job, keep_priority
 from fwk.web.pages.runs import launch_files
 from fwk.web.run_link import RunLink
 from fwk.web.usage import Usage
@@ -24,6 +25,23 @@ def test_a_command_tells_its_output_and_its_end() -> None:
     assert job.code is None
     assert asyncio.run(job.run()) == job.code == 1
     assert sorted("".join(told).split()) == ["half", "whole"]
+
+
+def test_a_command_keeps_the_priority_of_the_start() -> None:
+    told: list[str] = []
+    before = os.getpriority(os.PRIO_PROCESS, 0)
+
+    def run_later() -> None:
+        os.nice(3)  # lowers this thread alone
+        asyncio.run(
+            Job(["python", "-c", "import os; print(os.nice(0), os.getsid(0) == os.getpid())"], told.append).run()
+        )
+
+    keep_priority()
+    thread = threading.Thread(target=run_later)
+    thread.start()
+    thread.join()
+    assert "".join(told).split() == [str(before), "True"]
 
 
 def test_a_command_is_ended_as_by_ctrl_c() -> None:
