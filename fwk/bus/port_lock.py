@@ -40,6 +40,11 @@ class PortLock:
             raise PortsInUseError(f"{used} by another run{_holder(what)}; stop it, or {advice}") from error
         self._sockets.append(lock)
 
+    def belong_to_this_process(self) -> None:
+        """Names this process as the holder, after a fork."""
+        for lock in self._sockets:
+            lock.listen()
+
     def release(self) -> None:
         """Releases the ports."""
         for lock in self._sockets:

@@ -15,7 +15,12 @@ RUN_VARIABLE = "FWK_RUN"
 """Environment variable that names the run that commands use by default."""
 _CHUNK = 64 << 10
 _DESCRIPTORS_MAX = 4
+_ANSWER_MAX_BYTES = 64 << 20
 _LOOK_S = 1.0
+_TOGETHER = 64
+"""Number of runs that are asked at a time."""
+_NEEDED = frozenset(("name", "plan", "pid"))
+"""Keys of the answer by which a run is chosen."""
 
 
 class ControlError(Exception):
@@ -64,61 +69,83 @@ class Client:
         """Sends a request and waits for its answer.
 
         Raises:
-            ControlError: refused, or no answer in time.
+            ControlError: refused, no answer in time, or not an answer.
         """
-        self._send(verb, fields)
+        within_s = timeout_s or self._timeout_s
+        self.send(verb, **fields)
         try:
-            return self._answer(timeout_s or self._timeout_s)
-        except NoAnswerError as error:
-            raise NoAnswerError(f"{error}{self._waits() if verb != 'status' else ''}") from error
+            return self.answer(monotonic_us() + round(within_s * US_PER_S))
+        except TimeoutError as error:
+            waits = self._waits() if verb != "status" else ""
+            raise NoAnswerError(f"{self._run()} has not answered within {within_s:g} s{waits}") from error
+        except EOFError as error:
+            raise ControlError("the run has ended") from error
 
     def follow(self, verb: str, within_s: float | None = None, **fields: Any) -> Iterator[dict[str, Any]]:
         """Sends a request and yields all its answers until the run ends or `within_s` has passed.
 
         Raises:
-            ControlError: refused.
+            ControlError: refused, or not an answer.
         """
-        self._send(verb, fields)
+        self.send(verb, **fields)
         end_us = None if within_s is None else monotonic_us() + round(within_s * US_PER_S)
         while True:
             try:
-                yield self._answer(None, end_us)
-            except EOFError:
+                yield self.answer(end_us)
+            except (TimeoutError, EOFError):
                 return
 
-    def _send(self, verb: str, fields: dict[str, Any]) -> None:
+    def send(self, verb: str, **fields: Any) -> None:
+        """Sends a request."""
         with contextlib.suppress(BrokenPipeError):  # the connection was refused: the reason can still be read
             self._socket.sendall(json.dumps({"verb": verb, **fields}).encode() + b"\n")
 
-    def _answer(self, timeout_s: float | None, end_us: int | None = None) -> dict[str, Any]:
+    def answer(self, end_us: int | None) -> dict[str, Any]:
         """Returns the next answer.
 
         Raises:
-            EOFError: the connection has ended, or `end_us` has passed.
+            EOFError: the connection has ended.
+            TimeoutError: `end_us` has passed.
+            ControlError: the run refuses, or what came is not an answer.
         """
-        parts, descriptors = [self._rest], list[int]()
+        parts, size, descriptors = [self._rest], len(self._rest), list[int]()
         while b"\n" not in parts[-1]:
-            left_s = timeout_s if end_us is None else max(1, end_us - monotonic_us()) / US_PER_S
-            self._socket.settimeout(left_s)
+            self._socket.settimeout(None if end_us is None else max(0, end_us - monotonic_us()) / US_PER_S)
             try:
                 data, found, _, _ = socket.recv_fds(self._socket, _CHUNK, _DESCRIPTORS_MAX)
                 descriptors += found
-            except TimeoutError as error:
-                if end_us is not None:
-                    raise EOFError from error
-                raise NoAnswerError(f"the run has not answered within {timeout_s:g} s") from error
+            except BlockingIOError as error:
+                raise TimeoutError from error
             except ConnectionError:
                 data = b""
             if not data:
-                if timeout_s is None:
-                    raise EOFError
-                raise ControlError("the run has ended")
+                raise EOFError
             parts.append(data)
+            size += len(data)
+            if size > _ANSWER_MAX_BYTES:
+                raise ControlError(f"{self._run()} sends an answer without end")
         line, _, self._rest = b"".join(parts).partition(b"\n")
-        answer: dict[str, Any] = json.loads(line)
+        answer = self._read(line)
         if not answer.get("ok"):
-            raise RefusedError(str(answer.get("error")))
-        return {**answer, "descriptors": descriptors} if descriptors else answer
+            raise RefusedError(_plain(str(answer.get("error"))))
+        if descriptors:
+            answer["descriptors"] = descriptors
+        return answer
+
+    def _read(self, line: bytes) -> "_Answer":
+        """Returns an answer; any user can bind a control socket, and root asks the sockets of all users."""
+        try:
+            answer = json.loads(line, object_hook=_Answer)
+        except (ValueError, RecursionError) as error:
+            raise ControlError(f"{self._run()} sends something that is not an answer") from error
+        if not isinstance(answer, _Answer):
+            raise ControlError(f"{self._run()} sends something that is not an answer")
+        return answer
+
+    def _run(self) -> str:
+        """Names the process at the other end."""
+        process = f"pid {self.pid}" if self.pid else "a process that is not visible from here"
+        return f"the run at @{self._address[1:]} ({process})"
 
     def _waits(self) -> str:
         """Names the components that keep the current tick from ending; most requests take effect after it."""
@@ -133,14 +160,44 @@ class Client:
         return f"; its loop waits for {', '.join(waits_for)}{hint}"
 
 
+class _Answer(dict[str, Any]):
+    """An answer, or a part of one; a program that is not a run of this version may leave keys out."""
+
+    def __missing__(self, key: str) -> Any:
+        raise ControlError(f"the answer of the run lacks '{key}'; another version of fwk has started it")
+
+
+def _plain(text: str) -> str:
+    """Replaces characters that would steer the terminal."""
+    return "".join(each if each.isprintable() or each == "\n" else "�" for each in text)
+
+
 def look() -> dict[int, dict[str, Any]]:
-    """Returns what each run of this user says about itself, by bus port; runs that do not answer in a second have
-    no entry.
+    """Returns what each run says about itself, and the user number of its owner, by bus port; runs that do not answer
+    in a second have no entry. Root sees the runs of all users.
     """
-    found = {}
-    for port in address.running():
-        with contextlib.suppress(ControlError, ValueError), Client(address.supervisor_address(port), _LOOK_S) as client:
-            found[port] = client.ask("run")
+    ports = address.running()
+    found: dict[int, dict[str, Any]] = {}
+    for first in range(0, len(ports), _TOGETHER):
+        found |= _asked(ports[first : first + _TOGETHER])
+    return found
+
+
+def _asked(ports: list[int]) -> dict[int, dict[str, Any]]:
+    """Asks several runs at once, so that silent ones cost no more time than one."""
+    clients: dict[int, Client] = {}
+    found: dict[int, dict[str, Any]] = {}
+    with contextlib.ExitStack() as stack:
+        for port in ports:
+            with contextlib.suppress(ControlError):
+                clients[port] = stack.enter_context(Client(address.supervisor_address(port), _LOOK_S))
+                clients[port].send("run")
+        end_us = monotonic_us() + round(_LOOK_S * US_PER_S)
+        for port, client in clients.items():
+            with contextlib.suppress(ControlError, TimeoutError, EOFError):
+                run = client.answer(end_us)
+                if run.keys() >= _NEEDED:
+                    found[port] = {**run, "owner": client.uid}
     return found
 
 
@@ -160,7 +217,7 @@ def find_run(chosen: str | int | None) -> int:
         return by_port[wanted]
     if not wanted and len(ports := address.running()) == 1:
         return ports[0]
-    runs = look()
+    runs = _preferred(look(), wanted)
     if wanted:
         ports = [port for port, run in runs.items() if wanted in (run.get("name"), str(port))]
         if len(ports) == 1:
@@ -175,6 +232,12 @@ def find_run(chosen: str | int | None) -> int:
         raise RefusedError(f"several runs on this machine; choose one: {_listed(runs, list(runs))}")
     (port,) = runs
     return port
+
+
+def _preferred(runs: dict[int, dict[str, Any]], wanted: str) -> dict[int, dict[str, Any]]:
+    """Returns the user's own runs if one of them can be meant, else the runs of all users, which only root sees."""
+    own = {port: run for port, run in runs.items() if run.get("owner") == os.geteuid()}
+    return own if any(not wanted or run["name"] == wanted for run in own.values()) else runs
 
 
 def supervisor(chosen: str | int | None) -> Client:

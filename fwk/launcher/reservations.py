@@ -22,11 +22,11 @@ class Reservations:
         ControlNameError: another process has a control socket's name.
     """
 
-    def __init__(self, plan: Plan) -> None:
+    def __init__(self, plan: Plan, lock: PortLock) -> None:
         self._ports = ports = Ports.of(plan)
         self._who = plan.file or plan.name
         self._opened: list[socket.socket] = []
-        self._lock = PortLock(ports, self._who, plan.public_url)
+        self._lock = lock
         try:
             self.own = {port: self._open(port) for port in ports.members}
             """Sockets that the supervisor, the hosts and the gateway send from, by port."""

@@ -4,7 +4,7 @@ import secrets
 from functools import partial
 
 from fwk.bus.network import UdpNetwork
-from fwk.bus.port_lock import PortsInUseError
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.clock import US_PER_S
 from fwk.component.images import SLOTS, Ring
 from fwk.control.server import ControlNameError, Server
@@ -33,8 +33,8 @@ __all__ = [
 ]
 
 
-def run(plan: Plan, options: RunOptions) -> Outcome:
-    """Runs a plan in the foreground until it is done, interrupted or broken.
+def run(plan: Plan, options: RunOptions, lock: PortLock) -> Outcome:
+    """Runs a plan in the foreground until it is done, interrupted or broken; `lock` is that of its ports.
 
     Raises:
         PortsInUseError: another run or another program on this machine has a port.
@@ -45,7 +45,7 @@ def run(plan: Plan, options: RunOptions) -> Outcome:
     debug = _debug_request(plan, options)
     profile = _profile_request(plan, options)
     raise_file_limit()
-    reservations = Reservations(plan)
+    reservations = Reservations(plan, lock)
     number = secrets.randbits(62)
     rings = _rings(plan, options)
     zygote = Zygote(plan, number, rings, reservations.hosts, debug, profile, reservations.not_for_hosts)

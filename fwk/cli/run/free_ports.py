@@ -14,8 +14,10 @@ _PORTS_END = 65536
 _URL_PORT = re.compile(r"(?<=:)\d+(?=\?|$)")
 
 
-def on_free_ports(plan: Plan) -> Plan:
-    """Returns the plan on the first free ports from its own on; its public bus moves along.
+def on_free_ports(plan: Plan) -> tuple[Plan, PortLock]:
+    """Returns the plan on the first free ports from its own on, and their lock; its public bus moves along.
+
+    The lock keeps runs apart that start at the same moment.
 
     Raises:
         PortsInUseError: no ports are free.
@@ -27,11 +29,15 @@ def on_free_ports(plan: Plan) -> Plan:
         if Ports.of(moved).end > _PORTS_END:
             break
         try:
-            PortLock(Ports.of(moved), plan.name, moved.public_url).release()
-            check_ports(moved)
-        except (PortsInUseError, MachineError):
+            lock = PortLock(Ports.of(moved), plan.file or plan.name, moved.public_url)
+        except PortsInUseError:
             continue
-        return moved
+        try:
+            check_ports(moved)
+        except MachineError:
+            lock.release()
+            continue
+        return moved, lock
     raise PortsInUseError(
         f"{plan.name}: no {length} free ports from {plan.bus_port} on; end another run, or use --bus-port"
     )

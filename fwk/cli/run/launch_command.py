@@ -166,12 +166,14 @@ def launch(
             check_compression()
         name = _checked_name(run_name, plan)
         if run_name and bus_port is None:
-            plan = on_free_ports(plan)
-        PortLock(Ports.of(plan), plan.file or plan.name, plan.public_url).release()
+            plan, lock = on_free_ports(plan)
+        else:
+            lock = PortLock(Ports.of(plan), plan.file or plan.name, plan.public_url)
         check_machine(plan)
         run_dir = make_run_dir(name)
         if detach:
             detach_run(run_dir, plan.bus_port, name)
+            lock.belong_to_this_process()
         write_run_files(run_dir, plan)
         write_start(run_dir, plan, name)
         options = RunOptions(
@@ -197,7 +199,7 @@ def launch(
             typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' keeps one")
         terminal = terminal_settings()
         try:
-            outcome = run(plan, options)
+            outcome = run(plan, options, lock)
         except NOT_BEGUN:
             shutil.rmtree(run_dir, ignore_errors=True)  # of no run; 'fwk log' would take it for the newest
             raise

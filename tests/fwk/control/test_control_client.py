@@ -1,12 +1,15 @@
 """Choice of the run for a command: the named one, the one in FWK_RUN, or the only one."""
 
+import contextlib
 import os
 import re
 import socket
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 
 import pytest
 
+from fwk.clock import monotonic_us
 from fwk.control import address, client
 from fwk.control.client import Client, ControlError, RefusedError
 
@@ -78,6 +81,8 @@ def bound() -> Iterator[list[socket.socket]]:
     made: list[socket.socket] = []
     yield made
     for each in made:
+        with contextlib.suppress(OSError):  # not connected
+            each.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
         each.close()
 
 
@@ -104,6 +109,75 @@ def test_the_socket_of_another_user_is_not_asked(bound: list[socket.socket], mon
     accepted, _ = squatter.accept()
     assert accepted.recv(100) == b""
     accepted.close()
+
+
+@pytest.fixture
+def fake(bound: list[socket.socket]) -> Callable[[bytes], str]:
+    """Makes the control socket of a program that sends these bytes to every client; returns its address."""
+
+    def make(sent: bytes) -> str:
+        listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        bound.append(listening)
+        listening.bind(f"\0fwk-control-test-{os.getpid()}-{len(bound)}")
+        listening.listen()
+
+        def serve() -> None:
+            with contextlib.suppress(OSError):
+                while True:
+                    connection, _ = listening.accept()
+                    bound.append(connection)
+                    connection.sendall(sent)
+
+        threading.Thread(target=serve, daemon=True).start()
+        return str(listening.getsockname().decode())
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("sent", "error"),
+    [
+        (b"\xff\xfehello\n", "sends something that is not an answer"),
+        (b"[]\n", "sends something that is not an answer"),
+        (b"[" * 20_000 + b"\n", "sends something that is not an answer"),
+        (b" " * 2000, "sends an answer without end"),
+        (b"", "has not answered within 0.1 s"),
+        (b'{"ok": false, "error": "\\u001b[31m"}\n', "�[31m"),
+    ],
+)
+def test_a_program_that_is_not_a_run_gets_a_sentence(
+    fake: Callable[[bytes], str], sent: bytes, error: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(client, "_ANSWER_MAX_BYTES", 30_000 if len(sent) > 2000 else 1000)
+    with Client(fake(sent), 0.1) as run, pytest.raises(ControlError, match=re.escape(error)):
+        run.ask("status")
+
+
+def test_an_answer_that_lacks_a_key_is_refused_where_it_is_used(fake: Callable[[bytes], str]) -> None:
+    with Client(fake(b'{"ok": true, "components": [{}]}\n')) as run:
+        answer = run.ask("run")
+    for part in (answer, answer["components"][0]):
+        with pytest.raises(ControlError, match="lacks 'state'"):
+            part["state"]
+
+
+def test_silent_and_false_runs_hide_no_other(fake: Callable[[bytes], str], monkeypatch: pytest.MonkeyPatch) -> None:
+    real = b'{"ok": true, "name": "match", "plan": "soccer", "pid": 11}\n'
+    sent = [b"", b"[]\n", b"", b'{"ok": true}\n', b" ", real]
+    addresses = dict(enumerate(map(fake, sent)))
+    monkeypatch.setattr(address, "running", lambda: list(addresses))
+    monkeypatch.setattr(address, "supervisor_address", addresses.__getitem__)
+    monkeypatch.setattr(client, "_LOOK_S", 0.2)
+    began_us = monotonic_us()
+    assert list(client.look()) == [5]
+    assert monotonic_us() - began_us < 550_000  # the silent ones are waited for together
+
+
+def test_root_prefers_its_own_run(runs: dict[int, dict[str, object]]) -> None:
+    runs[3] = {**runs[1], "owner": os.geteuid()}
+    assert client.find_run("match") == 3
+    assert client.find_run(None) == 3
+    assert client.find_run("solo") == 2
 
 
 def test_root_may_use_the_runs_of_all_users(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,14 +6,16 @@ import os
 import signal
 import socket
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import psutil
 import pytest
 
 from fwk import Component, Writes
-from fwk.bus.port_lock import PortsInUseError
+from fwk.bus.port_lock import PortLock, PortsInUseError
 from fwk.bus.sockets import GROUP, LOOPBACK
+from fwk.cli.run.free_ports import on_free_ports
 from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.server import ControlNameError
 from fwk.launcher.reservations import Reservations
@@ -89,6 +91,43 @@ def test_no_port_can_be_taken_while_a_host_restarts(launch: Launch, traced: Path
     assert "Traceback" not in run.text
 
 
+def locked(plan: Plan) -> PortLock:
+    return PortLock(Ports.of(plan), plan.name, plan.public_url)
+
+
+def test_named_runs_that_start_together_get_ports_of_their_own(ports: PortBlock) -> None:
+    plan = replace(plan_of_one(ports.bus), public_url=ports.public_url)
+    one, lock = on_free_ports(plan)
+    other, other_lock = on_free_ports(plan)
+    with pytest.raises(PortsInUseError, match=f"used by another run.*pid {os.getpid()}"):
+        locked(one)
+    assert Ports.of(one).end <= Ports.of(other).base
+    assert one.public_url != other.public_url
+    lock.release()
+    other_lock.release()
+    locked(one).release()
+
+
+def test_a_run_in_the_background_is_named_as_holder(ports: PortBlock) -> None:
+    plan = plan_of_one(ports.bus)
+    lock = locked(plan)
+    here, there = socket.socketpair()
+    child = os.fork()
+    if not child:
+        here.close()
+        lock.belong_to_this_process()
+        there.send(b".")
+        there.recv(1)  # until the test has looked
+        os._exit(0)
+    there.close()
+    with here:
+        here.recv(1)
+        with pytest.raises(PortsInUseError, match=f"pid {child}"):
+            locked(plan)
+    os.waitpid(child, 0)
+    lock.release()
+
+
 @pytest.mark.parametrize("at", ["host", "gateway", "stage", "channel"])
 def test_port_that_is_taken_late_is_named_with_its_owner(at: str, ports: PortBlock) -> None:
     plan = plan_of_one(ports.bus)
@@ -97,8 +136,8 @@ def test_port_that_is_taken_late_is_named_with_its_owner(at: str, ports: PortBlo
     with contextlib.ExitStack() as thieves:
         assert bound(thieves, "", port, ()) == 0
         with pytest.raises(PortsInUseError, match=rf"UDP port {port} .* \(pid {os.getpid()}: .*another --bus-port"):
-            Reservations(plan)
-    Reservations(plan).release()  # the first attempt kept nothing
+            Reservations(plan, locked(plan))
+    Reservations(plan, locked(plan)).release()  # the first attempt kept nothing
 
 
 @pytest.mark.parametrize("address", [supervisor_address, gateway_address])
@@ -107,8 +146,8 @@ def test_control_name_that_is_taken_late_is_named(address: Callable[[int], str],
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as thief:
         thief.bind(address(ports.bus))
         with pytest.raises(ControlNameError, match=f"control socket @fwk-.*-{ports.bus}; end it"):
-            Reservations(plan)
-    Reservations(plan).release()
+            Reservations(plan, locked(plan))
+    Reservations(plan, locked(plan)).release()
 
 
 def test_a_used_port_is_named_before_any_process_starts(launch: Launch, traced: Path, ports: PortBlock) -> None:
