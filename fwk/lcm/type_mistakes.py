@@ -13,6 +13,20 @@ SIZE_MAX = 16 << 20
 """Largest size of a message without its arrays of variable length; larger data belongs into several messages."""
 _STRUCT = re.compile(r"\bstruct\s+(\w+)")
 _PACKAGE = re.compile(r"^\s*package\s+([\w.]+)\s*;", re.M)
+_OF_CLASSES = frozenset(
+    [
+        "encode",
+        "decode",
+        "get_hash",
+        "_encode_one",
+        "_decode_one",
+        "_get_hash_recursive",
+        "_get_packed_fingerprint",
+        "_packed_fingerprint",
+        "_set_members",
+    ]
+)
+"""Names that lcm-gen and `typegen` give to attributes of every class."""
 
 
 def mistakes_in(files: Sequence[LcmFile]) -> list[str]:
@@ -42,6 +56,8 @@ def _twice(files: Iterable[LcmFile]) -> Iterator[Mistake]:
 def _in_struct(struct: Struct, structs: Mapping[str, Struct]) -> Iterator[Mistake]:
     lines: dict[str, int] = {}
     for member in (*struct.constants, *struct.members):
+        if member.name in _OF_CLASSES or member.name.startswith("__"):
+            yield member.line, f"'{member.name}' is a name of every generated class; choose another name", struct
         if member.name in lines:
             yield member.line, f"{struct.name} has a '{member.name}' already, in line {lines[member.name]}", struct
         lines.setdefault(member.name, member.line)

@@ -93,6 +93,10 @@ def imported(name: str, folders: Sequence[str] = ()) -> ModuleType:
 def _failure(name: str, error: BaseException) -> str:
     if isinstance(error, SyntaxError) and error.filename:
         return f"cannot import '{name}': {error.msg} ({_shown(error.filename)}:{error.lineno})"
+    package = error.name or "" if isinstance(error, ModuleNotFoundError) else ""
+    if package.startswith("lcmtypes."):
+        file = f"{package.replace('.', '/', 1)}.lcm"
+        return f"cannot import '{name}': no types '{package}'; they come from {file}{_blamed(error.__traceback__)}"
     reason = _setting_mistake(error) or "".join(traceback.format_exception_only(error)).strip().splitlines()[-1]
     return f"cannot import '{name}': {reason}{_blamed(error.__traceback__)}"
 

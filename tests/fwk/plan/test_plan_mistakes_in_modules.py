@@ -176,6 +176,15 @@ def test_modules_and_classes(folder: Path, broken: Broken) -> None:
         """,
     ),
     Broken(
+        "it.yaml:1: it/a: cannot import 'typed': no types 'lcmtypes.flowers'; they come from lcmtypes/flowers.lcm "
+        "(typed.py:1)",
+        """
+        components: {it/a: {use: typed}}
+        --- typed.py
+        from lcmtypes.flowers import rose_t
+        """,
+    ),
+    Broken(
         "it.yaml:1: it/a: cannot import 'leaving': SystemExit: 3 (leaving.py:1)",
         """
         components: {it/a: {use: leaving}}

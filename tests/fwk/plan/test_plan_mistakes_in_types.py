@@ -48,6 +48,11 @@ def of_type(message: str, source: str) -> Broken:
         "lcmtypes/mine.lcm:2: 'lambda' is a keyword of Python; choose another name", "struct mine_t { double lambda; }"
     ),
     of_type(
+        "lcmtypes/mine.lcm:2: 'encode' is a name of every generated class; choose another name\n"
+        "lcmtypes/mine.lcm:3: '__slots__' is a name of every generated class; choose another name",
+        "struct mine_t { double encode;\n const int8_t __slots__ = 1; }",
+    ),
+    of_type(
         "lcmtypes/mine.lcm:3: there is no type 'core.heade_t'; did you mean 'core.header_t'?",
         "struct mine_t {\n  core.heade_t header;\n}",
     ),
