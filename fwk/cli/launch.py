@@ -2,7 +2,7 @@
 
 import sys
 
-from fwk.cli.output import imported, run_program, say
+from fwk.cli.output import run_program, say
 
 
 def main() -> None:
@@ -18,7 +18,6 @@ def _run() -> None:
         return
     from fwk.cli.run.launch_command import app
 
-    imported()
     app(prog_name="fwk-launch")
 
 

@@ -15,7 +15,7 @@ from fwk.cli.arguments import Hosting, SeveralNames, new_file, record_parts, sec
 from fwk.cli.arguments import speed as parse_speed
 from fwk.cli.commands import VersionFlag
 from fwk.cli.examples import epilog
-from fwk.cli.output import BAD_INPUT, notice
+from fwk.cli.output import BAD_INPUT, imported, notice
 from fwk.cli.run.console import beside, check_library
 from fwk.cli.run.detach import detach as detach_run
 from fwk.cli.run.free_ports import on_free_ports
@@ -223,6 +223,7 @@ def launch(
 @contextmanager
 def _ending() -> Iterator[None]:
     """Turns errors before the start of a run into a sentence and an exit code."""
+    imported()
     try:
         yield
     except (*NOT_BEGUN, PlanError, RunDirError) as error:

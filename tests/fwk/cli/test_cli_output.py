@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from fwk.cli import launch
 from tests.fwk.cli.cli_processes import PROCS, write_files
 from tests.harness.runs import PortBlock
 
@@ -106,3 +107,14 @@ def test_ctrl_c_during_imports_ends_it_tidily(module: str, code: int) -> None:
     )
     done = run([sys.executable, "-c", program], stdout=subprocess.PIPE)
     assert (done.returncode, done.stderr) == (code, "interrupted before the start\n")
+
+
+def test_ctrl_c_while_launch_reads_its_words_ends_it_tidily(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr(sys, "argv", ["fwk-launch", "--no-such-option"])
+    try:
+        with pytest.raises(SystemExit):
+            launch.main()
+        assert signal.getsignal(signal.SIGINT) is not signal.default_int_handler  # typer would end with code 130
+    finally:
+        signal.signal(signal.SIGINT, before)
