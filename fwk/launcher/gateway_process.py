@@ -57,7 +57,7 @@ def run_gateway(
         channel_server,
         bridge,
         *targets.components(plan, gateway.take_in, gateway.log),
-        targets.above(sinks.Display(plan, display), plan.log.console),
+        targets.above(sinks.Display(plan, display, gateway.log.error), plan.log.console),
         sinks.Newest(plan, control, lambda: gateway.lost + sum(each.dropped for each in recorders)),
     ]
     if options.record:

@@ -148,8 +148,10 @@ class Mirror:
 class Display:
     """Feeds the display: lines and status at once, newest messages four times a second."""
 
-    def __init__(self, plan: Plan, connection: socket.socket) -> None:
+    def __init__(self, plan: Plan, connection: socket.socket, report: Callable[[str], None]) -> None:
         self._connection = connection
+        self._report = report
+        self._has_ended = False
         self._shown = frozenset(plan.scoreboard_channels)
         self._newest: dict[str, bytes] = {}
         self._due_us = 0
@@ -178,6 +180,10 @@ class Display:
     def _send(self, channel: str, data: bytes) -> None:
         try:
             self._connection.send(channel.encode() + b"\0" + data, socket.MSG_DONTWAIT)
+        except ConnectionError:
+            if not self._has_ended:
+                self._has_ended = True
+                self._report("the display has ended; the run goes on without it")
         except OSError:  # a slow terminal: the display lacks a message, the run does not wait
             return
 
