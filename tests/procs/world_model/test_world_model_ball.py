@@ -217,7 +217,7 @@ def test_old_sighting_is_used_for_its_own_time() -> None:
     assert abs(np.mean(errors)) < 0.05, "0.4 m behind without the age"
 
 
-def test_late_sighting_from_before_a_kick_changes_nothing_after_it() -> None:
+def test_late_sighting_from_before_a_kick_does_not_undo_it() -> None:
     """An opponent kicks a resting ball; the own camera sees it fly, a mate's sightings come 0.15 s late."""
     tracker = BallTracker()
     places_m = [max(0.0, 7.0 * (frame - 12) * PERIOD_S) for frame in range(20)]
