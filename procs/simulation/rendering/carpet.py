@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from procs.model.field import Arc, Field, Point, Segment
 from procs.vision.colours import FLOOR, GREEN, WHITE, Bgr, Picture
@@ -14,17 +15,37 @@ from procs.vision.colours import FLOOR, GREEN, WHITE, Bgr, Picture
 METRES_PER_PX = 0.125 / 6  # an even part of the line width, so that most lines are painted exactly
 _FLOOR_M = 1.5  # of floor painted beyond the border; farther away everything has the floor's mean colour
 _PATCHES: tuple[Bgr, ...] = ((124, 120, 112), (96, 88, 84), (88, 104, 136), (142, 136, 130), (118, 98, 88))
+_COLOURS = (FLOOR, GREEN, WHITE, *_PATCHES)
+_PALETTE = np.zeros((256, 1, 3), np.uint8)
+_PALETTE[: len(_COLOURS), 0] = _COLOURS
+FLOOR_NUMBER = _COLOURS.index(FLOOR)
+"""Number of the colour of everything beyond the carpet."""
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 _ARC_STEP_RAD = math.radians(3.0)
 
 
 @dataclass(frozen=True)
 class Carpet:
-    """A picture of the ground: column grows with x, row with y; the world's origin lies at `origin_px`."""
+    """A picture of the ground: column grows with x, row with y; the world's origin lies at `origin_px`.
 
-    pixels: Picture
+    A pixel is a byte, the number of its colour. A robot's view is looked up at scattered places, and a small table
+    stays in the processor's cache.
+    """
+
+    numbers: NDArray[np.uint8]
+    """Height x width."""
     origin_px: tuple[float, float]
     metres_per_px: float
+
+    @property
+    def pixels(self) -> Picture:
+        """The picture in colours."""
+        return coloured(self.numbers)
+
+
+def coloured(numbers: NDArray[np.uint8]) -> Picture:
+    """Returns the colours (height, width, 3) of a picture of their numbers."""
+    return np.asarray(cv2.applyColorMap(numbers, _PALETTE), np.uint8)
 
 
 @lru_cache(maxsize=4)
@@ -32,9 +53,9 @@ def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
     """Paints the field, its border and some of the floor around it."""
     half_m = (field.half_length_m + field.border_m + _FLOOR_M, field.half_width_m + field.border_m + _FLOOR_M)
     width, height = (2 * round(half / metres_per_px) for half in half_m)
-    pixels = np.empty((height, width, 3), np.uint8)
-    _lay_floor(pixels, round(0.5 / metres_per_px))
-    carpet = Carpet(pixels, ((width - 1) / 2, (height - 1) / 2), metres_per_px)
+    numbers = np.empty((height, width), np.uint8)
+    _lay_floor(numbers, round(0.5 / metres_per_px))
+    carpet = Carpet(numbers, ((width - 1) / 2, (height - 1) / 2), metres_per_px)
     x_m, y_m = field.half_length_m + field.border_m, field.half_width_m + field.border_m
     _paint(carpet, [Point(-x_m, -y_m), Point(x_m, -y_m), Point(x_m, y_m), Point(-x_m, y_m)], GREEN)
     line_m = field.line_width_m - metres_per_px  # OpenCV paints what an outline touches: half a pixel more on each side
@@ -47,17 +68,18 @@ def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
     return carpet
 
 
-def _lay_floor(pixels: Picture, patch_px: int) -> None:
-    pixels[:] = FLOOR
-    height, width = pixels.shape[:2]
+def _lay_floor(numbers: NDArray[np.uint8], patch_px: int) -> None:
+    height, width = numbers.shape
     for i, top in enumerate(range(0, height, patch_px)):
         for j, left in enumerate(range(0, width, patch_px)):
-            pixels[top : top + patch_px, left : left + patch_px] = _PATCHES[(3 * i + 7 * j + i * j) % len(_PATCHES)]
+            patch = _PATCHES[(3 * i + 7 * j + i * j) % len(_PATCHES)]
+            numbers[top : top + patch_px, left : left + patch_px] = _COLOURS.index(patch)
 
 
 def _paint(carpet: Carpet, outline_m: Iterable[Point], colour: Bgr) -> None:
     outline = np.array(list(outline_m)) / carpet.metres_per_px + carpet.origin_px
-    cv2.fillPoly(carpet.pixels, [np.round(outline * (1 << _SHIFT)).astype(np.int32)], colour, shift=_SHIFT)
+    number = _COLOURS.index(colour)
+    cv2.fillPoly(carpet.numbers, [np.round(outline * (1 << _SHIFT)).astype(np.int32)], (number,), shift=_SHIFT)
 
 
 def _stripe(segment: Segment, width_m: float) -> list[Point]:

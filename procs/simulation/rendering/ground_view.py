@@ -7,8 +7,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from procs.simulation.rendering.carpet import Carpet
-from procs.vision.colours import FLOOR, Picture
+from procs.simulation.rendering.carpet import FLOOR_NUMBER, Carpet, coloured
+from procs.vision.colours import Picture
 from procs.vision.mirror import Mirror
 
 MARGIN_PX = 6  # how far the picture can shake
@@ -32,10 +32,10 @@ class GroundView:
         ground = self._maps[down % 2][right % 2][top : top + self._size_px, left : left + self._size_px]
         looked_up = cv2.transform(ground, np.array([[cosine, -sine, column], [sine, cosine, row]]))
         # Nearest neighbours: bilinear interpolation differs between OpenCV's versions, and costs more.
-        view = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
-            carpet.pixels, looked_up, None, cv2.INTER_NEAREST, borderValue=FLOOR
+        numbers = cv2.remap(  # type: ignore[call-overload]  # the stubs do not know that one map can hold both coordinates
+            carpet.numbers, looked_up, None, cv2.INTER_NEAREST, borderValue=(FLOOR_NUMBER,)
         )
-        return np.asarray(view, np.uint8)
+        return coloured(numbers)
 
 
 @lru_cache(maxsize=4)

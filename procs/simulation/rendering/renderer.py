@@ -68,30 +68,36 @@ class Renderer:
         balls = [] if scene.ball_m is None else [scene.ball_m]
         balls_m = np.array([ball[:2] for ball in balls]).reshape(-1, 2)
         at_m = _seen_from(own, np.vstack([self._posts_m, robots, balls_m]))
-        posts_m, robots_m, balls_m = np.split(at_m, (len(self._posts_m), len(self._posts_m) + len(robots)))
-        pillars_px = [
-            *self._in_picture(pillars(posts_m, *self._post_size_m), shift_px),
-            *self._in_picture(pillars(robots_m, bodies.robot_radius_m, bodies.robot_height_m), shift_px),
-        ]
-        markers_px = self._in_picture(markers(robots_m, bodies.robot_radius_m), shift_px)
-        for i in np.argsort(-np.hypot(at_m[:, 0], at_m[:, 1]), kind="stable"):
-            robot = i - len(posts_m)
-            if robot >= len(robots_m):
-                self._draw_ball(frame, (balls_m[0, 0], balls_m[0, 1], balls[0][2]), shift_px)
-            elif robot < 0:
-                cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), WHITE, shift=_SHIFT)
-            else:
-                cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), BLACK, shift=_SHIFT)
-                cv2.fillPoly(frame, [markers_px[robot]], scene.others[robot][2], shift=_SHIFT)
+        posts, pillared = len(self._posts_m), len(self._posts_m) + len(robots)
+        robots_m = at_m[posts:pillared]
+        radii_m, heights_m = np.empty((2, pillared))
+        radii_m[:posts], heights_m[:posts] = self._post_size_m
+        radii_m[posts:], heights_m[posts:] = bodies.robot_radius_m, bodies.robot_height_m
+        shapes_m = pillars(at_m[:pillared], radii_m, heights_m), markers(robots_m, bodies.robot_radius_m)
+        pillars_px, markers_px = self._in_picture(shapes_m, shift_px)
+        for i in np.argsort(-np.hypot(at_m[:, 0], at_m[:, 1]), kind="stable").tolist():
+            if i >= pillared:
+                self._draw_ball(frame, (at_m[i, 0], at_m[i, 1], balls[0][2]), shift_px)
+                continue
+            cv2.fillConvexPoly(frame, cv2.convexHull(pillars_px[i]), WHITE if i < posts else BLACK, shift=_SHIFT)
+            if i >= posts:
+                cv2.fillPoly(frame, [markers_px[i - posts]], scene.others[i - posts][2], shift=_SHIFT)
 
-    def _in_picture(self, outlines_m: Floats, shift_px: Floats) -> cv2.typing.MatLike:
-        """Outlines (n, corners, 3) as pixels (n, corners, 2) in OpenCV's fixed-point numbers."""
-        pixels = self._mirror.project(outlines_m.reshape(-1, 3)) + shift_px
-        pixels = pixels.clip(-4096, 4096).reshape(*outlines_m.shape[:2], 2)
-        # OpenCV paints every pixel that an outline touches, half a pixel too much all around.
-        inward = pixels.mean(axis=1, keepdims=True) - pixels
-        pixels += inward * (0.5 / np.maximum(np.linalg.norm(inward, axis=2, keepdims=True), 0.5))
-        return np.round(pixels * (1 << _SHIFT)).astype(np.int32)
+    def _in_picture(self, shapes_m: Sequence[Floats], shift_px: Floats) -> list[cv2.typing.MatLike]:
+        """Outlines, each (n, corners, 3), as pixels (n, corners, 2) in OpenCV's fixed-point numbers."""
+        pixels = self._mirror.project(np.concatenate([outlines_m.reshape(-1, 3) for outlines_m in shapes_m]))
+        pixels = (pixels + shift_px).clip(-4096, 4096)
+        found, begin = [], 0
+        for outlines_m in shapes_m:
+            count, corners = outlines_m.shape[:2]
+            outlines = pixels[begin : begin + count * corners].reshape(count, corners, 2)
+            begin += count * corners
+            # OpenCV paints every pixel that an outline touches, half a pixel too much all around.
+            inward = outlines.mean(axis=1, keepdims=True) - outlines
+            away_px = np.hypot(inward[..., :1], inward[..., 1:])
+            outlines = outlines + inward * (0.5 / np.maximum(away_px, 0.5))
+            found.append(np.round(outlines * (1 << _SHIFT)).astype(np.int32))
+        return found
 
     def _draw_ball(self, frame: Picture, centre_m: tuple[float, float, float], shift_px: Floats) -> None:
         column, row, radius_px = self._mirror.sphere(centre_m, self._bodies.ball_radius_m)

@@ -10,7 +10,7 @@ from procs.model.ball import BALL
 from procs.model.robot import ROBOT
 
 _MARKER_M = (0.34, 0.50)  # lower and upper edge of the team marker
-_CORNERS_RAD = np.linspace(0.0, 2 * math.pi, 20, endpoint=False)
+_RIM = np.array([(math.cos(at), math.sin(at)) for at in np.linspace(0.0, 2 * math.pi, 20, endpoint=False)])
 _FRONT_RAD = np.linspace(-1.1, 1.1, 8)  # the part of a round body that can be seen from one side
 
 
@@ -23,18 +23,24 @@ class Bodies:
     ball_radius_m: float = BALL.radius_m
 
 
-def pillars(at_m: Floats, radius_m: float, height_m: float) -> Floats:
-    """Returns the rims (n, corners, 3) of round upright bodies at points (n, 2); their hull is the visible shape."""
-    rims = at_m[:, None] + radius_m * np.column_stack((np.cos(_CORNERS_RAD), np.sin(_CORNERS_RAD)))
-    return np.concatenate((_at_height(rims, 0.0), _at_height(rims, height_m)), axis=1)
+def pillars(at_m: Floats, radii_m: Floats, heights_m: Floats) -> Floats:
+    """Returns the rims (n, corners, 3) of round upright bodies at points (n, 2); their hull is the visible shape.
+
+    `radii_m` and `heights_m` are (n).
+    """
+    outlines_m = np.zeros((len(at_m), 2 * len(_RIM), 3))
+    lower, upper = outlines_m[:, : len(_RIM)], outlines_m[:, len(_RIM) :]
+    lower[..., :2] = upper[..., :2] = at_m[:, None] + radii_m[:, None, None] * _RIM
+    upper[..., 2] = heights_m[:, None]
+    return outlines_m
 
 
 def markers(at_m: Floats, radius_m: float) -> Floats:
     """Outlines of the team markers on round bodies at points (n, 2), as seen from the origin: (n, corners, 3)."""
     angles = np.arctan2(-at_m[:, 1], -at_m[:, 0])[:, None] + _FRONT_RAD
-    fronts = at_m[:, None] + radius_m * np.stack((np.cos(angles), np.sin(angles)), axis=2)
-    return np.concatenate((_at_height(fronts, _MARKER_M[0]), _at_height(fronts[:, ::-1], _MARKER_M[1])), axis=1)
-
-
-def _at_height(points_m: Floats, height_m: float) -> Floats:
-    return np.concatenate((points_m, np.full((*points_m.shape[:2], 1), height_m)), axis=2)
+    outlines_m = np.empty((len(at_m), 2 * len(_FRONT_RAD), 3))
+    lower, upper = outlines_m[:, : len(_FRONT_RAD)], outlines_m[:, len(_FRONT_RAD) :]
+    lower[..., :2] = at_m[:, None] + radius_m * np.stack((np.cos(angles), np.sin(angles)), axis=2)
+    upper[..., :2] = lower[:, ::-1, :2]
+    lower[..., 2], upper[..., 2] = _MARKER_M
+    return outlines_m

@@ -24,7 +24,7 @@ class StereoRenderer:
     def __init__(self, rig: StereoRig, field: Field, bodies: Bodies) -> None:
         self._rig, self._bodies = rig, bodies
         carpet = lay_carpet(field)
-        self._carpet, self._origin_px, self._scale_m = carpet.pixels, carpet.origin_px, carpet.metres_per_px
+        self._origin_px, self._scale_m = carpet.origin_px, carpet.metres_per_px
         self._grey = cv2.cvtColor(carpet.pixels, cv2.COLOR_BGR2GRAY)
         rows = rig.rows
         self._ground_rows = rows > 0.02
