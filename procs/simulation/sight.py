@@ -33,10 +33,8 @@ def blurred(mirror: Mirror, points_m: Floats, along_px: Floats, across_px: Float
     range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-3)
     ahead = points_m / range_m[:, None]
     aside = np.column_stack((-ahead[:, 1], ahead[:, 0]))
-    scale_m = np.array([mirror.metres_per_px(float(distance_m)) for distance_m in range_m])
-    return np.asarray(
-        points_m + ahead * (along_px * scale_m[:, 0])[:, None] + aside * (across_px * scale_m[:, 1])[:, None]
-    )
+    along_m, across_m = mirror.metres_per_px_each(range_m)
+    return np.asarray(points_m + ahead * (along_px * along_m)[:, None] + aside * (across_px * across_m)[:, None])
 
 
 def shaken(points_m: Floats, shake_px: tuple[float, float]) -> tuple[Floats, Floats]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
-from procs.model.algebra import Floats, weighted_mean
+from procs.model.algebra import Floats, median, weighted_mean
 from procs.model.ball import BALL
 from procs.vision.colours import ColourRange, Mask, Picture, to_hsv
 from procs.vision.mirror import Mirror
@@ -59,10 +59,12 @@ class BallFinder:
         """Returns the likeliest ball in a picture, height x width x 3, or None."""
         coarse = cv2.resize(pixels, None, fx=1 / _STEP_PX, fy=1 / _STEP_PX, interpolation=cv2.INTER_NEAREST)
         mask = self.colour.mask(to_hsv(np.asarray(coarse, np.uint8))).view(np.uint8)
-        if not mask.any():
+        left, top, width, height = cv2.boundingRect(mask)
+        if not width:
             return None
-        _, _, boxes, _ = cv2.connectedComponentsWithStats(mask, connectivity=8)
-        blobs = boxes[1:]
+        part = mask[top : top + height, left : left + width]  # a labelling of the whole picture takes much longer
+        _, _, boxes, _ = cv2.connectedComponentsWithStats(part, connectivity=8)
+        blobs = boxes[1:] + np.array((left, top, 0, 0, 0))
         largest = np.argsort(-blobs[:, cv2.CC_STAT_AREA], kind="stable")[:_CANDIDATES]
         sightings = [self._sighting(self._blob(pixels, blobs[i])) for i in largest]
         return max((s for s in sightings if s is not None), key=lambda s: s.confidence, default=None)
@@ -117,8 +119,8 @@ def _cover(window: Picture, solid: Mask) -> Floats:
 
     Carpet, lines, robots and orange differ in many ways, but red minus blue is next to nothing in all but orange.
     """
-    warmth = window[..., 2].astype(float) - window[..., 0]
-    full = max(float(np.median(warmth[solid])), 1.0)
+    warmth: Floats = window[..., 2].astype(np.float64) - window[..., 0]
+    full = max(median(warmth[solid]), 1.0)
     cover = (warmth / full).clip(0.0, 1.0)
     cover[cover < _FAINT] = 0.0
     return cover

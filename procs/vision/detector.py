@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 
-import numpy.ma  # noqa: F401  np.median imports it at its first use, which would be in each process
 from pydantic import Field
 
 from fwk import Component, Config, Image

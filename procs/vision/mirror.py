@@ -88,5 +88,11 @@ class Mirror:
         along_px_rad = self.scale_px / (1.0 + self.height_m / reach_m)  # of the angle from straight down
         return reach_m**2 / self.height_m / along_px_rad, reach_m / along_px_rad
 
+    def metres_per_px_each(self, distances_m: Floats) -> tuple[Floats, Floats]:
+        """Returns `metres_per_px` of many distances (n): along the rays (n) and across them (n)."""
+        reach_m = np.hypot(distances_m, self.height_m)
+        across_m = reach_m * (1.0 + self.height_m / reach_m) / self.scale_px
+        return across_m * reach_m / self.height_m, across_m
+
     def _pixels(self, offsets: Floats) -> Floats:
         return self.centre_px - self.scale_px * offsets[:, ::-1]

@@ -3,11 +3,13 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
+from operator import and_, or_
 
 import numpy as np
 from numpy.typing import NDArray
 
-from procs.model.algebra import Floats, product
+from procs.model.algebra import Floats, median
 from procs.model.robot import ROBOT
 from procs.vision.colours import ColourRange, Mask, Picture
 from procs.vision.mirror import Mirror
@@ -53,9 +55,9 @@ class ObstacleFinder:
     def _near_edges(self, hsv: Picture) -> Floats:
         """Points (n, 2) at which rays meet the feet of something black, in the order of the rays."""
         black = self.black.mask(hsv)
-        standing = np.logical_or.reduce([colour.mask(hsv) for colour in self.carpet])
+        standing = reduce(or_, (colour.mask(hsv) for colour in self.carpet))
         last = black.shape[1] - _BODY_SAMPLES + 1
-        body = np.logical_and.reduce([black[:, i : last + i] for i in range(_BODY_SAMPLES)])
+        body = reduce(and_, (black[:, i : last + i] for i in range(_BODY_SAMPLES)))
         rays = np.flatnonzero(body.any(axis=1))
         starts = body[rays].argmax(axis=1)
         if (starts == 0).sum() > _COVERED * len(body):
@@ -67,7 +69,7 @@ class ObstacleFinder:
     def _groups(self, edges_m: Floats) -> list[Floats]:
         """Edge points that may belong together, (n, 2) each: neighbours with a gap that a ball could hide."""
         gaps_m = np.hypot(*(edges_m - np.roll(edges_m, 1, axis=0)).T)  # the first with the last: the rays go around
-        blur_m = np.array([self.mirror.metres_per_px(math.hypot(*edge))[0] for edge in edges_m])
+        blur_m, _ = self.mirror.metres_per_px_each(np.hypot(edges_m[:, 0], edges_m[:, 1]))
         breaks = np.flatnonzero(gaps_m > 1.4 * self.radius_m + blur_m)
         if len(breaks) == 0:
             return [edges_m]
@@ -78,16 +80,20 @@ class ObstacleFinder:
         if len(group) < self.least_rays:
             return
         width_rad = _turn(group[0], group[-1])
-        expected_rad = 2 * math.asin(min(self.radius_m / (float(np.hypot(*group.T).mean()) + self.radius_m), 1.0))
+        range_m = float(np.hypot(group[:, 0], group[:, 1]).mean())
+        expected_rad = 2 * math.asin(min(self.radius_m / (range_m + self.radius_m), 1.0))
         most = len(group) // self.least_rays
-        yield from np.array_split(group, min(max(round(width_rad / expected_rad), 1), most))
+        parts = min(max(round(width_rad / expected_rad), 1), most)
+        yield from np.array_split(group, parts) if parts > 1 else [group]
 
     def _obstacle(self, edges_m: Floats) -> Obstacle:
         middle_rad = math.atan2(*edges_m[0, ::-1]) + _turn(edges_m[0], edges_m[-1]) / 2
-        ahead = np.array([math.cos(middle_rad), math.sin(middle_rad)])
-        along_m, across_m = product(edges_m, np.array([[ahead[0], -ahead[1]], [ahead[1], ahead[0]]])).T
-        depth_m = np.sqrt((self.radius_m**2 - across_m**2).clip(0.0))
-        x_m, y_m = float(np.median(along_m + depth_m)) * ahead
+        ahead_x, ahead_y = math.cos(middle_rad), math.sin(middle_rad)
+        edge_x_m, edge_y_m = edges_m.T
+        along_m = edge_x_m * ahead_x + edge_y_m * ahead_y
+        across_m = edge_y_m * ahead_x - edge_x_m * ahead_y
+        away_m = median(along_m + np.sqrt(np.maximum(self.radius_m**2 - across_m**2, 0.0)))
+        x_m, y_m = away_m * ahead_x, away_m * ahead_y
         return Obstacle(x_m, y_m, ground_covariance(self.mirror, x_m, y_m, *self.deviation_px))
 
 

@@ -57,7 +57,10 @@ def _around(mirror: Mirror, angles: Floats, radii_px: Floats) -> tuple[Floats, F
 
 def runs(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp], NDArray[np.intp]]:
     """Unbroken runs of true values along each line of a mask (lines, samples): line, first sample, sample after it."""
-    edges = np.diff(np.pad(mask, ((0, 0), (1, 1))).view(np.int8), axis=1)
-    lines, starts = np.nonzero(edges == 1)
-    _, ends = np.nonzero(edges == -1)
-    return lines, starts, ends
+    lines, samples = mask.shape
+    padded = np.zeros((lines, samples + 1), dtype=bool)  # a false value after each line ends its runs
+    padded[:, :samples] = mask
+    flat = padded.reshape(-1)
+    changes = np.flatnonzero(np.concatenate((flat[:1], flat[1:] != flat[:-1])))
+    line, start = np.divmod(changes[::2], samples + 1)
+    return line, start, changes[1::2] - line * (samples + 1)
