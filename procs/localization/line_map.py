@@ -39,13 +39,12 @@ class LineMap:
         The arrays may have any shape; the three results have the same. The sign says on which side of the line a place
         is, but which side counts as positive has no meaning.
         """
-        column = _clipped((x_m - self._left_m) / self._cell_m, self._columns)
-        row = _clipped((y_m - self._bottom_m) / self._cell_m, self._rows)
+        across, up = (x_m - self._left_m) / self._cell_m, (y_m - self._bottom_m) / self._cell_m
+        column, row = _clipped(across, self._columns), _clipped(up, self._rows)
         cells = self._table.take(row * self._columns + column, axis=0)
         normal_x, normal_y = cells[..., 1], cells[..., 2]
-        beside_x_m = x_m - (self._left_m + (column + 0.5) * self._cell_m)
-        beside_y_m = y_m - (self._bottom_m + (row + 0.5) * self._cell_m)
-        return cells[..., 0] + normal_x * beside_x_m + normal_y * beside_y_m, normal_x, normal_y
+        beside_m = self._cell_m * (normal_x * (across - (column + 0.5)) + normal_y * (up - (row + 0.5)))
+        return cells[..., 0] + beside_m, normal_x, normal_y
 
 
 @lru_cache(maxsize=4)
@@ -55,7 +54,7 @@ def line_map(field: Field) -> LineMap:
 
 
 def _clipped(cells: Floats, count: int) -> NDArray[np.intp]:
-    return np.clip(cells, 0, count - 1).astype(np.intp)
+    return np.minimum(np.maximum(cells, 0), count - 1).astype(np.intp)
 
 
 def _nearest(field: Field, places_m: Floats) -> Floats:

@@ -15,7 +15,7 @@ from procs.model.frames import Floats
 
 _DAMPING = np.diag((20.0, 20.0, 20.0))  # holds back directions that no line tells anything about
 _LONGEST_STEP = np.array((0.3, 0.3, 0.15))  # m, m, rad: the planes of the table hold near by only
-_CONVERGED = np.array((1e-4, 1e-4, 1e-4))
+_CONVERGED = np.array((1e-3, 1e-3, 3e-4))  # m, m, rad: far below the error of a match
 
 
 class LinePoints:
@@ -31,7 +31,11 @@ class LinePoints:
         self.range_m = np.hypot(x_m, y_m)
         self.along_m2 = (0.02 + 0.005 * self.range_m**2) ** 2
         self.across_m2 = (0.02 + 0.005 * self.range_m) ** 2
+        self.stretch = (self.along_m2 - self.across_m2) / np.maximum(self.range_m, 1e-6) ** 2
+        """(n): growth of the variance along a line's normal with the square of the way ahead along it."""
         self.trust = 1.0 / (0.02 + 0.005 * self.range_m**2)
+        self.share = self.trust / max(float(self.trust.sum()), 1e-9)
+        """(n): of the score."""
 
     @classmethod
     def chosen(cls, x_m: Floats, y_m: Floats, reach_m: float, most: int) -> "LinePoints":
@@ -39,7 +43,7 @@ class LinePoints:
         with np.errstate(over="ignore"):  # a range that overflows is beyond reach
             near = np.flatnonzero(np.hypot(x_m, y_m) < reach_m)
         if len(near) > most:
-            near = near[np.linspace(0, len(near) - 1, most).astype(np.intp)]
+            near = near[np.arange(most) * (len(near) - 1) // max(most - 1, 1)]
         return cls(x_m[near], y_m[near])
 
     def thinned(self, most: int) -> "LinePoints":
@@ -74,7 +78,7 @@ def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 
     step_information, step_gradient = information, gradient
     for _ in range(iterations):
         step = np.linalg.solve(step_information + _DAMPING, step_gradient[..., None])[..., 0]
-        poses = poses - np.clip(step, -_LONGEST_STEP, _LONGEST_STEP)
+        poses = poses - np.minimum(np.maximum(step, -_LONGEST_STEP), _LONGEST_STEP)
         step_information, step_gradient, new_scores = _evaluate(lines, points, poses, robust_m)
         better = new_scores >= scores
         kept[better], information[better], scores[better] = (
@@ -93,12 +97,11 @@ def _evaluate(lines: LineMap, points: LinePoints, poses: Floats, robust_m: float
     x_m = cosine * points.x_m - sine * points.y_m
     y_m = sine * points.x_m + cosine * points.y_m
     distance_m, normal_x, normal_y = lines.look_up(x_m + poses[:, 0, None], y_m + poses[:, 1, None])
-    facing = ((normal_x * x_m + normal_y * y_m) / np.maximum(points.range_m, 1e-6)) ** 2
-    variance_m2 = points.across_m2 + facing * (points.along_m2 - points.across_m2)
+    variance_m2 = points.across_m2 + (normal_x * x_m + normal_y * y_m) ** 2 * points.stretch
     on_line = robust_m**2 / (robust_m**2 + distance_m**2)
     weight = on_line**2 / variance_m2
-    slopes = np.stack((normal_x, normal_y, normal_y * x_m - normal_x * y_m), axis=1)
+    slopes = np.empty((len(poses), 3, len(points)))
+    slopes[:, 0], slopes[:, 1], slopes[:, 2] = normal_x, normal_y, normal_y * x_m - normal_x * y_m
     weighted = slopes * weight[:, None]
     gradient = (weighted @ distance_m[..., None])[..., 0]
-    scores = on_line @ points.trust / max(float(points.trust.sum()), 1e-9)
-    return weighted @ slopes.transpose(0, 2, 1), gradient, scores
+    return weighted @ slopes.transpose(0, 2, 1), gradient, on_line @ points.share

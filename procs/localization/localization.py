@@ -16,6 +16,7 @@ from procs.model.geometry import plausible
 
 _FASTEST_M_S = 8.0  # no robot drives faster
 _STALE_S = 0.5  # points captured before are taken as they are
+_NO_POINTS = line_points_t()
 
 
 class LocalizationConfig(Config):
@@ -81,7 +82,7 @@ class Localization(Component):
 
     def loop(self) -> None:
         knew = self._localizer.localized
-        points = self.line_points.value if self.line_points.refreshed else line_points_t()
+        points = self.line_points.value if self.line_points.refreshed else _NO_POINTS
         passed_s = self.clock.period_s if self._updated_us < 0 else self.clock.since_s(self._updated_us)
         self._updated_us = self.clock.now_us
         motion = self._motion()
@@ -116,9 +117,9 @@ class Localization(Component):
 
     def _as_seen_now(self, points: line_points_t) -> tuple[Floats, Floats]:
         """Returns the points (n each) in the frame of the robot that has driven on since their exposure."""
-        seen_m = np.column_stack((points.x_m, points.y_m)).reshape(-1, 2)
+        seen_m = np.array((points.x_m, points.y_m)).T
         age_s = self.clock.since_s(points.capture_us) if points.capture_us else 0.0
-        if not 0.0 < age_s <= _STALE_S or self._last is None:
+        if not len(seen_m) or not 0.0 < age_s <= _STALE_S or self._last is None:
             return seen_m[:, 0], seen_m[:, 1]
         turn_rad = age_s * self._turning_rad_s
         way_m = rotation(turn_rad / 2) @ (age_s * self._last.vx_m_s, age_s * self._last.vy_m_s)

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from procs.model.estimation import KalmanFilter
+from procs.model.estimation import predict, update
 from procs.model.frames import Floats, rotation, wrap
 
 _TICK_S = 0.05  # the errors below are those that add up in this time
@@ -13,10 +13,11 @@ _STANDING_M = 0.002
 _TURN_ERROR = 0.03  # share of the turn
 _STANDING_RAD = 0.002
 _STRAIN_MEMORY_S = 0.17  # time constant of the mean innovation
+_NO_ERROR, _UNIT, _AXES = np.zeros(3), np.eye(3), np.arange(3)
 
 
 class PoseFilter:
-    """Error-state form: the pose is kept beside the filter, whose state is the small error of x, y and heading.
+    """Error-state form: the filter's state is the small error of x, y and heading, zero except during a correction.
 
     So the heading needs no care in the filter's algebra.
     """
@@ -24,30 +25,24 @@ class PoseFilter:
     def __init__(self, pose: Floats, deviations: tuple[float, float, float]) -> None:
         """`pose` is x, y (m), heading (rad); `deviations` their standard deviations."""
         self.pose = pose.astype(np.float64)
-        self._filter = KalmanFilter(dim_x=3, dim_z=3)
-        self._filter.P = np.diag(np.square(deviations))
-        self._filter.H = np.eye(3)
-        self._strain_1_s = np.zeros(3)  # mean innovation for each second between frames
-
-    @property
-    def covariance(self) -> Floats:
+        self.covariance: Floats = np.diag(np.square(deviations))
         """(3, 3) of x, y, heading."""
-        return np.asarray(self._filter.P)
+        self._strain_1_s = np.zeros(3)  # mean innovation for each second between frames
 
     def predict(self, ahead_m: float, left_m: float, turn_rad: float, duration_s: float = _TICK_S) -> None:
         """Moves the pose by the odometry of `duration_s`: a way in the robot's former frame, and a turn."""
         middle_rad = float(self.pose[2]) + turn_rad / 2
         way_m = rotation(middle_rad) @ (ahead_m, left_m)
         self.pose = moved(self.pose, way_m, turn_rad)
-        shift = np.eye(3)
-        shift[:2, 2] = -way_m[1], way_m[0]
+        shift = np.array(((1.0, 0.0, -way_m[1]), (0.0, 1.0, way_m[0]), (0.0, 0.0, 1.0)))
         ticks = max(duration_s, 1e-3) / _TICK_S
         # Errors are independent from tick to tick: their variances add up, whatever the length of a tick.
-        error_m = (_PATH_ERROR * float(np.hypot(ahead_m, left_m)) / ticks + _STANDING_M) * math.sqrt(ticks)
+        error_m = (_PATH_ERROR * math.hypot(ahead_m, left_m) / ticks + _STANDING_M) * math.sqrt(ticks)
         error_rad = (_TURN_ERROR * abs(turn_rad) / ticks + _STANDING_RAD) * math.sqrt(ticks)
         strain = self._strain_1_s * duration_s
-        noise = np.diag(np.square((error_m, error_m, error_rad))) + np.outer(strain, strain)
-        self._filter.predict(F=shift, Q=noise)
+        noise = strain[:, None] * strain
+        noise[_AXES, _AXES] += error_m**2, error_m**2, error_rad**2
+        _, self.covariance = predict(_NO_ERROR, self.covariance, F=shift, Q=noise)
 
     def correct(self, pose: Floats, covariance: Floats, interval_s: float = _TICK_S) -> None:
         """Takes a measurement of the whole pose (3) with its covariance (3, 3), `interval_s` after the last one.
@@ -60,9 +55,7 @@ class PoseFilter:
         innovation[2] = wrap(float(innovation[2]))
         share = -math.expm1(-interval_s / _STRAIN_MEMORY_S)
         self._strain_1_s += share * (innovation / interval_s - self._strain_1_s)
-        self._filter.update(innovation[:, None], R=covariance)
-        error = self._filter.x[:, 0]
-        self._filter.x = np.zeros((3, 1))
+        error, self.covariance = update(_NO_ERROR, self.covariance, innovation, R=covariance, H=_UNIT)
         self.pose = moved(self.pose, error[:2], float(error[2]))
 
 

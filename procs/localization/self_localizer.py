@@ -108,9 +108,11 @@ class SelfLocalizer:
         """
         self._since_frame_s += duration_s
         self._since_search_s += duration_s
-        points = LinePoints.chosen(x_m, y_m, self._settings.reach_m, self._settings.points)
         self._filter.predict(motion.ahead_m, motion.left_m, motion.turn_rad, duration_s)
         self._hypotheses.predict(motion.ahead_m, motion.left_m, motion.turn_rad)
+        if len(x_m) < self._settings.least_points:
+            return
+        points = LinePoints.chosen(x_m, y_m, self._settings.reach_m, self._settings.points)
         if len(points) < self._settings.least_points:
             return
         interval_s, self._since_frame_s = self._since_frame_s, 0.0
