@@ -115,10 +115,8 @@ class BallFilter:
         self._mix(self._moves(duration_s, contact))
         x, p = self._x, self._p
         velocities_m_s = x[:, 2:]
-        speeds_m_s = np.sqrt((velocities_m_s**2).sum(axis=1)) + 1e-9
-        losses_m_s = np.array((0.0, rolling_m_s2, SLIDING_M_S2, 0.0, 0.0)) * duration_s
-        kept = np.maximum(0.0, 1.0 - losses_m_s / speeds_m_s)
-        kept[Mode.RESTS] = 0.0
+        speeds_m_s = np.hypot(x[:, 2], x[:, 3]) + 1e-9
+        kept = np.maximum(0.0, 1.0 - _losses_m_s(duration_s, rolling_m_s2) / speeds_m_s)
         x[:, :2] += velocities_m_s * (duration_s * (1.0 + kept) / 2)[:, None]
         velocities_m_s *= kept[:, None]
         p[Mode.RESTS, 2:] = p[Mode.RESTS, :, 2:] = 0.0
@@ -187,9 +185,8 @@ class BallFilter:
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
-        joint = self._weights[:, None] * moves
-        weights = np.maximum(joint.sum(axis=0), 1e-12)
-        shares = (joint / weights).T  # (new, old)
+        weights = np.maximum(self._weights @ moves, 1e-12)
+        shares = (self._weights[:, None] * moves / weights).T  # (new, old)
         mixed = shares @ self._x
         apart = self._x[None] - mixed[:, None]
         spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
@@ -217,6 +214,12 @@ def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None) -
     moves[_EACH, _EACH] = stays
     moves[Mode.HIT] = _AFTER_HIT
     return np.asarray(moves)
+
+
+@lru_cache(maxsize=32)
+def _losses_m_s(duration_s: float, rolling_m_s2: float) -> Floats:
+    """Returns the speed (5) that each model takes from the ball in a step: all of it at rest; cached."""
+    return np.array((np.inf, rolling_m_s2 * duration_s, SLIDING_M_S2 * duration_s, 0.0, 0.0))
 
 
 @lru_cache(maxsize=32)

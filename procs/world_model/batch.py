@@ -37,17 +37,21 @@ def innovation(
         spreads_m2: (n, 2, 2) or (2, 2), covariances of the sightings.
         age_s: time since the exposure.
     """
-    gains = covariances[:, :, :2] - age_s * covariances[:, :, 2:]
-    inverses, determinants = inverted(gains[:, :2] - age_s * gains[:, 2:] + spreads_m2)
-    differences = positions_m - states[:, :2] + age_s * states[:, 2:]
-    weighted = (inverses * differences[:, None]).sum(axis=2)
+    gains, differences = covariances[:, :, :2], positions_m - states[:, :2]
+    spreads = gains[:, :2]
+    if age_s:
+        gains = gains - age_s * covariances[:, :, 2:]
+        spreads = gains[:, :2] - age_s * gains[:, 2:]
+        differences += age_s * states[:, 2:]
+    inverses, determinants = inverted(spreads + spreads_m2)
+    weighted = (inverses @ differences[..., None])[..., 0]
     return Innovation(gains, inverses, weighted, (differences * weighted).sum(axis=1), determinants)
 
 
 def corrected(states: Floats, covariances: Floats, found: Innovation) -> tuple[Floats, Floats]:
     """Returns states (n, 4) and covariances (n, 4, 4) after the sightings."""
     after = covariances - found.gains @ found.inverses @ found.gains.transpose(0, 2, 1)
-    moved = states + (found.gains * found.weighted[:, None]).sum(axis=2)
+    moved = states + (found.gains @ found.weighted[..., None])[..., 0]
     return moved, (after + after.transpose(0, 2, 1)) / 2  # rounding errors would grow
 
 

@@ -32,6 +32,6 @@ def strangers(seen: Seen, team: Places, seen_s: float, settings: OpponentSetting
         return seen
     covariances_m2 = seen.covariances_m2
     on_field = (np.abs(seen.positions_m) <= (settings.half_length_m, settings.half_width_m)).all(axis=1)
-    clear = np.trace(covariances_m2, axis1=1, axis2=2) <= settings.deviation_m**2
+    clear = covariances_m2[:, 0, 0] + covariances_m2[:, 1, 1] <= settings.deviation_m**2
     unknown = without_known(seen.positions_m, covariances_m2, *team.at(seen_s), settings.mate_radius_m)
     return seen.only(on_field & clear & unknown)

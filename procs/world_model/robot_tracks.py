@@ -1,5 +1,7 @@
 """Tracks of the robots that are seen as obstacles: a Kalman filter for each, all in one batch."""
 
+from functools import lru_cache
+
 import numpy as np
 
 from procs.model.estimation import linear_sum_assignment
@@ -135,8 +137,9 @@ def without_known(
     return remain
 
 
+@lru_cache(maxsize=32)
 def _noise(duration_s: float) -> Floats:
-    """Returns the process noise (4, 4) of a robot that accelerates at random."""
+    """Returns the process noise (4, 4) of a robot that accelerates at random; cached."""
     noise = np.zeros((4, 4))
     place, both, velocity = _ACCELERATION_M_S2**2 * np.array((duration_s**4 / 4, duration_s**3 / 2, duration_s**2))
     noise[_AXES, _AXES] = place, place, velocity, velocity
@@ -146,5 +149,5 @@ def _noise(duration_s: float) -> Floats:
 
 def _surprises(innovations: Floats, spreads: Floats) -> Floats:
     """Returns squared Mahalanobis distances (n, m) of innovations (n, m, 2) with covariances (n, m, 2, 2)."""
-    weighted = (inverted(spreads)[0] * innovations[..., None, :]).sum(axis=-1)
+    weighted = (inverted(spreads)[0] @ innovations[..., None])[..., 0]
     return np.asarray((innovations * weighted).sum(axis=-1))

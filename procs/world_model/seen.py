@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from procs.model.frames import Flags, Floats
-from procs.model.geometry import BOUND
+from procs.model.geometry import plausible
 
 _LEAST_M2 = 1e-6  # a millimetre: least variance of a sighting, which keeps filters regular
 
@@ -36,17 +36,15 @@ class Seen:
             covariances_m2: n matrices (2, 2).
             radii_m: n radii.
         """
-        rows = [
-            (*position_m, *row, *other_row, radius_m)
-            for position_m, (row, other_row), radius_m in zip(positions_m, covariances_m2, radii_m, strict=True)
-        ]
+        rows = []
+        for (x_m, y_m), ((xx_m2, xy_m2), (yx_m2, yy_m2)), radius_m in zip(
+            positions_m, covariances_m2, radii_m, strict=True
+        ):
+            row = (x_m, y_m, xx_m2 + _LEAST_M2, xy_m2, yx_m2, yy_m2 + _LEAST_M2, radius_m)
+            proper = row[2] > 0 and row[5] > 0 and row[2] * row[5] > xy_m2 * yx_m2
+            if proper and plausible(*row):
+                rows.append(row)
         values = np.array(rows, np.float64).reshape(-1, 7)
-        values[:, 2:6:3] += _LEAST_M2
-        sound = (np.abs(values) < BOUND).all(axis=1)  # false for NaN too
-        sound &= (values[:, 2] > 0) & (values[:, 5] > 0)
-        with np.errstate(over="ignore", invalid="ignore"):
-            sound &= values[:, 2] * values[:, 5] > values[:, 3] * values[:, 4]
-        values = values[sound]
         return cls(values[:, :2], values[:, 2:6].reshape(-1, 2, 2), np.zeros((len(values), 2, 2)), values[:, 6])
 
     @property

@@ -5,6 +5,8 @@ messages; opponents from obstacles that the robot and its mates see and that are
 does not know its place is left out. While the robot itself does not know its place, only its mates' sightings count.
 """
 
+import math
+
 import numpy as np
 from pydantic import Field as Setting
 
@@ -174,15 +176,16 @@ class WorldModel(Component):
         """Returns whether a robot, or the wall around the field, is near the ball."""
         if not self._ball.known:
             return False
-        field, ball_m = self.config.field, self._ball.track.state[:2]
-        if (np.abs(ball_m) > (field.half_length_m - _TOUCH_M, field.half_width_m + field.border_m - _TOUCH_M)).any():
+        field = self.config.field
+        ball_x_m, ball_y_m, *_ = self._ball.track.state.tolist()
+        wall_m = field.half_width_m + field.border_m - _TOUCH_M
+        if abs(ball_x_m) > field.half_length_m - _TOUCH_M or abs(ball_y_m) > wall_m:
             return True
-        robots_m = [mate.position_at(self.clock.now_s) for mate in mates]
+        robots_m = [mate.position_at(self.clock.now_s).tolist() for mate in mates]
         if view.localized:
-            robots_m.append(view.pose[:2])
-        if len(self._opponents):
-            robots_m.extend(self._opponents.states[:, :2])
-        return any(abs(x_m - ball_m[0]) + abs(y_m - ball_m[1]) < _TOUCH_M for x_m, y_m in robots_m)
+            robots_m.append(view.pose[:2].tolist())
+        robots_m.extend(self._opponents.states[:, :2].tolist())
+        return any(abs(x_m - ball_x_m) + abs(y_m - ball_y_m) < _TOUCH_M for x_m, y_m in robots_m)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
         """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
@@ -236,8 +239,11 @@ class WorldModel(Component):
                 return mate.name
         if self._ball.known and len(self._opponents.sure):
             away_m = self._opponents.states[self._opponents.sure, :2] - self._ball.track.state[:2]
-            near_m = self._mouth_m + 2 * float(np.sqrt(np.trace(self._ball.track.covariance[:2, :2])))
-            if (np.hypot(away_m[:, 0], away_m[:, 1]) < min(near_m, _TOUCH_M)).any():
+            nearest_m = float(np.hypot(away_m[:, 0], away_m[:, 1]).min())
+            if nearest_m >= _TOUCH_M:
+                return ""
+            covariance = self._ball.track.covariance
+            if nearest_m < self._mouth_m + 2 * math.sqrt(covariance[0, 0] + covariance[1, 1]):
                 return "?"
         return ""
 
