@@ -188,7 +188,7 @@ def test_requests_of_components_are_carried_out(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("change", ["", "changed"])
 def test_recorded_stops_happen_in_the_branch(tmp_path: Path, change: str) -> None:
-    stopped = [HostStopped(COUNTER), FinalDone(COUNTER, 3), HostLost(COUNTER)]
+    stopped: list[TickEvent] = [HostStopped(COUNTER), FinalDone(COUNTER, 3), HostLost(COUNTER)]
     recording = recorded(tmp_path / "log", 4, lambda events: [*stopped, *events[:2]])
     branch, sink = Branch(recording, {"r/sensor": change} if change else {}), Loud()
     branch.run(2)
