@@ -1,25 +1,28 @@
 """A component whose iterations are carried out by a program in any language."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any, Literal
 
 from pydantic import Field
 
 from fwk.clock import US_PER_S, Clock
+from fwk.component.calls import Calls
 from fwk.component.channels import Reads, Writes
 from fwk.component.child_process import ChildProcess, ProgramError
 from fwk.component.component import Component
 from fwk.component.config import Config
 from fwk.component.file_process import FileProcess
 from fwk.component.program_coding import CODINGS, FINAL, INIT, ProgramRequest
+from fwk.component.program_services import CalledPort, ServedPort, ServicePort
+from fwk.component.services import Serves
 from fwk.lcm.messages import MessageError, type_named
 
 MODULE = "fwk.component.program"
 _TEXT = re.compile(r"Program\((.*)\)")
-_PORT = re.compile(r"(\w+): (Reads|Writes)\[([\w.]+)\]")
-_KINDS: dict[str, Any] = {"Reads": Reads, "Writes": Writes}
+_PORT = re.compile(r"(\w+): (Reads|Writes|Serves|Calls)\[([\w.]+)(?:; ([\w.]+))?\]")
+_KINDS: dict[str, Any] = {"Reads": Reads, "Writes": Writes, "Serves": Serves, "Calls": Calls}
 
 
 class ProgramConfig(Config):
@@ -60,8 +63,16 @@ class Program(Component):
     def init(self) -> None:
         """Starts the program and sends the first request."""
         ports = vars(self)
-        self._readers = {name: port for name, port in ports.items() if isinstance(port, Reads)}
-        self._writers = {name: port for name, port in ports.items() if isinstance(port, Writes)}
+        self._services: dict[str, ServicePort] = {}
+        for name, port in ports.items():
+            if isinstance(port, Serves):
+                self._services[name] = ServedPort(name, port)
+            elif isinstance(port, Calls):
+                self._services[name] = CalledPort(name, port)
+        readers = {name: port for name, port in ports.items() if isinstance(port, Reads)}
+        writers = {name: port for name, port in ports.items() if isinstance(port, Writes)}
+        self._readers: dict[str, Reads[Any] | ServicePort] = {**readers, **self._services}
+        self._writers: dict[str, Writes[Any] | ServicePort] = {**writers, **self._services}
         self._coding = CODINGS[self.config.coding]
         self._is_started_again = self.config.coding == "files"
         kind = FileProcess if self._is_started_again else ChildProcess
@@ -91,22 +102,38 @@ class Program(Component):
             self._news = {}
         period_us = round(self.clock.period_s * US_PER_S)
         readers = {} if stage == FINAL else self._readers  # the last iteration has had them
+        for service in self._services.values() if stage not in (INIT, FINAL) else ():
+            service.begin()
         asked = ProgramRequest(stage, self.clock.tick, self.clock.now_us, period_us, readers, news)
         data = self._child.exchange(self._coding.request(asked), self._coding.length_of, self.config.answer_timeout_s)
         try:
             for port, message in self._coding.answer(data, self._writers):
-                self._writers[port].value = message
-                self._writers[port].write()
+                target = self._writers[port]
+                if isinstance(target, Writes):
+                    target.value = message
+                    target.write()
+                else:
+                    target.take(message)
         except (ProgramError, MessageError) as error:
             self._child.kill()
             raise ProgramError(f"'{self._child.command}': {error}") from error
 
 
-def program_class_name(reads: Mapping[str, str], writes: Mapping[str, str]) -> str:
+Ports = Mapping[str, str | Sequence[str]]
+"""Name of a port to its message type, or to the types of request and reply."""
+
+
+def program_class_name(reads: Ports, writes: Ports, serves: Ports | None = None, calls: Ports | None = None) -> str:
     """Returns the name of a program's class, which declares its ports: `Program(ball: Reads[play.ball_t])`."""
-    ports = [f"{name}: Reads[{kind}]" for name, kind in reads.items()]
-    ports += [f"{name}: Writes[{kind}]" for name, kind in writes.items()]
-    return f"Program({', '.join(ports)})"
+    return f"Program({', '.join(_ports_in_words(reads, writes, serves or {}, calls or {}))})"
+
+
+def _ports_in_words(*groups: Ports) -> list[str]:
+    return [
+        f"{name}: {kind}[{'; '.join(map(str, types)) if isinstance(types, list | tuple) else types}]"
+        for kind, ports in zip(_KINDS, groups, strict=True)
+        for name, types in ports.items()
+    ]
 
 
 @cache
@@ -125,7 +152,10 @@ def __getattr__(name: str) -> type[Program]:
         if not port:
             raise AttributeError(f"'{text}' is not a port; write ball: Reads[play.ball_t]")
         try:
-            annotations[port[1]] = _KINDS[port[2]][type_named(port[3])]
+            types = tuple(type_named(each) for each in port.groups()[2:] if each)
+            if len(types) > 1 and port[2] in ("Reads", "Writes"):
+                raise AttributeError(f"'{text}' has two types; a port that reads or writes has one")
+            annotations[port[1]] = _KINDS[port[2]][types]
         except MessageError as error:
             raise AttributeError(f"{port[1]}: {error}") from error
     return type(name, (Program,), {"__annotations__": annotations, "__module__": __name__})

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from fwk.component.channels import Reads, Writes
 from fwk.component.child_process import ProgramError
+from fwk.component.program_services import ServedPort, ServicePort
 from fwk.lcm import envelope, messages
 
 INIT, FINAL = "init", "final"
@@ -17,6 +18,8 @@ _COUNT = struct.Struct(">II")  # length of the rest, number of parts
 _PART = struct.Struct(">II")  # port, size
 _KINDS = {INIT: 0, FINAL: 2}
 _ITERATION = 1
+_FRAMEWORKS = ("header", "command", "answer")
+"""Members of messages that the framework writes."""
 
 
 @dataclass(frozen=True)
@@ -28,8 +31,8 @@ class ProgramRequest:
     tick: int
     time_us: int
     period_us: int
-    readers: Mapping[str, Reads[Any]]
-    """By port; their fresh messages are sent."""
+    readers: Mapping[str, Reads[Any] | ServicePort]
+    """By port; their fresh messages, requests and answers are sent."""
     more: Mapping[str, Any] = field(default_factory=dict)
     """In the first request the component's name, ports and settings; later the settings after a change."""
 
@@ -43,7 +46,7 @@ class Coding(Protocol):
     def length_of(self, begun: bytearray) -> int:
         """Returns the length of an answer; 0 if it is not known yet."""
 
-    def answer(self, data: bytes, writers: Mapping[str, Writes[Any]]) -> list[tuple[str, Any]]:
+    def answer(self, data: bytes, writers: Mapping[str, Writes[Any] | ServicePort]) -> list[tuple[str, Any]]:
         """Returns the messages of an answer, each with its port.
 
         Raises:
@@ -56,7 +59,10 @@ class JsonLines:
 
     def request(self, asked: ProgramRequest) -> bytes:
         """Returns an object with tick, stage, time and inputs; NaN and infinity are written as Python's json does."""
-        inputs = {port: [messages.to_dict(each) for each in reader.fresh] for port, reader in asked.readers.items()}
+        inputs = {
+            port: [messages.to_dict(each) for each in reader.fresh] if isinstance(reader, Reads) else reader.plain()
+            for port, reader in asked.readers.items()
+        }
         told = {"tick": asked.tick, "stage": asked.stage, "time_us": asked.time_us, **asked.more}
         told["inputs"] = {port: fresh for port, fresh in inputs.items() if fresh}
         return json.dumps(told, default=list).encode() + b"\n"
@@ -65,7 +71,7 @@ class JsonLines:
         """Returns the length up to the first line end."""
         return begun.find(b"\n") + 1
 
-    def answer(self, data: bytes, writers: Mapping[str, Writes[Any]]) -> list[tuple[str, Any]]:
+    def answer(self, data: bytes, writers: Mapping[str, Writes[Any] | ServicePort]) -> list[tuple[str, Any]]:
         """Reads an object with a message, or a list of messages, by port.
 
         Raises:
@@ -93,9 +99,9 @@ class LcmFrames:
     def request(self, asked: ProgramRequest) -> bytes:
         """Returns length, kind, tick, time, period, and each fresh message with the number of its port."""
         parts = [
-            (number, data if messages.has_header(reader.message_type) else envelope.content(data))
+            (number, data)
             for number, reader in enumerate(asked.readers.values())
-            for data in reader._fresh
+            for data in (_contents(reader) if isinstance(reader, Reads) else reader.encoded())
         ]
         if asked.stage == INIT:
             ports = [("r", name) for name in asked.more["reads"]] + [("w", name) for name in asked.more["writes"]]
@@ -110,7 +116,7 @@ class LcmFrames:
         """Returns the length that the first four bytes name."""
         return 4 + int.from_bytes(begun[:4], "big") if len(begun) >= _COUNT.size else 0
 
-    def answer(self, data: bytes, writers: Mapping[str, Writes[Any]]) -> list[tuple[str, Any]]:
+    def answer(self, data: bytes, writers: Mapping[str, Writes[Any] | ServicePort]) -> list[tuple[str, Any]]:
         """Reads the messages, each with the number of its port.
 
         Raises:
@@ -137,15 +143,29 @@ class LcmFrames:
 CODINGS: dict[str, Coding] = {"json": JsonLines(), "lcm": LcmFrames(), "files": JsonLines()}
 
 
-def _message(writer: Writes[Any], port: str, members: Any) -> Any:
+def _contents(reader: Reads[Any]) -> list[bytes]:
+    if messages.has_header(reader.message_type):
+        return reader._fresh
+    return [envelope.content(data) for data in reader._fresh]
+
+
+def _message(writer: Writes[Any] | ServicePort, port: str, members: Any) -> Any:
     if not isinstance(members, dict):
         raise ProgramError(
             f"'{port}' of the answer is {_short(json.dumps(members))}; it should be a message as an object"
         )
+    if isinstance(writer, ServedPort):
+        reply = members.get("reply", {})
+        return writer.answer_of(members, _message_of(writer.message_type, port, reply))
+    return _message_of(writer.message_type, port, members)
+
+
+def _message_of(kind: type[Any], port: str, members: Any) -> Any:
+    if not isinstance(members, dict):
+        raise ProgramError(f"the reply in '{port}' is {_short(json.dumps(members))}; it should be an object")
+    own = {name: value for name, value in members.items() if name not in _FRAMEWORKS}
     try:
-        return messages.of_dict(
-            writer.message_type, {name: value for name, value in members.items() if name != "header"}
-        )
+        return messages.of_dict(kind, own)
     except messages.MessageError as error:
         raise ProgramError(f"'{port}' of the answer: {error}") from error
 

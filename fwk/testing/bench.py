@@ -175,8 +175,10 @@ def program_bench(
     command: Sequence[str],
     reads: Mapping[str, str] | None = None,
     writes: Mapping[str, str] | None = None,
+    serves: program.Ports | None = None,
+    calls: program.Ports | None = None,
     **settings: Any,
 ) -> Bench:
-    """Returns a program of a launch file on the bench: `command`, `reads` and `writes` as there."""
-    kind = getattr(program, program.program_class_name(reads or {}, writes or {}))
+    """Returns a program of a launch file on the bench: `command`, `reads`, `writes`, `serves` and `calls` as there."""
+    kind = getattr(program, program.program_class_name(reads or {}, writes or {}, serves or {}, calls or {}))
     return Bench(kind, command=[*command], **settings)

@@ -1,5 +1,6 @@
 """Schema of launch files: keys and the values that they take."""
 
+from collections import Counter
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, model_validator
@@ -10,6 +11,8 @@ from fwk.component.program import MODULE, program_class_name
 from fwk.model.sections import LogPlan, RestartPolicy, RunsPlan
 
 PACE_MAX = "max"
+_PORTS = "reads", "writes", "serves", "calls"
+"""Keys with the ports of a program."""
 
 
 def _as_list(value: Any) -> Any:
@@ -65,6 +68,10 @@ class ComponentEntry(_Entry):
     """Ports of a program that read: name to message type."""
     writes: dict[str, str] = {}
     """Ports of a program that write: name to message type."""
+    serves: dict[str, Words] = {}
+    """Services that a program offers: name to the type of requests, or to the types of request and reply."""
+    calls: dict[str, Words] = {}
+    """Services that a program uses, likewise."""
     config: dict[str, Any] = {}
     channels: dict[str, str] = {}
     """Port to channel or pattern, where it differs from the class."""
@@ -96,20 +103,23 @@ class ComponentEntry(_Entry):
         """Sets `use` to the class that runs a program."""
         if not isinstance(value, dict):
             return value
-        reads, writes = value.get("reads", {}), value.get("writes", {})
+        groups = [value.get(key, {}) for key in _PORTS]
         if "command" not in value:
-            if reads or writes:
+            if any(groups):
                 raise ValueError(
-                    "'reads' and 'writes' are for a program, with 'command'; a class declares its ports itself"
+                    "'reads', 'writes', 'serves' and 'calls' are for a program, with 'command'; "
+                    "a class declares its ports itself"
                 )
             return value
         if "use" in value:
             raise ValueError("both 'use' and 'command'; keep one of them")
-        if not all(isinstance(ports, dict) for ports in (reads, writes)):
+        if not all(isinstance(ports, dict) for ports in groups):
             return {**value, "use": MODULE}  # the mistake is reported for that key
-        if twice := sorted(reads.keys() & writes.keys()):
-            raise ValueError(f"'{twice[0]}' is read and written; give one of the ports another name")
-        return {**value, "use": f"{MODULE}:{program_class_name(reads, writes)}"}
+        names = Counter(name for ports in groups for name in ports)
+        if twice := sorted(str(name) for name, count in names.items() if count > 1):
+            keys = " and ".join(f"'{key}'" for key in _PORTS if twice[0] in value.get(key, {}))
+            raise ValueError(f"'{twice[0]}' is in {keys}; give one of the ports another name")
+        return {**value, "use": f"{MODULE}:{program_class_name(*groups)}"}
 
 
 class RobotEntry(_Entry):

@@ -87,6 +87,16 @@ int fwk_close(fwk_t *fwk);
 #define FWK_PUT(fwk, type, port, value) \
     ((void)type##_encode(fwk_write((fwk), (port), type##_encoded_size(value)), 0, type##_encoded_size(value), (value)))
 
+/*
+ * Services of the launch file (`serves: {ask: [walk.ask_t, walk.told_t]}`, likewise `calls`) are ports that are read
+ * and written. Of a service that the program offers it reads requests, and answers each, perhaps later, with its reply;
+ * `state` is CORE_ANSWER_T_ACCEPTED, _DONE, _REJECTED or _FAILED, and reply->answer.reason says why. Of a service that
+ * it uses it writes requests, which count from 1 in a life of the program, and reads replies: answer.sequence is the
+ * number of the request, answer.state its state, CORE_ANSWER_T_EXPIRED also when no answer came in time.
+ */
+#define FWK_ANSWER(fwk, type, port, request, reply, how) \
+    ((reply)->answer.sequence = (request)->header.sequence, (reply)->answer.state = (how), FWK_PUT(fwk, type, port, reply))
+
 typedef int (*fwk_decode_t)(const void *data, int offset, int size, void *value);
 int fwk_get_(const fwk_t *fwk, int port, int number, void *value, fwk_decode_t decode);
 

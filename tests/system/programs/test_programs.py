@@ -33,8 +33,14 @@ def system(folder: Path, url: str, **entries: str) -> None:
 
 def test_programs_write_the_same_bytes_in_every_run(tmp_path: Path, launch: Launch, needs: Callable[..., None]) -> None:
     needs("cc")
-    python = f"command: [{sys.executable}, ./adder.py, '-1'], stage: act, config: {{repeatable: true}}"
-    system(tmp_path, '""', c="command: ./adder, stage: act, config: {coding: lcm, settings: {a: 1}}", json=python)
+    services = "serves: {ask: [walk.ask_t, walk.told_t]}, calls: {other: [walk.ask_t, walk.told_t]}, stage: act"
+    python = f"command: [{sys.executable}, ./adder.py, '-1', asks], {services}, config: {{repeatable: true}}"
+    native = f"command: ./adder, {services}, config: {{coding: lcm, settings: {{a: 1}}}}"
+    system(tmp_path, '""', c=native, json=python)
+    file = tmp_path / "launch" / "walk.yaml"
+    c, json = "channels: {other: json/ask, step: r/step}", "channels: {other: c/ask, step: r/step}"
+    text = file.read_text().replace("channels: {step: r/step}", c, 1).replace("channels: {step: r/step}", json, 1)
+    file.write_text(text)
     generate_bindings(Project(tmp_path), "c", tmp_path / "types")
     include = Path(lcm.__file__).parent.parent / "include"
     flags = [
@@ -47,13 +53,17 @@ def test_programs_write_the_same_bytes_in_every_run(tmp_path: Path, launch: Laun
         f"-I{include}",
     ]
     types = [*map(str, (tmp_path / "types").glob("*.c"))]
-    assert len(types) == 2
+    assert len(types) == 6
     subprocess.run(["cc", *flags, "-o", tmp_path / "adder", CLIENTS / "adder.c", *types], check=True)
     for log, hosting in (("a.log", "process"), ("b.log", "single")):
         run = launch("walk.yaml", "--ticks", "20", "--speed", "max", "--record", log, "--hosting", hosting)
         assert run.wait() == 0, run.text
         assert 'c/adder, {"a": 1}, 50000 us' in run.text
-    assert "equal: 6" in fwk(tmp_path, "compare", "a.log", "b.log")
+        assert "call 1: state 2, 26, " in run.text
+        assert "call 3: state 3, 0, negative" in run.text
+        assert "call 1: done, 26.0, " in run.text
+        assert "call 3: rejected, None, negative" in run.text
+    assert "equal: " in fwk(tmp_path, "compare", "a.log", "b.log")
     said = replayed(tmp_path, log="a.log")
     assert "not replayed: c/adder: it runs the program './adder'" in said
     assert "json/adder" not in said
