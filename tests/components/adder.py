@@ -7,6 +7,7 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
 FAILS_AT, MARK = int(sys.argv[1]), Path("failed_once")
 HAS_SERVICES = len(sys.argv) > 2
@@ -18,7 +19,7 @@ for line in sys.stdin:
         MARK.touch()
         os._exit(3)
     total += sum(each["x"] for each in asked["inputs"].get("step", ()))
-    answer = {} if asked["stage"] == "init" else {"sum": {"x": total}}
+    answer: dict[str, Any] = {} if asked["stage"] == "init" else {"sum": {"x": total}}
     for each in asked["inputs"].get("ask", ()):
         x = each["request"]["x"]
         told = {"reply": {"x": total + x}} if x >= 0 else {"state": "rejected", "reason": "negative"}
