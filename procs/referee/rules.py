@@ -67,6 +67,8 @@ class Rules(BaseModel):
     """Longest stay of a field player in a penalty area (2016: 10 s)."""
     grace_s: PositiveFloat = 1.0
     """A robot too many in an area leaves it within this time, or commits a foul."""
+    advantage_s: NonNegativeFloat = 3.0
+    """For so long a foul is held back while the team that suffers it has the ball (2016: the referee's judgement)."""
     fouls_per_card: int = Field(default=3, ge=1)
     """So many fouls of a robot bring a yellow card."""
     double_yellow_s: PositiveFloat = 90.0

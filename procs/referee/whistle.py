@@ -11,7 +11,7 @@ from procs.model.field import Point
 from procs.referee import goals, halves, restarts
 from procs.referee.cards import Card, Cards
 from procs.referee.ends import Ends, Team, team_number
-from procs.referee.fouls.book import RuleBook
+from procs.referee.fouls.dribbling import dribbling
 from procs.referee.fouls.foul import Foul, Scene
 from procs.referee.fouls.pushing import collision
 from procs.referee.fouls.set_piece import breach
@@ -20,7 +20,7 @@ from procs.referee.restarts import Restart, State
 from procs.referee.rules import Rules
 from procs.referee.shootout import Shootout
 from procs.referee.sight import Sight
-from procs.referee.touches import Carrier, Touches
+from procs.referee.stretch import Stretch
 from procs.simulation.physics.events import Event, Kind
 
 _MISPLACED_M = 0.6  # the crew may have to put the ball beside a robot; further away, a robot has pushed it
@@ -62,11 +62,9 @@ class Whistle:
         self.shootout: Shootout | None = None
         self.calls: list[Call] = []
         self._changing_ends = False
-        self._resting_at = self.spot  # where the ball was when it was last seen to move on
-        self._resting_s = 0.0
         self._since_placed_s = 0.0
         self._repeats = 0
-        self._begin_stretch(self.spot, frozenset())
+        self._stretch = Stretch(self.state, self.spot)
 
     @property
     def over(self) -> bool:
@@ -143,8 +141,7 @@ class Whistle:
         self.held = self._changing_ends = False
         excused = self._misplaced(sight) if sight else []
         ball = sight.ball if sight else self.spot
-        self._resting_at, self._resting_s = ball, 0.0
-        self._begin_stretch(ball, frozenset(excused))
+        self._stretch = Stretch(self.state, ball, frozenset(excused))
 
     def goal(self, team: Team) -> None:
         """Counts a goal."""
@@ -156,12 +153,6 @@ class Whistle:
         self.cards.show(robot, card, self.rules)
         self.calls.append(Call(self.state, team_number(robot), robot=robot, card=card))
 
-    def _begin_stretch(self, ball: Point, excused: frozenset[str]) -> None:
-        self._piece = self.state
-        self._touches, self._carrier, self._book = Touches(ball), Carrier(), RuleBook()
-        self._excused = excused
-        self._released = False
-
     def _misplaced(self, sight: Sight) -> list[str]:
         keeper = sight.goalkeeper(self.team.other)
         return misplaced(self.restart, sight.robots, self.ends, self.rules.field, keeper)
@@ -171,8 +162,8 @@ class Whistle:
         if self.stopped:
             self._guard_ball(duration_s, sight)
         elif self.state is not State.PLAY:
-            self._touches.watch(sight, self.ends, self._released, self.rules.pass_m)
-            if self._rolled(sight.ball) or self.time_in_state_s >= self.rules.set_piece_s:
+            self._stretch.watch(duration_s, sight, self.ends, self.rules)
+            if self._stretch.rolled(sight.ball, self.rules) or self.time_in_state_s >= self.rules.set_piece_s:
                 self._play(sight.ball)
 
     def _guard_ball(self, duration_s: float, sight: Sight) -> None:
@@ -197,9 +188,7 @@ class Whistle:
         return any(0 < len(robots) < self.rules.least_robots for robots in teams)
 
     def _watch(self, duration_s: float, sight: Sight) -> None:
-        self._touches.watch(sight, self.ends, self._released, self.rules.pass_m)
-        self._carrier.watch(duration_s, sight)
-        scene = Scene(duration_s, sight, self.rules, self.ends, self._touches, self._carrier)
+        scene = self._stretch.watch(duration_s, sight, self.ends, self.rules)
         if self.shootout:
             self._watch_penalty(scene)
         elif any(self._ball_left(event, sight) for event in sight.events):
@@ -217,7 +206,7 @@ class Whistle:
         elif event.kind is Kind.OUT_END:
             self.interrupt(restarts.after_goal_line(place, team, field, self.ends))
         elif event.kind is Kind.GOAL:
-            verdict = goals.judge(place, self._piece, self._touches, sight, self.ends, field)
+            verdict = goals.judge(place, self._stretch.piece, self._stretch.touches, sight, self.ends, field)
             if verdict.scorer:
                 self.goal(verdict.scorer)
             self.interrupt(verdict.restart, verdict.reason)
@@ -227,34 +216,38 @@ class Whistle:
 
     def _watch_play(self, scene: Scene) -> None:
         ball = scene.sight.ball
-        self._set_free(ball)
-        foul = self._book.watch(scene)
-        self._resting_s += scene.duration_s
-        if foul:
-            self._punish(foul)
-        elif math.dist(ball, self._resting_at) > self.rules.deadlock_m:
-            self._resting_at, self._resting_s = ball, 0.0
-        elif self._resting_s >= self.rules.deadlock_s:
+        self._stretch.rolled(ball, self.rules)
+        committed, punished = self._stretch.fouls(scene)
+        if committed:
+            self._warn(committed)
+        if punished:
+            self._give_free_kick(punished)
+        elif self._stretch.deadlocked(scene):
             self.interrupt(restarts.dropped_ball(ball, self.rules.field), "deadlock")
 
     def _watch_set_piece(self, scene: Scene) -> None:
-        foul = breach(scene, self.restart, self._excused)
-        crash = collision(scene)
-        if crash:
-            self._punish(crash)
+        foul = breach(scene, self.restart, self._stretch.excused)
+        grave = collision(scene) or dribbling(scene)
+        if grave:
+            self._warn(grave)
+            self._give_free_kick(grave)
         elif foul and self._repeats < _REPEATS:
             self._warn(foul)
             self.interrupt(self.restart, foul.reason, foul.robot)
-        elif self.state is State.DROP_BALL and self._touches.robots:
-            self._play(scene.sight.ball)
-        elif self._rolled(scene.sight.ball):
-            self._set_free(scene.sight.ball)
+        elif (self.state is State.DROP_BALL and scene.touches.robots) or self._stretch.rolled(
+            scene.sight.ball, self.rules
+        ):
             self._play(scene.sight.ball)
         elif self.state is State.PENALTY:
-            if not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s:
+            if not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s:
                 self.interrupt(self._goal_kick(), "penalty not taken in time")
         elif self.time_in_state_s >= self.rules.set_piece_s:
             self._play(scene.sight.ball)
+
+    def _taken(self, scene: Scene) -> bool:
+        """Returns whether all robots may now play the ball."""
+        dropped = self.state is State.DROP_BALL and bool(scene.touches.robots)
+        return dropped or self._stretch.rolled(scene.sight.ball, self.rules)
 
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches one of the penalties that decide a match: it ends with a goal, out, the keeper's save or in time."""
@@ -262,9 +255,9 @@ class Whistle:
         left = [event for event in scene.sight.events if event.kind in (Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END)]
         attacked = self.ends.side_of(self.team.other)
         scored = any(event.kind is Kind.GOAL and event.x_m * attacked > 0 for event in left)
-        self._set_free(scene.sight.ball)
-        late = not self._touches.robots and self.time_in_state_s >= self.rules.penalty_s
-        missed = bool(left) or late or self._touches.again or self.time_in_state_s >= self.rules.shot_s
+        self._stretch.rolled(scene.sight.ball, self.rules)
+        late = not scene.touches.robots and self.time_in_state_s >= self.rules.penalty_s
+        missed = bool(left) or late or scene.touches.again or self.time_in_state_s >= self.rules.shot_s
         if not scored and not missed:
             return
         self.shootout.shot(scored)
@@ -275,17 +268,8 @@ class Whistle:
         else:
             self.interrupt(self._next_penalty(), "" if scored else "missed")
 
-    def _set_free(self, ball: Point) -> None:
-        """Notices that the taker of a set piece has set the ball free, and may not touch it again."""
-        taken = bool(self._touches.robots) and self._piece not in (State.PLAY, State.DROP_BALL)
-        self._released = self._released or (taken and self._rolled(ball))
-
-    def _rolled(self, ball: Point) -> bool:
-        """Returns whether the ball has rolled without a touch far enough to be set free."""
-        return math.dist(ball, self._touches.place) >= self.rules.moved_m
-
-    def _punish(self, foul: Foul) -> None:
-        self._warn(foul)
+    def _give_free_kick(self, foul: Foul) -> None:
+        """Interrupts the game for the free kick, or the penalty, that the foul brings."""
         offender, field = team_number(foul.robot), self.rules.field
         if foul.direct and field.in_penalty_area(*foul.place, self.ends.side_of(offender)):
             self.interrupt(restarts.penalty(offender.other, field, self.ends), foul.reason, foul.robot)
@@ -309,10 +293,8 @@ class Whistle:
         self._since_placed_s = 0.0
 
     def _play(self, ball: Point) -> None:
-        if not self._touches.robots:
-            self._piece = State.PLAY  # no robot took the set piece in its time
+        self._stretch.begin_play(ball)
         self._enter(State.PLAY, Team.NONE, stopped=False)
-        self._resting_at, self._resting_s = ball, 0.0
 
     def _enter(self, state: State, team: Team, stopped: bool) -> None:
         self.state, self.team, self.stopped = state, team, stopped

@@ -1,0 +1,66 @@
+"""A stretch of the game, from a start to the next interruption: the referee's memory of it."""
+
+import math
+
+from procs.model.field import Point
+from procs.referee.advantage import Advantage
+from procs.referee.ends import Ends
+from procs.referee.fouls.book import RuleBook
+from procs.referee.fouls.foul import Foul, Scene
+from procs.referee.restarts import State
+from procs.referee.rules import Rules
+from procs.referee.sight import Sight
+from procs.referee.touches import Carrier, Touches
+
+
+class Stretch:
+    """Touches, fouls and rests of the ball since a set piece began."""
+
+    def __init__(self, piece: State, ball: Point, excused: frozenset[str] = frozenset()) -> None:
+        """`excused` are the robots that the start found misplaced."""
+        self.piece = piece
+        """Set piece at the beginning; PLAY if no robot took it in its time."""
+        self.excused = excused
+        self.touches = Touches(ball)
+        self._carrier = Carrier()
+        self._book = RuleBook()
+        self._advantage = Advantage()
+        self._released = False
+        self._resting_at = ball  # where the ball was when it was last seen to move on
+        self._resting_s = 0.0
+
+    def watch(self, duration_s: float, sight: Sight, ends: Ends, rules: Rules) -> Scene:
+        """Takes a tick of `duration_s`, and returns it as the rules see it."""
+        self.touches.watch(sight, ends, self._released, rules.pass_m)
+        self._carrier.watch(duration_s, sight)
+        return Scene(duration_s, sight, rules, ends, self.touches, self._carrier)
+
+    def rolled(self, ball: Point, rules: Rules) -> bool:
+        """Returns whether the ball has rolled without a touch far enough to be set free.
+
+        The taker of a set piece may then not touch it again.
+        """
+        rolled = math.dist(ball, self.touches.place) >= rules.moved_m
+        taken = bool(self.touches.robots) and self.piece not in (State.PLAY, State.DROP_BALL)
+        self._released = self._released or (taken and rolled)
+        return rolled
+
+    def begin_play(self, ball: Point) -> None:
+        """Goes on as play, with or without the set piece having been taken."""
+        if not self.touches.robots:
+            self.piece = State.PLAY
+        self._resting_at, self._resting_s = ball, 0.0
+
+    def fouls(self, scene: Scene) -> tuple[Foul | None, Foul | None]:
+        """Returns the foul that was committed in the tick, and the one that is now punished."""
+        foul, lost = self._book.watch(scene), self._advantage.lost(scene)
+        if foul is None or self._advantage.pends(foul):
+            return None, lost
+        return foul, lost or (None if self._advantage.grants(foul, scene) else foul)
+
+    def deadlocked(self, scene: Scene) -> bool:
+        """Returns whether the ball has stayed in its place for too long."""
+        self._resting_s += scene.duration_s
+        if math.dist(scene.sight.ball, self._resting_at) > scene.rules.deadlock_m:
+            self._resting_at, self._resting_s = scene.sight.ball, 0.0
+        return self._resting_s >= scene.rules.deadlock_s
