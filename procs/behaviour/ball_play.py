@@ -12,8 +12,7 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
-_TRY_M = 9.5  # so near to the goal a pressed robot tries a shot that the goalkeeper may save
-_SURE_TRY_M = 7.0  # and so near any robot
+_ROOM_MAKER_M = 7.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
 _ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
@@ -21,7 +20,7 @@ _CROSS_M = 8.0  # a mate so near to the goal gets the ball without delay
 _CLOSE_M = 3.0  # if a rival is so near
 _BACK_M = 1.0  # a pass may lose so much ground ...
 _FAR_BACK_M = 4.0  # ... or so much, if the ball must go
-_PRESSED_M = 1.3
+_PRESSED_M, _PRESSED_S = 1.3, 0.6  # a rival so near, or in so short a time, presses the robot
 _DANGER_M = -4.0  # so near to the own goal a pressed robot rather clears the ball
 _PATIENCE_S = 2.5  # with the ball, then a poorer shot or a pass will do
 _STUCK_S, _STUCK_M = 0.6, 0.3  # a ball that gets no further must go before the robot holds it for too long
@@ -32,6 +31,10 @@ _LONGEST_M = 2.3
 _PUSH_M = 3.0
 _PUSH_M_S = 1.2
 _SLOW_BALL_M_S = 2.5
+_CLEARING_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a clearance
+_CLEARED_M = 6.0  # and the way that should be free
+_AIMED_M = 1.5  # a clearance is aimed at a point so near: roughly
+_TURN_1_RAD = 0.15  # a radian of turning costs so much free angle
 _WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)
 _DETOUR_RAD = 0.3  # a radian off the way to the goal costs so much free path
 _ASIDE_M = 1.2  # way to a place with more room for a shot
@@ -77,11 +80,11 @@ class BallPlay:
 
     def take_set_piece(self, view: View, receiver: str) -> Order:
         """Returns the order of a set piece's taker: a pass, above all to the mate to which the robot has turned."""
+        agreed = [mate for mate in field_players(view) if mate.name == receiver]
+        order = self._pass(view, agreed, math.inf, 0.0, receiver)
         for lane_rad in (aim.LANE_RAD, 0.0):
-            order = self._pass_on(view, math.inf, lane_rad, receiver)
-            if order:
-                return order
-        return self._clear(view)
+            order = order or self._pass_on(view, math.inf, lane_rad, receiver)
+        return order or self._clear(view)
 
     def take_penalty(self, view: View) -> Order:
         """Returns the order of a penalty's taker."""
@@ -94,16 +97,16 @@ class BallPlay:
         return self._pass_on(view, back_m=0.0) or self._clear(view)
 
     def _choose(self, view: View) -> Order | None:
-        pressed = any(math.dist(other.place, view.own.place) < _PRESSED_M for other in view.opponents)
+        pressed = any(_presses(other, view.own.place) for other in view.opponents)
         carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
         stuck = self._held_s > _STUCK_S and carried_m < _STUCK_M
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
         order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
         if order is None:
-            order = self._try_shot(view, _SURE_TRY_M) or self._cross(view)
+            order = self._try_shot(view) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
-            order = self._try_shot(view, _TRY_M) or (None if alone else self._pass_on(view, _BACK_M))
+            order = None if alone else self._pass_on(view, _BACK_M)
         in_danger = pressed and view.own.place.x_m < _DANGER_M
         if order is None and (in_danger or self._held_s > 2 * _PATIENCE_S):
             order = self._clear(view)
@@ -127,7 +130,7 @@ class BallPlay:
         ball, goal = view.ball.place, self.field.goal_centre(1.0)
         start = self._held_from or ball
         goal_rad = bearing_rad(ball, goal)
-        if math.dist(ball, goal) < _SURE_TRY_M:
+        if math.dist(ball, goal) < _ROOM_MAKER_M:
             return self._make_room(view, goal_rad)
         ways = [goal_rad + turn_rad for turn_rad in _WAYS_RAD]
         inside = [way_rad for way_rad in ways if self._may_carry(ahead(ball, way_rad, _CARRIED_M))] or ways[:1]
@@ -164,13 +167,16 @@ class BallPlay:
 
     def _shot(self, view: View, room_m: float) -> Order | None:
         start = view.ball.place
-        far = start.x_m < _HALFWAY_M or math.dist(start, self.field.goal_centre(1.0)) > _SHOT_RANGE_M
-        if far or self._mouth_rad(start) < _MOUTH_RAD:
+        if not self._in_range(start):
             return None
         best = aim.best_shot(start, _others(view), self.field)
         if best.free_rad * math.dist(start, best.place) < room_m:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
+
+    def _in_range(self, start: Point) -> bool:
+        near = start.x_m > _HALFWAY_M and math.dist(start, self.field.goal_centre(1.0)) < _SHOT_RANGE_M
+        return near and self._mouth_rad(start) > _MOUTH_RAD
 
     def _mouth_rad(self, start: Point) -> float:
         right, left = (bearing_rad(start, post) for post in self.field.goal_posts(1.0))
@@ -189,10 +195,10 @@ class BallPlay:
         ]
         return self._pass(view, mates, math.inf, aim.LANE_RAD, "")
 
-    def _try_shot(self, view: View, range_m: float) -> Order | None:
+    def _try_shot(self, view: View) -> Order | None:
         """Shoots past the field players to the corner that the goalkeeper covers least; a save leaves a rebound."""
         start, goal = view.ball.place, self.field.goal_centre(1.0)
-        if math.dist(start, goal) > range_m or self._mouth_rad(start) < _MOUTH_RAD:
+        if not self._in_range(start):
             return None
         keeper = min(view.opponents, key=lambda other: math.dist(other.place, goal), default=None)
         best = aim.best_shot(start, _others(view), self.field)
@@ -201,7 +207,15 @@ class BallPlay:
         return Order("shoot", best.place, bearing_rad(start, best.place), "try")
 
     def _clear(self, view: View) -> Order:
-        return Order("shoot", aim.best_shot(view.ball.place, _others(view), self.field).place, intention="clear")
+        """Kicks the ball away hard: upfield, where the way is free and the robot need not turn far."""
+        ball, own_rad = view.ball.place, view.own.heading_rad
+
+        def worth(way_rad: float) -> float:
+            free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), _others(view))
+            return min(0.3, free_rad) - _TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
+
+        way_rad = max(_CLEARING_RAD, key=worth)
+        return Order("shoot", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")
 
     def _push(self, view: View) -> Order:
         """Sets the ball free, so that the robot can take it again: a slow pass ahead, where the way is free."""
@@ -221,6 +235,12 @@ class BallPlay:
             return None
         self._receiver = best.receiver
         return Order("pass", best.place, bearing_rad(view.own.place, best.place), "pass")
+
+
+def _presses(rival: Robot, place: Point) -> bool:
+    way_rad = bearing_rad(rival.place, place)
+    closing_m_s = rival.velocity_m_s.x_m * math.cos(way_rad) + rival.velocity_m_s.y_m * math.sin(way_rad)
+    return math.dist(rival.place, place) - _PRESSED_S * max(0.0, closing_m_s) < _PRESSED_M
 
 
 def field_players(view: View) -> list[Robot]:

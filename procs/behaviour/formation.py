@@ -11,6 +11,8 @@ from procs.referee.restarts import State
 _OWN_SET_PIECE_M = 2.3
 _THEIR_SET_PIECE_M = 3.3
 _DROPPED_BALL_M = 1.3
+_LAYOFF_M, _LAYOFF_RAD = 2.4, (0.55, 0.8, 1.1, 1.5)
+"""Distance of the receiver from the ball of the own set piece, and its least angle off the straight way back."""
 _AREA_M = 0.35
 """Robots without the ball keep that distance from the penalty areas."""
 _APART_M = 1.0
@@ -48,6 +50,19 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
 def taker_place(spot: Point, way_rad: float) -> Point:
     """Returns the waiting place of a set piece's taker: behind the ball, opposite to the direction of play."""
     return ahead(spot, way_rad, -0.75)
+
+
+def layoff_place(game: Game, field: Field) -> Point:
+    """Returns the place of the receiver of the own set piece: behind the ball, where a robot that looks at the ball
+    nearly looks at the opponents' goal, and so can play on without a turn; beside the taker, to see past it.
+    """
+    back_rad = bearing_rad(game.spot, field.goal_centre(1.0)) + math.pi
+    for turn_rad in _LAYOFF_RAD:
+        places = [ahead(game.spot, back_rad + sign * turn_rad, _LAYOFF_M) for sign in (1.0, -1.0)]
+        place = min(places, key=lambda place: (abs(place.y_m), place.y_m))
+        if field.in_field(*place, -0.3):
+            break
+    return place
 
 
 def first_opponent_place(game: Game, field: Field) -> Point:

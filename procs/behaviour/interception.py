@@ -36,7 +36,7 @@ class Stand(NamedTuple):
     place: Point
     heading_rad: float
     time_s: float
-    """From now until the ball is there."""
+    """Time until the ball arrives at the place."""
 
 
 class Interception:

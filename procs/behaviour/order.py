@@ -13,4 +13,4 @@ class Order(NamedTuple):
     heading_rad: float = 0.0
     intention: str = ""
     speed_m_s: float = 0.0
-    """Of a pass: speed of the ball at its target; 0: the skill's own."""
+    """Speed of a passed ball at its target; 0.0 leaves the speed to the skill."""

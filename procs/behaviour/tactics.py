@@ -6,7 +6,7 @@ from procs.behaviour import aim, ballistics, formation
 from procs.behaviour.ball_play import BallPlay, field_players
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
-from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, Job
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, Job
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad, clamp, wrap_rad
@@ -19,6 +19,7 @@ _PASS_M = (1.5, 9.0)  # distances of a pass
 _TURNED_RAD = 0.35
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
+_LAID_OFF = (State.FREE_KICK, State.THROW_IN, State.GOAL_KICK)
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.4
 _BENCH_M = 8.0  # from the halfway line
@@ -107,8 +108,11 @@ class Tactics:
         return Order("keep_goal", intention="keep goal")
 
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
+        lays_off = game.whose is Whose.OURS and game.state in _LAID_OFF
         if job.role != ATTACKER:
-            place = formation.helper_place(job.place, game, self.field)
+            receives = lays_off and job.role == SUPPORTER
+            wanted = formation.layoff_place(game, self.field) if receives else job.place
+            place = formation.helper_place(wanted, game, self.field)
             return self._stand(view, formation.next_step(view.own.place, place, game), "take position")
         if game.whose is not Whose.OURS:
             place = formation.first_opponent_place(game, self.field)
@@ -117,7 +121,8 @@ class Tactics:
         mates = field_players(view)
         if not game.stopped:  # the taker has turned to its receiver
             mates = [mate for mate in mates if mate.name == self._receiver] or mates
-        best = aim.best_pass(taker, mates, view.opponents, math.inf, self._receiver)
+        near = [mate for mate in mates if mate.role == SUPPORTER] if lays_off else []
+        best = aim.best_pass(taker, near or mates, view.opponents, math.inf, self._receiver)
         target = best.place if best else self.field.goal_centre(1.0)
         self._receiver = best.receiver if best else ""
         way_rad = bearing_rad(game.spot, target)
@@ -183,11 +188,16 @@ def leave_field(view: View, field: Field) -> Order:
 
 
 def _gets_pass(view: View) -> bool:
-    """Returns whether the mate with the ball is turned to the own robot, which then waits for the pass."""
+    """Returns whether the own robot waits for a pass: the mate with the ball turns to it, or would best pass to it."""
     own, ball = view.own.place, view.ball.place
-    for mate in field_players(view):
-        if math.dist(mate.place, ball) < _HELD_M and _PASS_M[0] < math.dist(own, ball) < _PASS_M[1]:
-            return abs(wrap_rad(bearing_rad(mate.place, own) - mate.heading_rad)) < _TURNED_RAD
+    mates = field_players(view)
+    for carrier in mates:
+        if math.dist(carrier.place, ball) < _HELD_M and _PASS_M[0] < math.dist(own, ball) < _PASS_M[1]:
+            if abs(wrap_rad(bearing_rad(carrier.place, own) - carrier.heading_rad)) < _TURNED_RAD:
+                return True
+            others = [view.own, *(mate for mate in mates if mate is not carrier)]
+            best = aim.best_pass(carrier, others, view.opponents)
+            return best is not None and best.receiver == view.own.name and best.free_rad >= aim.LANE_RAD
     return False
 
 

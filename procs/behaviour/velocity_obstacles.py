@@ -31,7 +31,7 @@ class Mover(NamedTuple):
     place: Point
     velocity_m_s: Point
     gives_way: bool
-    """It runs the same navigator and takes half of the avoidance."""
+    """A mate: its navigator makes half of the evasion, so the own robot makes the other half only."""
 
 
 def safe_velocity(

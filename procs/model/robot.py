@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Mapping
+from functools import cache
 from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
@@ -68,12 +69,14 @@ PLAYERS: Mapping[str, Player] = {
 """Five against five, by their usual names."""
 
 
+@cache
 def team_of(robot: str) -> str:
     """Returns the letters before the number: `cyan3` gives `cyan`."""
     found = _NAME.fullmatch(robot)
     return found[1] if found else robot
 
 
+@cache
 def number_of(robot: str) -> int:
     """Returns the number at the end of the name; 0 for a name without a number."""
     found = _NAME.fullmatch(robot)

@@ -20,6 +20,7 @@ _ENTRY_M_S = 0.25  # relative to the ball, which bounces off a faster mouth
 _CONTACT_M = ROBOT.held_ball_m(BALL)
 _NEAR_M = 1.0  # so near to the ball the robot gets slower ...
 _SOFT_1_S = 2.0  # ... by this speed for each metre, because it follows its commands late
+_GENTLE_1_S = 1.2  # the same at a set piece, which is not to be bumped away
 _SLOW_M_S = 0.5  # a faster ball has to be caught first
 _CONTEST_M = 1.2  # a rival so near to the ball leaves no time for that
 _HELD_M = 0.5  # an opponent this near to the ball has it
@@ -107,7 +108,9 @@ def drive_to(scene: Scene) -> Drive:
     gap_m = max(0.0, math.dist(own.place, ball.place) - _CONTACT_M)
     limit_m_s = max(_ENTRY_M_S, _ENTRY_M_S + _SOFT_1_S * gap_m + flees_m_s)
     contested = any(math.dist(other.place, ball.place) < _CONTEST_M for other in scene.view.opponents)
-    if contested or gap_m > _NEAR_M or ball.speed_m_s > _SLOW_M_S:
+    if scene.set_piece:
+        limit_m_s = min(limit_m_s, _ENTRY_M_S + _GENTLE_1_S * gap_m)
+    elif contested or gap_m > _NEAR_M or ball.speed_m_s > _SLOW_M_S:
         limit_m_s = scene.speed_m_s
     elif scene.speed_m_s:
         limit_m_s = min(limit_m_s, scene.speed_m_s)

@@ -18,6 +18,7 @@ _DRIBBLE_M_S = 2.7
 _THERE_M = 0.3
 _FACE_M = 2.0  # a dribbling robot so near to its place turns to the heading that it is to have there ...
 _SIDEWAYS_RAD = 1.2  # ... unless it would pull the ball back
+_PULLS_RAD = 1.1  # a drive further off the mouth's direction would pull the ball, which the rules allow for 0.3 m
 _SHOT_M_S = 11.0
 _ARRIVAL_M_S = 2.7
 
@@ -40,7 +41,7 @@ class _WithBall(Skill):
 
 
 class Dribble(_WithBall):
-    """Drives with the ball to the place, mouth forward, and turns to the heading before it is there."""
+    """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there."""
 
     def _play(self, scene: Scene) -> Step:
         own = scene.view.own.place
@@ -50,7 +51,8 @@ class Dribble(_WithBall):
         heading_rad = scene.heading_rad if sideways or distance_m < 2 * _THERE_M else way_rad
         speed_m_s = min(scene.speed_m_s or _DRIBBLE_M_S, _DRIBBLE_M_S)
         status = Status.FINAL if distance_m < _THERE_M else Status.RUNNING
-        return Step(Drive(scene.place, heading_rad, speed_m_s), dribble=True, status=status)
+        pulls = abs(wrap_rad(way_rad - scene.view.own.heading_rad)) > _PULLS_RAD
+        return Step(Drive(own if pulls else scene.place, heading_rad, speed_m_s), dribble=True, status=status)
 
 
 class _Kick(_WithBall):

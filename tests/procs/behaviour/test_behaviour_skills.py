@@ -99,6 +99,14 @@ def test_intercept_waits_on_the_balls_path_facing_it() -> None:
     assert wait.heading_rad == pytest.approx(0.0, abs=0.01)
 
 
+def test_dribble_turns_before_it_would_pull_the_ball_back() -> None:
+    held = scene(view(OWN, ball(0.33, 0.0)), -3.0, 0.5, holds_ball=True)
+    step = Dribble().step(held)
+    assert step.drive
+    assert step.drive.place == OWN.place
+    assert abs(step.drive.heading_rad) > 2.5
+
+
 def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
     skill, held = Dribble(), scene(view(OWN, ball(0.33, 0.0)), 4.0, 4.0, holds_ball=True)
     step = skill.step(held)

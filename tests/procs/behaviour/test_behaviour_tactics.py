@@ -4,12 +4,14 @@ import math
 
 import pytest
 
+from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER
 from procs.behaviour.tactics import Tactics
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Point
+from procs.model.geometry import bearing_rad, wrap_rad
 from procs.referee.restarts import State
 from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
 
@@ -128,6 +130,40 @@ def test_taker_keeps_its_receiver_once_the_ball_may_be_played() -> None:
     assert order.heading_rad == pytest.approx(math.pi / 4)
 
 
+@pytest.mark.parametrize(
+    ("spot", "most_rad"), [(Point(7.4, -1.0), 0.5), (Point(2.0, 6.9), 0.8), (Point(-7.4, 3.5), 0.5)]
+)
+def test_receiver_of_a_set_piece_sees_ball_and_goal(spot: Point, most_rad: float) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=spot)
+    place = decide(view(robot("cyan3", *formation.layoff_place(game, FIELD)), ball(*spot)), game, SUPPORTER).place
+    turn_rad = wrap_rad(bearing_rad(place, spot) - bearing_rad(place, FIELD.goal_centre(1.0)))
+    assert math.dist(place, spot) > 2.0
+    assert FIELD.in_field(*place)
+    assert abs(turn_rad) < most_rad
+
+
+def test_set_piece_goes_to_the_receiver_behind_the_ball() -> None:
+    game, tactics = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 0.0)), Tactics(FIELD)
+    receiver, ahead = robot("cyan3", 0.0, -1.2, role=SUPPORTER), robot("cyan4", 6.0, 2.0, role=DEFENDER)
+    seen = view(robot("cyan2", 2.6, 0.3, math.pi), ball(2.0, 0.0), (receiver, ahead))
+    waiting = tactics.decide(seen, game, job(ATTACKER), False, 0.05)
+    assert waiting.place.x_m > 2.0, "the taker stands on the other side of the ball"
+    for _ in range(4):
+        order = tactics.decide(seen, game._replace(stopped=False), job(ATTACKER), True, 0.05)
+    assert (order.skill, order.place) == ("pass", receiver.place)
+
+
+def test_rival_that_comes_fast_presses_from_further_away() -> None:
+    mates = (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    rival = robot("", 0.0, -0.5)
+    standing = decide(with_ball(-2.0, 0.0, rival, mates=mates), holds_ball=True)
+    coming = rival._replace(velocity_m_s=Point(-2.5, 0.5))
+    assert (standing.skill, decide(with_ball(-2.0, 0.0, coming, mates=mates), holds_ball=True).skill) == (
+        "dribble",
+        "pass",
+    )
+
+
 @pytest.mark.parametrize("stopped", [True, False])
 def test_robots_keep_away_at_the_other_teams_set_piece(stopped: bool) -> None:
     game = Game(State.FREE_KICK, stopped=stopped, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
@@ -196,8 +232,16 @@ def test_robot_waits_for_the_pass_of_a_mate_that_turned_to_it() -> None:
     seen = view(robot("cyan3", 3.0, 0.0), ball(0.33, 0.0), (robot("cyan2", 0.0, 0.0, 0.0),))
     order = decide(seen, role=SUPPORTER)
     assert (order.place, order.intention) == ((3.0, 0.0), "await pass")
-    turned_away = seen._replace(mates=(robot("cyan2", 0.0, 0.0, math.pi / 2),))
+    turned_away = seen._replace(mates=(robot("cyan2", 0.0, 0.0, math.pi / 2), robot("cyan4", 0.5, 4.0)))
     assert decide(turned_away, role=SUPPORTER).intention == SUPPORTER
+
+
+def test_robot_waits_where_a_mate_would_best_pass_to() -> None:
+    own, passer, other = robot("cyan3", 4.0, 0.0), robot("cyan2", 0.0, 0.0, math.pi / 2), robot("cyan4", -3.0, 4.0)
+    seen = view(own, ball(0.33, 0.0), (passer, other))
+    assert decide(seen, role=SUPPORTER).intention == "await pass"
+    blocked = seen._replace(opponents=(robot("", 2.0, 0.0),))
+    assert decide(blocked, role=SUPPORTER).intention == SUPPORTER
 
 
 def test_ball_that_gets_no_further_is_released() -> None:
