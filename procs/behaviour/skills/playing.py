@@ -63,13 +63,16 @@ class _Kick(_WithBall):
     """
 
     _TIMEOUT_S = 3.0
-    _LEAD_S = 0.04  # from the view to the kick
+    _EXACT = 0.4  # share of the tolerance in which a robot kicks although its aim still improves
+    _LEAD_S = 0.03  # from the view to the kick
+    _SLOWING_RAD_S = 0.5  # by which the turn is slower then than it was on the way to the view
 
     def __init__(self) -> None:
         super().__init__()
         self._running_s = 0.0
         self._asked = False
         self._heading_rad = math.nan
+        self._off_rad = math.nan
 
     def step(self, scene: Scene) -> Step:
         if self._asked and scene.kicked is None:
@@ -97,10 +100,15 @@ class _Kick(_WithBall):
         known = not math.isnan(self._heading_rad)
         turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
         self._heading_rad = own.heading_rad
-        wanted_rad, kick_m_s = self._aim(scene, speed_m_s, _mouth_velocity_m_s(own, turn_rad_s))
-        off_rad = wrap_rad(wanted_rad - own.heading_rad - turn_rad_s * self._LEAD_S)
+        slowed_rad_s = math.copysign(max(0.0, abs(turn_rad_s) - self._SLOWING_RAD_S), turn_rad_s)
+        wanted_rad, kick_m_s = self._aim(scene, speed_m_s, _mouth_velocity_m_s(own, slowed_rad_s))
+        off_rad = wrap_rad(wanted_rad - own.heading_rad - (turn_rad_s + slowed_rad_s) / 2 * self._LEAD_S)
         patience = 1.0 + 0.5 * self._running_s  # a poor kick is better than none
-        if abs(off_rad) < self._tolerance_rad(distance_m) * patience and scene.charged and scene.holds_ball:
+        tolerance_rad = self._tolerance_rad(distance_m) * patience
+        improves = 2 * abs(off_rad) > abs(self._off_rad - off_rad) and abs(off_rad) < abs(self._off_rad)
+        self._off_rad = off_rad
+        aimed = abs(off_rad) < tolerance_rad * (self._EXACT if improves else 1.0)
+        if aimed and scene.charged and scene.holds_ball:
             self._asked = True
             return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
         return Step(self._turn(scene, wanted_rad), dribble=True)

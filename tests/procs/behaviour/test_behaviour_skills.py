@@ -130,6 +130,18 @@ def test_shoot_turns_first_and_kicks_when_aimed() -> None:
     assert skill.step(aimed._replace(kicked=True, holds_ball=False)).status is Status.FINAL
 
 
+def test_kick_waits_while_the_aim_still_improves() -> None:
+    skill = Pass()
+    for tick in range(20):
+        heading_rad = -0.1 + 0.01 * tick
+        mouth = Point(0.33 * math.cos(heading_rad), 0.33 * math.sin(heading_rad))
+        turning = view(OWN._replace(heading_rad=heading_rad), ball(*mouth))
+        if skill.step(scene(turning, 4.0, holds_ball=True)).kick_m_s:
+            assert abs(heading_rad) < 0.03
+            return
+    pytest.fail("a robot that has turned to its mate kicks")
+
+
 def test_shoot_waits_for_the_charge() -> None:
     held = scene(view(OWN, ball(0.33, 0.0)), holds_ball=True)
     assert Shoot().step(held).kick_m_s > 0
