@@ -14,7 +14,7 @@ PARALLEL = --numprocesses $(WORKERS) --maxprocesses 9 --dist worksteal
 unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
-.PHONY: help soccer test test-fast simulate simulate-mutations lint types docs pictures web-pictures rerun-picture clean
+.PHONY: help soccer test all-tests test-fast simulate simulate-mutations lint types docs pictures web-pictures rerun-picture clean
 
 help:  ## Lists what can be made
 	@sed -nE 's/^([a-z-]+):.*## (.*)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 20
@@ -38,7 +38,11 @@ lint: types  ## Format, lint, types
 	$(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
-test: lint  ## Everything that has to hold before a commit
+# mypy needs a processor for a minute, so the tests begin beside it.
+test:  ## Everything that has to hold before a commit
+	@$(MAKE) --no-print-directory --jobs 2 lint all-tests
+
+all-tests: types
 	$(BIN)/pytest $(PARALLEL)
 
 test-fast: types  ## The tests of parts, and of the whole what breaks first

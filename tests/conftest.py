@@ -1,9 +1,10 @@
 """Fixtures that all tests share: ports, and skips for programs and rights that the machine lacks."""
 
+import gc
 import os
 import shutil
 import subprocess
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import NoReturn
 
@@ -13,6 +14,8 @@ limit_threads()  # before numpy: components in the test process use the same BLA
 
 import pytest  # noqa: E402
 from hypothesis import settings  # noqa: E402
+from hypothesis.internal.conjecture import providers  # noqa: E402
+from hypothesis.internal.constants_ast import Constants  # noqa: E402
 
 from tests.harness.runs import PortBlock  # noqa: E402
 
@@ -20,12 +23,13 @@ settings.register_profile("suite", derandomize=True, deadline=None, max_examples
 settings.register_profile("fast", derandomize=True, deadline=None, max_examples=20)
 settings.register_profile("long", deadline=None, max_examples=5000)
 settings.load_profile("suite")  # the same examples each time; --hypothesis-profile=long searches for new ones
+# Constants of imported modules would make the examples depend on the tests that ran before in the same process.
+providers._get_local_constants = Constants
 
 _PACKAGES = {
     "Xvfb": "xvfb",
     "cc": "gcc",
     "ip": "iproute2",
-    "jar": "default-jdk-headless",
     "java": "default-jre",
     "javac": "default-jdk-headless",
     "mount": "mount",
@@ -46,6 +50,17 @@ def _same_environment() -> Iterator[None]:
     for name in left - before.keys():
         del os.environ[name]
     assert not left, f"the test changed variables of the environment: {', '.join(sorted(left))}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Spares the garbage collector the imported modules and the collected tests, which all stay to the end."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 @pytest.fixture

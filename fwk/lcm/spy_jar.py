@@ -85,8 +85,7 @@ def start(jar: Path, url: str) -> None:
 
 def _build(sources: Sequence[Sequence[Path]], workshop: Path) -> Path:
     _require("javac", "default-jdk-headless")
-    _require("jar", "default-jdk-headless")
-    java, classes, jar = workshop / "java", workshop / "classes", workshop / "types.jar"
+    java, classes = workshop / "java", workshop / "classes"
     classes.mkdir()
     for folder in reversed(sources):  # a type that several folders define is overwritten by the first folder's
         _run([str(lcm_gen()), "--java", "--jpath", str(java), *map(str, folder)], workshop)
@@ -94,8 +93,7 @@ def _build(sources: Sequence[Sequence[Path]], workshop: Path) -> Path:
     hint = "; a member whose name is a Java keyword is the usual cause"
     compiler = [*_JAVAC, "-nowarn", "-encoding", "UTF-8", "-cp", str(lcm_jar()), "-d", str(classes)]
     _run([*compiler, *files], java, hint)
-    _run(["jar", "cf", str(jar), "-C", str(classes), "."], workshop)
-    return jar
+    return Path(shutil.make_archive(str(workshop / "types"), "zip", classes))  # the `jar` program takes a second
 
 
 def _run(command: Sequence[str], below: Path, hint: str = "") -> None:

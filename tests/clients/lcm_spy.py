@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
+from zipfile import ZipFile
 
 from tests.clients.bus import Bus, process
 
@@ -68,6 +69,8 @@ def _agent() -> Path:
     folder.mkdir()
     source = Path(__file__).with_name("SpyTable.java")
     subprocess.run(["javac", *(f"-J{option}" for option in _SHORT.split()), "-d", folder, source], check=True)
-    (folder / "manifest").write_text("Premain-Class: SpyTable\n")
-    subprocess.run(["jar", "cfm", folder / "agent.jar", folder / "manifest", "-C", folder, "."], check=True)
+    with ZipFile(folder / "agent.jar", "w") as jar:
+        jar.writestr("META-INF/MANIFEST.MF", "Premain-Class: SpyTable\n")
+        for each in folder.glob("*.class"):
+            jar.write(each, each.name)
     return folder / "agent.jar"

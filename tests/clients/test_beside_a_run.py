@@ -83,19 +83,22 @@ def test_python_subscriber_hears_every_message(tmp_path: Path, ports: PortBlock,
     assert texts[-1] == f"end {MESSAGES}"
 
 
-@pytest.mark.parametrize("speed", SPEEDS)
-def test_lcm_spy_hears_every_message(tmp_path: Path, needs: Callable[..., None], ports: PortBlock, speed: str) -> None:
-    needs("java", "javac", "jar", "Xvfb")
+def test_lcm_spy_hears_every_message(tmp_path: Path, needs: Callable[..., None], ports: PortBlock) -> None:
+    needs("java", "javac", "Xvfb")
     bus = default_bus(ports)
-    for folder in attempts(tmp_path):
-        with screen() as display, lcm_spy(bus, display, folder) as seen:
-            if burst(folder, ports, speed):
-                wait_until(partial(_counted_all, seen), "lcm-spy lacks messages")
-                break
+    with screen() as display:
+        for folder in attempts(tmp_path):
+            with lcm_spy(bus, display, folder) as seen:
+                for runs, speed in enumerate(SPEEDS, 1):
+                    if not burst(folder, ports, speed):
+                        break
+                    wait_until(partial(_counted, seen, runs * MESSAGES), f"lcm-spy lacks messages at speed {speed}")
+                else:
+                    return
 
 
-def _counted_all(seen: Path) -> bool:
-    return count(read_table(seen)) == str(MESSAGES)
+def _counted(seen: Path, messages: int) -> bool:
+    return count(read_table(seen)) == str(messages)
 
 
 def count(table: Table) -> str:

@@ -1,8 +1,6 @@
 """A C program built from the project's .lcm files alone reads the bus."""
 
-import os
 import subprocess
-import sys
 from collections.abc import Callable
 from pathlib import Path
 
@@ -13,7 +11,10 @@ from fwk.lcm.event_log import LogReader
 from fwk.recording.compare import FRAMEWORK
 from tests.clients.bus import Bus, process, program
 from tests.fwk.recording.recording_made import entry, world_model
+from tests.harness.fixtures import Launch, launch
 from tests.harness.runs import PortBlock
+
+__all__ = ["launch"]
 
 pytestmark = pytest.mark.system
 ROOT = Path(__file__).parents[2]
@@ -68,23 +69,19 @@ def test_wrong_arguments_are_explained(ball: Callable[[], str], needs: Callable[
 
 
 def test_c_program_and_lcm_logger_hear_a_running_robot(
-    ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock, tmp_path: Path
+    ball: Callable[[], str], needs: Callable[..., None], ports: PortBlock, launch: Launch, tmp_path: Path
 ) -> None:
     needs("cc")
     bus = Bus(ports.public_url)
     one = (ROOT / "launch" / "one-robot.yaml").read_text()
     (tmp_path / "one.yaml").write_text(one.replace("stereo", "percepts"))  # pictures take most of the processor time
-    launch = [sys.executable, "-m", "fwk.cli.launch", "one.yaml", "--ticks", "240", "--speed", "5", "--plain"]
-    where = ["--bus-port", str(ports.bus), "--set", f"public_url={bus.url}", "--record", str(tmp_path / "own")]
-    with process([ball(), "cyan1", bus.url, "200"]) as printing, bus.logger(tmp_path / "heard"):
-        run = subprocess.run(
-            [*launch, *where], cwd=tmp_path, env={**os.environ, "HOME": str(tmp_path)}, capture_output=True, text=True
-        )
-        assert run.returncode == 0, run.stdout + run.stderr
+    options = ("--ticks", "120", "--speed", "5", "--set", f"public_url={bus.url}", "--record", "own")
+    with process([ball(), "cyan1", bus.url, "100"]) as printing, bus.logger(tmp_path / "heard"):
+        assert (run := launch("one.yaml", *options)).wait() == 0, run.text
         assert printing.wait(30) == 0
         assert printing.stdout
         lines = printing.stdout.read().splitlines()
-    assert len(lines) == 200
+    assert len(lines) == 100
     assert all(line.startswith("cyan1/world_model tick ") for line in lines)
     assert any("ball at (" in line for line in lines)
     own, heard = said(tmp_path / "own"), said(tmp_path / "heard")

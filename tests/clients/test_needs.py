@@ -18,7 +18,7 @@ def test_has_everything(needs):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("workers", [[], ["--numprocesses", "2"]], ids=["serial", "parallel"])
+@pytest.mark.parametrize("workers", [[], ["--numprocesses", "1"]], ids=["serial", "parallel"])
 def test_a_test_without_its_program_is_skipped_and_listed(tmp_path: Path, workers: list[str]) -> None:
     shutil.copy(Path(__file__).parents[1] / "conftest.py", tmp_path)
     (tmp_path / "test_it.py").write_text(TESTS)

@@ -30,7 +30,7 @@ def one_of_each_type() -> list[Entry]:
 
 
 def test_lcm_spy_decodes_every_channel(tmp_path: Path, needs: Callable[..., None], ports: PortBlock) -> None:
-    needs("java", "javac", "jar", "Xvfb")
+    needs("java", "javac", "Xvfb")
     bus, made = Bus(ports.public_url), one_of_each_type()
     channels = {channel for channel, _, _ in made}
     with screen() as display, lcm_spy(bus, display, tmp_path) as seen:

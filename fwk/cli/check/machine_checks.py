@@ -84,7 +84,7 @@ def ports(wanted: Ports) -> Finding:
 
 def java() -> Finding:
     """Checks the programs that `fwk spy` needs."""
-    missing = [program for program in ("java", "javac", "jar") if not shutil.which(program)]
+    missing = [program for program in ("java", "javac") if not shutil.which(program)]
     if missing:
         text = f"no {', '.join(missing)}: 'fwk spy' does not work"
         return Finding(Severity.WARNING, "Java", text, "sudo apt install default-jdk")

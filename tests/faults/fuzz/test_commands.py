@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterator
+from functools import cache
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as some
-from typer import Typer
+from typer import Typer, testing
 from typer.main import get_command
 from typer.testing import CliRunner
 
@@ -34,6 +35,10 @@ TINY = {
 }
 
 
+made_once = cache(get_command)
+"""Makes the commands of an application as typer does for each command line, but once."""
+
+
 class _WouldRunError(Exception):
     pass
 
@@ -52,6 +57,7 @@ def tiny(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(launching, "run", run)
     monkeypatch.setattr(log, "running", list)
     monkeypatch.setattr(background, "continue_in_background", run)
+    monkeypatch.setattr(testing, "_get_command", made_once)
     for command in ("view", "foxglove"):  # they would follow another user's run on this machine
         monkeypatch.setattr(f"fwk.cli.look.{command}.listening", run)
     return tmp_path

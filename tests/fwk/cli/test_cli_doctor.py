@@ -45,7 +45,7 @@ def test_ports_of_other_programs_are_named(ports: PortBlock) -> None:
 def test_missing_java_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
     assert checks.java() == Finding(
-        Severity.WARNING, "Java", "no java, javac, jar: 'fwk spy' does not work", "sudo apt install default-jdk"
+        Severity.WARNING, "Java", "no java, javac: 'fwk spy' does not work", "sudo apt install default-jdk"
     )
 
 

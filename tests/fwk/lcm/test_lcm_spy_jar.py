@@ -23,7 +23,7 @@ def folder(path: Path, package: str, member: str = "double x_m") -> Path:
 
 @pytest.mark.slow
 def test_the_jar_is_built_once_for_each_content(tmp_path: Path, needs: Needs, monkeypatch: pytest.MonkeyPatch) -> None:
-    needs("javac", "jar")
+    needs("javac")
     types, cache = folder(tmp_path / "types", "first"), tmp_path / "cache"
     built = spy.build_jar([types], cache)
     with monkeypatch.context() as patch:
@@ -34,14 +34,14 @@ def test_the_jar_is_built_once_for_each_content(tmp_path: Path, needs: Needs, mo
 
 
 def test_of_two_definitions_the_first_folders_is_used(tmp_path: Path, needs: Needs) -> None:
-    needs("javac", "jar")
+    needs("javac")
     first, second = folder(tmp_path / "a", "same", "double aaa"), folder(tmp_path / "b", "same", "double bbb")
     with zipfile.ZipFile(spy.build_jar([first, second], tmp_path / "cache")) as jar:
         assert b"aaa" in jar.read("same/thing_t.class")
 
 
 def test_errors_of_the_java_compiler_are_explained(tmp_path: Path, needs: Needs) -> None:
-    needs("javac", "jar")
+    needs("javac")
     with pytest.raises(spy.SpyError) as caught:
         spy.build_jar([folder(tmp_path / "types", "bad", "boolean final")], tmp_path / "cache")
     text = str(caught.value)
@@ -70,7 +70,7 @@ def test_missing_programs_display_and_types_are_named(tmp_path: Path, monkeypatc
 def test_the_command_prints_a_class_path_with_every_type(
     tmp_path: Path, needs: Needs, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    needs("javac", "jar")
+    needs("javac")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     app = typer.Typer()
     app.command()(command)

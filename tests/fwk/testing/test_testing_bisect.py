@@ -44,18 +44,19 @@ def files(public_url: str) -> dict[str, str]:
     return {"base.py": COMPONENT, "drive.yaml": launch}
 
 
-@pytest.fixture
-def repository(tmp_path: Path) -> Path:
+@pytest.fixture(scope="module")
+def repository(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A repository with a commit a version, of which the first one made the recording `log.lcm`."""
-    played(tmp_path, files, "drive.yaml", "--ticks", "20", "--speed", "max", "--record", "log.lcm")
-    git(tmp_path, "init", "--quiet")
+    folder = tmp_path_factory.mktemp("repository")
+    played(folder, files, "drive.yaml", "--ticks", "20", "--speed", "max", "--record", "log.lcm")
+    git(folder, "init", "--quiet")
     for subject, step in VERSIONS:
-        (tmp_path / "base.py").write_text(COMPONENT.replace("+= 0.1", step))
-        git(tmp_path, "add", "base.py")
-        git(tmp_path, "commit", "--quiet", "--allow-empty", "--message", subject)
-    git(tmp_path, "tag", "first", f"HEAD~{len(VERSIONS) - 1}")
-    (tmp_path / "base.py").write_text("this is not Python: the user's own files do not count")
-    return tmp_path
+        (folder / "base.py").write_text(COMPONENT.replace("+= 0.1", step))
+        git(folder, "add", "base.py")
+        git(folder, "commit", "--quiet", "--allow-empty", "--message", subject)
+    git(folder, "tag", "first", f"HEAD~{len(VERSIONS) - 1}")
+    (folder / "base.py").write_text("this is not Python: the user's own files do not count")
+    return folder
 
 
 @pytest.mark.system
