@@ -13,10 +13,12 @@ from pathlib import Path
 from typing import Any
 
 from fwk.bus.network import Steps, UdpNetwork
+from fwk.bus.port_lock import PortLock
 from fwk.host.process import raise_file_limit
 from fwk.launcher.helper_processes import HelperProcesses
 from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan
+from fwk.model.ports import Ports
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.supervisor.options import RunOptions
 from fwk.supervisor.processes.hosts import StartFailedError
@@ -77,7 +79,7 @@ def run(plan: Plan, folder: str, recorded: bool, control: socket.socket) -> None
     options = RunOptions(
         Path(folder), speed=plan.speed, record=Path(folder, "log.lcm") if recorded else None, plain=True
     )
-    reservations = Reservations(plan)
+    reservations = Reservations(plan, PortLock(Ports.of(plan), plan.name, plan.public_url))
     zygote = Zygote(plan, number, {}, reservations.hosts, not_for_hosts=reservations.not_for_hosts)
     children = HelperProcesses(plan, number, options, {}, reservations) if recorded else None
     network = UdpNetwork(reservations.own)

@@ -73,21 +73,21 @@ def web(
     except ServeError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(BAD_INPUT) from error
-    tokens = {} if local else new_tokens(read_only)
-    access = Access(address, listener.getsockname()[1], read_only, tuple(names or ()), tokens)
-    for role, link in access.links().items():
-        typer.echo(f"console ({role}): {link}")
-    continue_in_background()
-    from fwk.web.extensions import ExtensionError
-    from fwk.web.server import Options, serve
+    with listener:
+        tokens = {} if local else new_tokens(read_only)
+        access = Access(address, listener.getsockname()[1], read_only, tuple(names or ()), tokens)
+        for role, link in access.links().items():
+            typer.echo(f"console ({role}): {link}")
+        continue_in_background()
+        from fwk.web.extensions import ExtensionError
+        from fwk.web.server import Options, serve
 
-    try:
-        with listener:
+        try:
             options = Options(access, run, tuple(views or ()), certificate, key, normal_priority)
             serve(options, listener, recordings)
-    except ExtensionError as error:
-        typer.echo(f"error: {error}", err=True)
-        raise typer.Exit(BAD_INPUT) from error
+        except ExtensionError as error:
+            typer.echo(f"error: {error}", err=True)
+            raise typer.Exit(BAD_INPUT) from error
 
 
 def recordings() -> list[dict[str, Any]]:
