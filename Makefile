@@ -70,9 +70,9 @@ pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg 
 	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
 
 rerun-picture: types  ## Plays a match and takes docs/rerun.png of 'fwk view --web' in a headless Chromium
-	$(BIN)/fwk-launch soccer.yaml --ticks 560 --speed max --record build/view.lcm
+	$(BIN)/fwk-launch soccer.yaml --ticks 560 --speed max --run rerun-picture --record build/view.lcm
 	$(BIN)/fwk cut build/view.lcm --from 520 --out build/view-part.lcm --force
-	$(BIN)/fwk view --from build/view-part.lcm --web --port 8471 --channels 'world/*' --channels 'cyan1/*' & view=$$!; sleep 10; \
+	$(BIN)/fwk view --from build/view-part.lcm --web --port 8471 --channels 'world/*' --channels 'cyan1/*' & view=$$!; \
 	$(BIN)/python -m tools.docs.rerun_picture 'http://127.0.0.1:8472/?url=rerun+http://127.0.0.1:8471/proxy'; code=$$?; \
 	kill -INT $$view; exit $$code
 

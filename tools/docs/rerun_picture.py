@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from playwright.sync_api import sync_playwright
 
+from tools.docs.web_pictures import wait_for
+
 CHROMIUM = "/usr/bin/chromium-headless-shell"
 GRAPHICS = ("--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 """Options of a Chromium that draws in three dimensions without a graphics card."""
@@ -24,6 +26,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("url", help="the address that 'fwk view --web' prints")
     arguments = parser.parse_args()
+    wait_for(arguments.url)
     picture = picture_of(arguments.url, b"\x30\x80\x3c")
     cv2.imwrite(str(Path(__file__).parents[2] / "docs" / "rerun.png"), picture)
 

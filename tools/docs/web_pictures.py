@@ -46,7 +46,7 @@ def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> 
     program = shutil.which(PROGRAM)
     if program is None:
         raise FileNotFoundError(f"needs {PROGRAM}: apt install {PROGRAM}")
-    _wait_for(url)
+    wait_for(url)
     made = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
@@ -67,8 +67,8 @@ def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> 
     return made
 
 
-def _wait_for(url: str) -> None:
-    """Waits until the console listens."""
+def wait_for(url: str) -> None:
+    """Waits until a server listens at the address of a page."""
     address = urlsplit(url)
     end_us = monotonic_us() + round(_WAIT_MS * 1000)
     while True:
