@@ -1,5 +1,6 @@
 """Declaration of a component's class: stages or rate, ports, settings and aspects."""
 
+import inspect
 import typing
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -81,6 +82,7 @@ def _read(component: type[Component]) -> Declaration:
     if not stages and rate_hz is None:
         raise DeclarationError(f'{where}: no stage; write for example: stage = "think"')
     _check_methods(component, where)
+    _check_calls(component, where)
     hints = _hints(component, where)
     ports: list[Port] = []
     aspects, asks, config = {}, {}, Config
@@ -152,6 +154,26 @@ def _check_methods(component: type[Component], where: str) -> None:
                 raise DeclarationError(
                     f"{where}.{name}: the framework calls no method '{name}'; did you mean '{near[0]}'?"
                 )
+
+
+def _check_calls(component: type[Component], where: str) -> None:
+    """Refuses methods that the framework cannot call: with further arguments, as coroutines or as generators."""
+    for name in ("__init__", *_METHODS):
+        method = getattr(component, name)
+        if method in (getattr(Component, name), object.__init__):
+            continue
+        right = f"write: def {name}(self) -> None"
+        if inspect.iscoroutinefunction(method) or inspect.isasyncgenfunction(method):
+            raise DeclarationError(f"{where}.{name}: the framework awaits no coroutine; {right}")
+        if inspect.isgeneratorfunction(method):
+            raise DeclarationError(f"{where}.{name}: 'yield' makes it a generator, which the framework does not run")
+        is_plain = inspect.isfunction(inspect.getattr_static(component, name))
+        try:
+            inspect.signature(method).bind(*(component,) if is_plain else ())
+        except TypeError as error:
+            raise DeclarationError(f"{where}.{name}: {error}; {right}") from error
+        except ValueError:  # written in another language
+            continue
 
 
 def _hints(kind: type, where: str) -> dict[str, Any]:

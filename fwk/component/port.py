@@ -94,7 +94,7 @@ def _without_type(attribute: str, annotation: Any, each: bool) -> str:
 
 def _declared(where: str, attribute: str, kind: PortKind, each: bool, types: tuple[Any, ...], default: Any) -> Port:
     for message_type in types:
-        if not hasattr(message_type, "_get_packed_fingerprint"):
+        if not isinstance(message_type, type) or not hasattr(message_type, "_get_packed_fingerprint"):
             raise DeclarationError(
                 f"{where}.{attribute}: {message_type!r} is not an LCM type; import one from lcmtypes"
             )

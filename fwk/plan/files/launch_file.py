@@ -63,6 +63,10 @@ def find_launch_file(file: str, problems: Problems) -> Path | None:
     for place in places:
         if os.path.isfile(place / file):  # also False for impossible and forbidden paths
             return (place / file).absolute()
+    for place in places:
+        if os.path.exists(place / file) and not os.path.isdir(place / file):
+            problems.add(shown(place / file), "", "cannot be read: it is not an ordinary file")
+            return None
     there = [name for place in places[1:] for name in _launch_files(place)]
     near = get_close_matches(file, there, 1)
     listed = f"there is {', '.join(dict.fromkeys(there))}" if there else "there is none in launch/"
@@ -71,7 +75,7 @@ def find_launch_file(file: str, problems: Problems) -> Path | None:
 
 
 def _launch_files(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.glob("*.yaml") if not path.name.endswith(HOST_SUFFIX))
+    return sorted(path.name for path in folder.glob("*.yaml") if path.is_file() and not path.name.endswith(HOST_SUFFIX))
 
 
 def read_files(path: Path, problems: Problems) -> Files:

@@ -36,6 +36,12 @@ ROWS = {
     "def lop(self) -> None: ...": "Odd.lop: the framework calls no method 'lop'; did you mean 'loop'?",
     "def Finalise(self) -> None: ...": "Odd.Finalise: the framework calls no method 'Finalise'; "
     "did you mean 'finalize'?",
+    "def loop(self, dt) -> None: ...": "Odd.loop: missing a required argument: 'dt'; write: def loop(self) -> None",
+    "def init() -> None: ...": "Odd.init: too many positional arguments; write: def init(self) -> None",
+    "def __init__(self, size): ...": "Odd.__init__: missing a required argument: 'size'; write: def __init__(self) -> "
+    "None",
+    "async def loop(self) -> None: ...": "Odd.loop: the framework awaits no coroutine; write: def loop(self) -> None",
+    "def loop(self): yield": "Odd.loop: 'yield' makes it a generator, which the framework does not run",
     "every = 0": "Odd: every is 0; it should be a whole number from 1 to 1000000",
     "every = 2.0": "Odd: every is 2.0; it should be a whole number from 1 to 1000000",
     "offset = -1": "Odd: offset is -1; it should be a whole number from 0 to 1000000",
@@ -54,6 +60,7 @@ ROWS = {
     "VisionMaster, a Config, Clock, Logger, LogLines, numpy.random.Generator, TimeSource, MainLoop, "
     "PluginControl, Blackboard or an Aspect, and set plain attributes in init()",
     "ball: Reads[int]": "Odd.ball: <class 'int'> is not an LCM type; import one from lcmtypes",
+    "ball: Reads[5]": "Odd.ball: 5 is not an LCM type; import one from lcmtypes",
     "ball: Reads[command_t]": "Odd.ball: core.command_t belongs to the framework and "
     "does not begin with 'core.header_t header;'",
     "ball: Reads[odometry_t] = channel(5)": "Odd.ball: channel(5) does not name a channel; write = "

@@ -7,6 +7,7 @@ import pytest
 
 from fwk.model.errors import PlanError, Problems
 from fwk.plan.files.source import Node, read_value, read_yaml
+from fwk.plan.load import load_plan
 
 
 @pytest.mark.parametrize(
@@ -64,3 +65,13 @@ def test_a_file_of_ten_megabytes_is_refused_at_once(tmp_path: Path) -> None:
     assert read_yaml(tmp_path / "big.yaml", "big.yaml", problems) is None
     with pytest.raises(PlanError, match=r"^big\.yaml: more than 1,000,000 bytes"):
         problems.stop_if_any()
+
+
+def test_a_launch_file_that_is_a_pipe_is_named_as_such(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    os.mkfifo("pipe.yaml")
+    with pytest.raises(PlanError, match=r"^pipe.yaml: cannot be read: it is not an ordinary file$"):
+        load_plan("pipe.yaml")
+    with pytest.raises(PlanError, match="no such launch file") as missing:
+        load_plan("pip.yaml")
+    assert "pipe.yaml" not in str(missing.value)
