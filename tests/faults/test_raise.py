@@ -2,6 +2,7 @@
 
 import select
 import signal
+from itertools import chain
 from pathlib import Path
 
 import psutil
@@ -15,6 +16,7 @@ from tests.faults.conftest import RUN, TICKS
 from tests.harness.components import sources
 from tests.harness.fixtures import Launch
 from tests.harness.runs import TIMEOUT_S, UNHURRIED, PortBlock, write_files
+from tests.programs.orchestra import STAGES
 
 pytestmark = pytest.mark.system
 
@@ -28,32 +30,32 @@ def faulty(traced: Path) -> Path:
     return traced
 
 
-def wrong(what: str, tick: int = 5, again: bool = False) -> list[str]:
+def wrong(what: str, tick: int = 5, again: bool = False, player: str = "d") -> list[str]:
     settings = {"trouble": what, "trouble_tick": tick, "trouble_again": str(again).lower()}
-    return [word for key, value in settings.items() for word in ("--set", f"d/player.{key}={value}")]
+    return [word for key, value in settings.items() for word in ("--set", f"{player}/player.{key}={value}")]
 
 
-@pytest.mark.parametrize(
-    ("what", "says"),
-    [
-        ("loop:long text", "d/player ended: RuntimeError: xxxx"),
-        ("loop:no text", "d/player ended: RuntimeError: no text"),
-        ("loop:no words", "d/player ended: HostileError"),
-        ("loop:deep", "d/player ended: RecursionError: maximum recursion depth exceeded"),
-        ("loop:leave in a thread", "d/player ended: it left by itself (exit code 0)"),
-        ("loop:close all", "d/player ended: "),
-    ],
-)
-def test_a_failing_component_is_named_and_restarted(
-    launch: Launch, faulty: Path, after: Aftermath, what: str, says: str
-) -> None:
-    run = launch(*RUN, "--ticks", "20", *wrong(what))
+FAULTS = {
+    "a": ("loop:long text", "RuntimeError: xxxx"),
+    "b": ("loop:no text", "RuntimeError: no text"),
+    "c": ("loop:no words", "HostileError"),
+    "d": ("loop:deep", "RecursionError: maximum recursion depth exceeded"),
+    "e": ("loop:leave in a thread", "it left by itself (exit code 0)"),
+    "f": ("loop:close all", ""),
+}
+"""Player to its fault and the report of its end."""
+
+
+def test_failing_components_are_named_and_restarted(launch: Launch, faulty: Path, after: Aftermath) -> None:
+    wrongs = [wrong(what, 5 + 2 * n, player=player) for n, (player, (what, _)) in enumerate(FAULTS.items())]
+    run = launch(*RUN, "--ticks", "20", *chain(*wrongs))
     run.until_ticks("a/player", 2)
     after.note(run)
     recording = after.check(run, tracebacks=True)
-    assert says in run.text
-    assert "d/player runs again, incarnation 2" in run.text
-    assert len(recording.messages["d/note"]) == 20
+    for player, (_, says) in FAULTS.items():
+        assert f"{player}/player ended: {says}" in run.text
+        assert f"{player}/player runs again, incarnation 2" in run.text
+        assert len(recording.messages[f"{player}/note"]) == 20 * len(STAGES[player])
     assert recording.gaps() == {}
 
 

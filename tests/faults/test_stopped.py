@@ -30,18 +30,22 @@ WHO: dict[str, Callable[[Launched], int]] = {
 }
 
 
-@pytest.mark.parametrize("who", WHO)
+@pytest.mark.parametrize("stops", [["a component", "the supervisor", "the gateway"], ["the zygote"]], ids=len)
 def test_a_stopped_process_in_lockstep_leaves_no_trace(
-    launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, who: str
+    launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, stops: list[str]
 ) -> None:
+    """Of the processes stopped one after another, the last lets the run go on for some ticks, or to its end."""
     run = launch(*RUN, "--ticks", str(TICKS))
     run.until_ticks("f/player", 5)
     after.note(run)
-    still = WHO[who](run)
-    os.kill(still, signal.SIGSTOP)
-    pause(STILL_S)
-    with contextlib.suppress(ProcessLookupError):  # a run without restarts ends and wakes the zygote
-        os.kill(still, signal.SIGCONT)
+    still = WHO[stops[0]](run)
+    for following in (*stops[1:], ""):
+        os.kill(still, signal.SIGSTOP)
+        found = WHO[following](run) if following else 0  # while the run stands still
+        pause(STILL_S)
+        with contextlib.suppress(ProcessLookupError):  # a run without restarts ends and wakes the zygote
+            os.kill(still, signal.SIGCONT)
+        still = found
     recording = after.check(run, equal_to=undisturbed)
     assert recording.gaps() == {}
     assert "lost 0" in run.text

@@ -30,7 +30,7 @@ def test_a_deleted_run_directory_fails_the_run(launch: Launch, folder: Path) -> 
     run = launch("counted.yaml", "--ticks", "160")
     run.until("tick ")
     run_dir = run.run_dir
-    shutil.rmtree(run_dir)
+    shutil.rmtree(run_dir.rename(folder / "deleted"))  # at once: the recording in it must not be missed before it
     assert run.wait() == 1
     last = run.text.splitlines()[-8:]
     assert f"counted: broken: the run directory {run_dir} was deleted during the run" in last, run.text
