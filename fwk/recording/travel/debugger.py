@@ -141,6 +141,8 @@ class Travel:
             work(self._begin)
             while self._order.before:  # the search reached the end of the recording
                 self._end_search()
+            if self._order.condition:
+                print(f"fwk: the recording ends without an iteration where {self._order.condition}", flush=True)
         except bdb.BdbQuit:
             return LEFT
         except ComponentFailedError as failure:

@@ -57,7 +57,8 @@ def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
     stopped.ask("n")
     stopped.ask("back")
     assert where(stopped) == (19, 18)
-    stopped.type("c")
+    stopped.type("until self.clock.tick > 999")
+    stopped.child.expect("fwk: the recording ends without an iteration where self.clock.tick > 999")
     stopped.child.expect("equal: ")
     assert stopped.end() == 0
 
