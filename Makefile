@@ -35,10 +35,10 @@ soccer: types  ## Plays five against five; Ctrl-C ends the match
 lint: types  ## Format, lint, types
 	$(BIN)/ruff format --check .
 	$(BIN)/ruff check .
-	$(BIN)/mypy
+	nice $(BIN)/mypy
 	$(BIN)/lint-imports --no-logo
 
-# mypy needs a processor for a minute, so the tests begin beside it.
+# mypy needs a processor for a minute, so the tests begin beside it and go first.
 test:  ## Everything that has to hold before a commit
 	@$(MAKE) --no-print-directory --jobs 2 lint all-tests
 
