@@ -3,15 +3,20 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
 from fwk.clock import US_PER_S
 from fwk.component import program
 from fwk.component.component import Component
+from fwk.component.config import Config
 from fwk.component.declaration import Declaration, declaration
 from fwk.component.images import Ring, VisionMaster
 from fwk.component.port import Port
 from fwk.component.services import ANSWERS
 from fwk.engine.runner import Runner, RunSection
 from fwk.lcm import envelope
+from fwk.model.errors import hint
 from fwk.testing.channel_decisions import ChannelDecisions
 from fwk.testing.plans import alone
 from fwk.testing.ports import OtherOwner, OtherSender, PortBench
@@ -68,7 +73,7 @@ class Bench:
             if port.images
             for channel in channels[port.attribute]
         }
-        config = self.declaration.config(**settings)
+        config = _config(self.declaration, settings)
         section = RunSection(seed, round(period_s * US_PER_S), self.logged.append, self._rings)
         self.runner = Runner(self.declaration, name, config, channels, section)
         self.component: Any = self.runner.component
@@ -182,3 +187,27 @@ def program_bench(
     """Returns a program of a launch file on the bench: `command`, `reads`, `writes`, `serves` and `calls` as there."""
     kind = getattr(program, program.program_class_name(reads or {}, writes or {}, serves or {}, calls or {}))
     return Bench(kind, command=[*command], **settings)
+
+
+def _config(declared: Declaration, settings: Mapping[str, Any]) -> Config:
+    """Returns the settings of the component.
+
+    Raises:
+        ValueError: settings that its class does not have, or values that do not fit.
+    """
+    try:
+        return declared.config(**settings)
+    except ValidationError as error:
+        who = declared.component.__name__
+        mistakes = (_mistake(declared, details) for details in error.errors(include_url=False))
+        raise ValueError("; ".join(f"{who}: {mistake}" for mistake in mistakes)) from None
+
+
+def _mistake(declared: Declaration, details: ErrorDetails) -> str:
+    path = ".".join(map(str, details["loc"]))
+    if details["type"] == "extra_forbidden":
+        return f"no setting '{path}'; {hint(path, declared.config.model_fields)}"
+    if details["type"] == "missing":
+        return f"the setting '{path}' is missing; it has no default"
+    message = details["msg"].removeprefix("Value error, ").replace("Input should", "it should")
+    return f"'{path}' is {details['input']!r}; {message}"

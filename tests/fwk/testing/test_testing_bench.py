@@ -1,8 +1,11 @@
 """The bench gives a component's ports as attributes."""
 
+import re
+from typing import Any
+
 import pytest
 
-from fwk import Component, Each, Reads, Writes
+from fwk import Component, Config, Each, Field, Reads, Writes
 from fwk.testing import Bench
 from lcmtypes.robot import odometry_t
 
@@ -30,3 +33,30 @@ def test_ports_are_attributes() -> None:
 def test_an_unknown_port_is_named() -> None:
     with pytest.raises(AttributeError, match="the component has no port 'bal'; its ports: sighting, robots, ball"):
         _ = Bench(Tracker).bal
+
+
+class PumpConfig(Config):
+    gain: float = Field(0.5, ge=0)
+    rate: int
+
+
+class Pump(Component):
+    stage = "think"
+    config: PumpConfig
+
+
+@pytest.mark.parametrize(
+    ("settings", "mistake"),
+    [
+        ({"gian": 1, "rate": 2}, "Pump: no setting 'gian'; did you mean 'gain'?"),
+        ({"gain": 1}, "Pump: the setting 'rate' is missing; it has no default"),
+        (
+            {"gain": -1, "rate": "x"},
+            "Pump: 'gain' is -1; it should be greater than or equal to 0; "
+            "Pump: 'rate' is 'x'; it should be a valid integer, unable to parse string as an integer",
+        ),
+    ],
+)
+def test_a_setting_that_does_not_fit_is_a_sentence(settings: dict[str, Any], mistake: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(mistake)}$"):
+        Bench(Pump, **settings)
