@@ -1,7 +1,7 @@
 """State that all pages of a console share."""
 
 import asyncio
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -11,7 +11,8 @@ from fwk.web.extensions import Extensions
 from fwk.web.log_tail import LogTails
 from fwk.web.rates import Rates
 from fwk.web.recorded import RecordedRun, RecordedRuns
-from fwk.web.run_link import Runs
+from fwk.web.recorded_link import RecordedLink
+from fwk.web.run_link import RunLink, Runs
 from fwk.web.shared import Shared
 from fwk.web.usage import Figures, Usage
 
@@ -50,6 +51,17 @@ class Console:
             ("usage", run), _USAGE_AGE_S, lambda: asyncio.to_thread(meter.measure, [*pids])
         )
         return found
+
+    def link(self, query: Mapping[str, str], run: str = "", anew: bool = False) -> RunLink | RecordedLink:
+        """Returns the source that an address names: the recording `log` at `tick`, with `anew` as it is now, or a run.
+
+        Raises:
+            LogError: there is no such recording, or it cannot be read.
+        """
+        if name := query.get("log", ""):
+            tick = query.get("tick", "")
+            return RecordedLink(self.recorded(name, anew), name, int(tick) if tick.isdecimal() else 1)
+        return self.runs.link(run or query.get("run", ""))
 
     def recorded(self, name: str, anew: bool = False) -> RecordedRun:
         """Returns the recording in the run directory of that name; with `anew` as it is now.

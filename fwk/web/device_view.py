@@ -22,6 +22,7 @@ class DeviceView(View):
         space = channel.rpartition("/")[0]
         named = [name for view in self._sights for name in view.sees]
         self.channels = [channel, *(f"{space}/{name}" if space else name for name in named)]
+        self.settings = [f"{space}/*.{name}" for view in self._sights for name in view.sight_settings]
         self._channel = channel
 
     def draw(self, newest: Newest, scene: Scene) -> None:

@@ -4,7 +4,9 @@ A browser asks for a drawing after the last drawing was shown, so a sleeping bro
 """
 
 import asyncio
-from fnmatch import fnmatchcase
+from collections.abc import Sequence
+from contextlib import suppress
+from functools import partial
 from typing import Any
 
 import cv2
@@ -16,7 +18,7 @@ from starlette.responses import PlainTextResponse, Response
 
 from fwk.clock import monotonic_us
 from fwk.component.images import Ring
-from fwk.control.client import ControlError
+from fwk.control.client import ControlError, RefusedError
 from fwk.display.graph import graph
 from fwk.display.graph_svg import svg
 from fwk.lcm.event_log import LogError
@@ -25,6 +27,8 @@ from fwk.web.console import Console
 from fwk.web.device_view import DeviceView
 from fwk.web.general_view import GeneralView
 from fwk.web.rates import Rates
+from fwk.web.recorded_link import RecordedLink
+from fwk.web.run_link import RunLink
 from fwk.web.scene import Drawing, Newest, Scene
 from fwk.web.view import View
 
@@ -39,89 +43,73 @@ def add_drawings(app: FastAPI, console: Console) -> None:
     """Adds the addresses `/drawing` and `/image`."""
 
     async def drawing(request: Request) -> Response:
-        run, number, device = (request.query_params.get(key, "") for key in ("run", "view", "device"))
-
-        async def draw() -> Drawing:
-            view = chosen(await views_of(console, run), number, device)
-            newest = await console.runs.link(run).newest(view.channels, view.members)
-            return await asyncio.to_thread(lambda: drawn(view, newest).drawing())
-
+        query = request.query_params
+        number, device = query.get("view", ""), query.get("device", "")
         try:
-            found = await console.shared.get(("drawing", run, number, device), _DRAWING_AGE_S, draw)
-            lags = await console.runs.link(run).lags()
+            link = await asyncio.to_thread(console.link, query)
+
+            async def draw() -> Drawing:
+                view = chosen(await views_of(console, link), number, device)
+                newest = await link.newest(view.channels, view.members)
+                settings = await _settings(link, view.settings)
+                return await asyncio.to_thread(lambda: drawn(view, newest, settings).drawing())
+
+            if link.recorded:
+                return _answer(request, await draw())
+            found = await console.shared.get(("drawing", link.name, number, device), _DRAWING_AGE_S, draw)
+            lags = await link.lags()
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
+        except (LogError, MomentError) as error:
+            return PlainTextResponse(str(error), 404, _NO_STORE)
         return _answer(request, found, _LAG_PERIOD_MS if lags else 0)
 
     async def image(request: Request) -> Response:
-        run, channel, frame = (request.query_params.get(key, "") for key in ("run", "channel", "frame"))
+        channel, frame = (request.query_params.get(key, "") for key in ("channel", "frame"))
         number = int(frame) if frame.isdecimal() else 0
         try:
-            pid = (await console.runs.link(run).about())["pid"]
-            key = ("image", pid, channel, number)
-            data = await console.shared.get(key, _IMAGE_AGE_S, lambda: asyncio.to_thread(_image, pid, channel, number))
+            link = await asyncio.to_thread(console.link, request.query_params)
+            if isinstance(link, RecordedLink):
+                picture = link.run.picture(channel)
+                data = await asyncio.to_thread(_jpeg, picture.pixels()) if picture else None
+            else:
+                pid = (await link.about())["pid"]
+                key = ("image", pid, channel, number)
+                make = partial(asyncio.to_thread, _image, pid, channel, number)
+                data = await console.shared.get(key, _IMAGE_AGE_S, make)
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
+        except LogError as error:
+            return PlainTextResponse(str(error), 404, _NO_STORE)
         if data is None:
             return PlainTextResponse(f"{channel}: no frame", 404, _NO_STORE)
         return Response(data, 200, _NO_STORE, "image/jpeg")
 
     async def graph_svg(request: Request) -> Response:
-        link = console.runs.link(request.query_params.get("run", ""))
         around = request.query_params.get("around", "")
         try:
+            link = await asyncio.to_thread(console.link, request.query_params)
             status, channels = await link.status(), await link.channels()
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
+        except (LogError, MomentError) as error:
+            return PlainTextResponse(str(error), 404, _NO_STORE)
         rates = console.rates.setdefault(status["pid"], Rates()).measure(channels, monotonic_us())
-        rows = [{**row, "rate_hz": rates.get(row["channel"], 0.0)} for row in channels]
+        rows = [{"rate_hz": rates.get(row["channel"], 0.0), **row} for row in channels]
         stages = dict.fromkeys((*status["order"], *(name for each in status["components"] for name in each["stages"])))
         used = [name for name in stages if any(name in each["stages"] for each in status["components"])]
         found = graph(status["plan"], used, status["components"], rows)
         return Response(svg(found.around([around]) if around else found), 200, _NO_STORE, "image/svg+xml")
 
-    async def recorded(request: Request) -> Response:
-        name, number, device, tick = (request.query_params.get(key, "") for key in ("log", "view", "device", "tick"))
-        try:
-            run = console.recorded(name)
-            view = chosen(views_of_recording(console, name), number, device)
-            newest = await asyncio.to_thread(run.newest, int(tick) if tick.isdecimal() else 1)
-        except (LogError, MomentError) as error:
-            return PlainTextResponse(str(error), 404, _NO_STORE)
-        wanted = {channel: value for channel, value in newest.items() if wants(view, channel, value)}
-        return _answer(request, await asyncio.to_thread(lambda: drawn(view, wanted).drawing()))
-
-    async def recorded_image(request: Request) -> Response:
-        try:
-            run = console.recorded(request.query_params.get("log", ""))
-        except LogError as error:
-            return PlainTextResponse(str(error), 404, _NO_STORE)
-        picture = run.picture(request.query_params.get("channel", ""))
-        data = await asyncio.to_thread(_jpeg, picture.pixels()) if picture else None
-        if data is None:
-            return PlainTextResponse("no images of it in this recording", 404, _NO_STORE)
-        return Response(data, 200, _NO_STORE, "image/jpeg")
-
-    app.add_route("/recorded-image", recorded_image)
     app.add_route("/graph.svg", graph_svg)
-    app.add_route("/recorded", recorded)
     app.add_route("/drawing", drawing)
     app.add_route("/image", image)
 
 
-async def views_of(console: Console, run: str) -> list[View]:
-    """Returns the views that are offered for a run: those of projects first."""
-    channels = [row["channel"] for row in await console.runs.link(run).channels()]
+async def views_of(console: Console, link: RunLink | RecordedLink) -> list[View]:
+    """Returns the views that are offered for a run or a recording: those of projects first."""
+    channels = [row["channel"] for row in await link.channels()]
     return [*console.extensions.views_for(channels), GeneralView()]
-
-
-def views_of_recording(console: Console, name: str) -> list[View]:
-    """Returns the views that are offered for a recording.
-
-    Raises:
-        LogError: it cannot be read.
-    """
-    return [*console.extensions.views_for(console.recorded(name).info.channels), GeneralView()]
 
 
 def chosen(views: list[View], number: str, device: str) -> View:
@@ -131,17 +119,20 @@ def chosen(views: list[View], number: str, device: str) -> View:
     return views[int(number) if number.isdecimal() and int(number) < len(views) else 0]
 
 
-def wants(view: View, channel: str, value: Any) -> bool:
-    """Tells whether a view draws a message."""
-    named = any(fnmatchcase(channel, pattern) for pattern in view.channels)
-    return named and {*view.members} <= {*value.__slots__}
+async def _settings(link: RunLink | RecordedLink, patterns: Sequence[str]) -> dict[tuple[str, str], Any]:
+    """Returns the settings that match patterns: value by component and name."""
+    found = {}
+    for each in patterns:
+        with suppress(RefusedError):  # no component has such settings
+            found.update({(row["component"], row["setting"]): row["value"] for row in await link.settings([each])})
+    return found
 
 
-def drawn(view: View, newest: dict[str, Any]) -> Scene:
+def drawn(view: View, newest: dict[str, Any], settings: dict[tuple[str, str], Any] | None = None) -> Scene:
     """Returns the drawing of a view; a view that fails shows its mistake."""
     scene = Scene()
     try:
-        view.draw(Newest(newest), scene)
+        view.draw(Newest(newest, settings), scene)
     except Exception as error:  # of a project's code; the page shows it
         scene = Scene()
         scene.headline = f"{type(view).__name__}: {type(error).__name__}: {error}"

@@ -5,6 +5,7 @@ from typing import Any
 
 from nicegui import background_tasks, ui
 
+from fwk.web.access import Role
 from fwk.web.job import Job
 from fwk.web.layout import Frame
 from fwk.web.lines import Lines
@@ -33,7 +34,7 @@ class JobPanel:
 
     def start(self, words: Sequence[str], then: Callable[[int], Any] | None = None) -> None:
         """Starts a command unless one runs already."""
-        if not self._frame.may_steer:
+        if self._frame.role is not Role.STEER:
             ui.notify("this console is for reading only", type="negative")
             return
         if self._job and self._job.code is None:

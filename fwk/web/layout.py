@@ -11,7 +11,11 @@ from starlette.requests import Request
 from fwk.clock import US_PER_S, monotonic_us
 from fwk.control.client import ControlError
 from fwk.web.access import Role
+from fwk.web.canvas import Canvas
 from fwk.web.console import STATIC, Console
+from fwk.web.recorded_link import RecordedLink
+from fwk.web.run_link import RunLink
+from fwk.web.transport import Transport
 from fwk.web.view import RunAccess
 from fwk.web.words import seconds
 
@@ -30,6 +34,8 @@ PAGES = {
     "/runs": ("Runs", "dns"),
 }
 """Address of a page to its title and icon."""
+OF_RUNS = ("/", "/runs")
+"""Pages that show runs alone, and no recording."""
 SPEEDS = {"": "speed", "0.1": "x 0.1", "0.5": "x 0.5", "1": "x 1", "2": "x 2", "5": "x 5", "0": "max"}
 _REFRESH_S = 0.5
 _LAG_FACTOR = 4
@@ -43,6 +49,11 @@ _OTHER_THEME = f"""() => {{
 }}"""
 
 
+_OTHER_TICK = """{
+    const other = (address) => { const made = new URL(address); made.searchParams.set('tick', %d); return made.href; };
+    history.replaceState(history.state, '', other(location.href));
+    for (const link of document.querySelectorAll('a.fwk-link[href*="log="]')) link.href = other(link.href);
+}"""
 _TELL_HIDDEN = (
     '<script>document.addEventListener("visibilitychange", () => emitEvent("visibility", document.hidden))</script>'
 )
@@ -51,27 +62,65 @@ _TELL_HIDDEN = (
 class Frame:
     """The frame of an open page."""
 
-    def __init__(self, console: Console, request: Request, role: Role, run: str, runs: dict[str, Any]) -> None:
+    def __init__(
+        self, console: Console, request: Request, role: Role, link: RunLink | RecordedLink, runs: dict[str, Any]
+    ) -> None:
         self.console = console
         self.request = request
-        self.link = console.runs.link(run)
+        self.link = link
         self.access = RunAccess(self.link, role)
         self.role = role
-        self.may_steer = role is Role.STEER
+        self.may_steer = self.access.may_steer
         self._runs = runs
         self._hidden = False
         self._lags = False
         self._on_status: list[Callable[[dict[str, Any]], None]] = []
+        self._on_tick: list[Callable[[], Any]] = []
+        self._transport: Transport | None = None
 
     @property
     def run(self) -> str:
-        """Name of the chosen run; empty if none exists."""
+        """Name of the chosen run or recording; empty if no run exists."""
         return self.link.name
 
     def address(self, path: str, **fields: str) -> str:
-        """Returns the address of another page for the same run."""
-        query = {name: value for name, value in {"run": self.run, **fields}.items() if value}
+        """Returns the address of another page for the same run, or for the same tick of the same recording."""
+        own = {} if self.link.recorded and path in OF_RUNS else self._chosen()
+        query = {name: value for name, value in {**own, **fields}.items() if value}
         return f"{path}?{urlencode(query)}" if query else path
+
+    def _chosen(self) -> dict[str, str]:
+        """Returns the parameters of addresses that name the run, or the tick of the recording."""
+        if isinstance(self.link, RecordedLink):
+            return {"log": self.link.name, "tick": str(self.link.tick)}
+        return {"run": self.run}
+
+    def canvas(self, label: str, period_s: float, drags: bool = False, **what: str) -> Canvas:
+        """Makes a canvas that shows a view or a device of the run, or of the recording at the chosen tick.
+
+        Args:
+            label: name for screen readers.
+            period_s: least time from drawing to drawing.
+            drags: whether shapes can be dragged.
+            what: parameter `view` or `device` of the drawings.
+        """
+
+        def addresses() -> tuple[str, str]:
+            return f"/drawing?{urlencode({**self._chosen(), **what})}", f"/image?{urlencode(self._chosen())}"
+
+        url, images = addresses()
+        made = Canvas(url, label, period_s, drags, images)
+        self.on_tick(lambda: made.show(*addresses()))
+        return made
+
+    def on_tick(self, take: Callable[[], Any]) -> None:
+        """Calls a function after another tick of a recording was chosen."""
+        self._on_tick.append(take)
+
+    def go(self, tick: int) -> None:
+        """Chooses a tick of a recording."""
+        if self._transport:
+            self._transport.go(tick)
 
     def on_status(self, take: Callable[[dict[str, Any]], None]) -> None:
         """Calls a function with each new state of the run."""
@@ -137,13 +186,16 @@ class Frame:
                 with ui.link(target=self.address(address)).classes("fwk-link" + (" here" if address == path else "")):
                     ui.icon(icon)
                     ui.label(title)
-            if not self.may_steer:
+            if self.role is Role.READ:
                 ui.label("read only").classes("fwk-reader").props("data-name=read-only")
         menu.on_click(drawer.toggle)
         self._banner = ui.label("").classes("fwk-banner").props("data-name=banner")
         self._banner.set_visibility(False)
         self.every(_REFRESH_S, self._refresh)
         ui.add_body_html(_TELL_HIDDEN)
+        if isinstance(self.link, RecordedLink):
+            with ui.element("div").classes("fwk-transport w-full"):
+                self._transport = Transport(self.link.tick, self.link.last_tick, self._show_tick)
         ui.on("visibility", lambda event: self._show_or_hide(bool(event.args)))
 
     def _build_steering(self) -> None:
@@ -176,6 +228,13 @@ class Frame:
         if run and run != self.run:
             ui.navigate.to(f"{path}?{urlencode({'run': run})}")
 
+    def _show_tick(self, tick: int) -> None:
+        if isinstance(self.link, RecordedLink):
+            self.link.tick = tick
+        for take in self._on_tick:
+            take()
+        ui.run_javascript(_OTHER_TICK % tick)
+
     def _show_or_hide(self, hidden: bool) -> None:
         self._hidden = hidden
 
@@ -185,6 +244,10 @@ class Frame:
                 ui.navigate.reload()
             return
         try:
+            if isinstance(self.link, RecordedLink):
+                self._state.set_text("recording")
+                self._clock.set_text(seconds((await self.link.clock())["time_us"]))
+                return
             about = await (self.link.status() if self._on_status else self.link.status(_STATUS_S))
             status = {**about, **await self.link.clock()}
             self._lags = await self.link.lags()

@@ -2,9 +2,11 @@
 
 import re
 from collections import deque
+from collections.abc import Sequence
 from typing import Any
 
 from fwk.clock import US_PER_S
+from fwk.log_tools.series import Series
 
 POINTS_MAX = 1200
 _FIELD = re.compile(r"\s*([^\s.]+)\.([\w.\[\]]+)\s*", re.ASCII)
@@ -64,3 +66,17 @@ class Curves:
             {"type": "line", "name": name, "showSymbol": False, "data": [list(point) for point in points]}
             for name, points in self._points.items()
         ]
+
+
+def recorded_series(found: Sequence[Series]) -> list[dict[str, Any]]:
+    """Returns series of a log as curves for the chart, thinned to as many points as a live curve has."""
+    return [
+        {"type": "line", "name": each.label, "showSymbol": False, "data": _thinned(each)}
+        for each in found
+        if each.values
+    ]
+
+
+def _thinned(series: Series) -> list[list[float]]:
+    step = -(-len(series.values) // POINTS_MAX)
+    return [[time_s, value] for time_s, value in zip(series.times_s[::step], series.values[::step], strict=True)]

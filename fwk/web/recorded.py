@@ -1,19 +1,23 @@
 """Recordings as pages show them: the newest messages at any tick of a log."""
 
 import threading
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from fwk.lcm.event_log import LogReader
 from fwk.lcm.type_registry import decoded
+from fwk.model.plan import Plan
 from fwk.recording.log_contents import LogInfo
 from fwk.recording.log_info import log_info
 from fwk.recording.pictures import RecordedPicture, picture_of
 from fwk.recording.play.timeline import Timeline
+from fwk.recording.versions import BROKEN, PLAN, read_plan
 
 LOG = "log.lcm"
 _BEGIN_TICKS = 20
 """Channels that are written only at the beginning, such as the measures of a field; known at every tick."""
+_DECODED_MAX = 8
 _BACK_TICKS = 100
 """After a jump, a channel without a message in so many ticks has no value."""
 
@@ -29,10 +33,13 @@ class RecordedRun:
         self.path = folder / LOG
         self.info: LogInfo = log_info(self.path)
         self._timeline = Timeline(self.path)
+        self.plan: Plan | None = self._read_plan()
+        """Plan of the recorded run; None: the log has none that can be read."""
         self._lock = threading.Lock()
         self._tick = 0
         self._newest: dict[str, bytes] = {}
         self._pictures: dict[str, bytes] = {}
+        self._decoded: dict[int, dict[str, Any]] = {}
         self._begin = self._read({}, 0, _BEGIN_TICKS)
 
     @property
@@ -42,6 +49,8 @@ class RecordedRun:
 
     def newest(self, tick: int) -> dict[str, Any]:
         """Returns the newest messages after a tick, decoded, by channel; those of unknown types are left out."""
+        if tick in self._decoded:
+            return self._decoded[tick]
         with self._lock:
             if not self._tick <= tick <= self._tick + _BACK_TICKS:
                 self._newest, self._tick = dict(self._begin), max(0, tick - _BACK_TICKS)
@@ -54,7 +63,21 @@ class RecordedRun:
                 made[channel] = decoded(data)
             except Exception:  # of generated code, or a type that is not known here
                 continue
+        if len(self._decoded) >= _DECODED_MAX:
+            self._decoded = {}
+        self._decoded[tick] = made
         return made
+
+    def time_us(self, tick: int) -> int:
+        """Returns the logical time at which a tick begins."""
+        with self._lock:
+            return self._timeline.of_tick(tick).time_us - self._timeline.zero_us
+
+    def _read_plan(self) -> Plan | None:
+        first, _ = next(self._timeline.events_from(self._timeline.begin))
+        with suppress(*BROKEN):
+            return read_plan(first.data)[0] if first.channel == PLAN else None
+        return None
 
     def picture(self, camera: str) -> RecordedPicture | None:
         """Returns the recorded image of a camera that was read last; None: its images were not recorded."""

@@ -64,6 +64,9 @@ class RunLink:
     dear answers, such as the settings of all components, are asked for more rarely than cheap ones.
     """
 
+    recorded = False
+    """Whether a recording answers."""
+
     def __init__(self, name: str, runs: Runs, shared: Shared) -> None:
         self.name = name
         self._runs = runs

@@ -4,6 +4,7 @@ import json
 import math
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from fnmatch import filter as matching
+from fnmatch import fnmatchcase
 from functools import lru_cache
 from typing import Any, NamedTuple, TypeVar
 from zlib import crc32
@@ -38,10 +39,16 @@ class Drawing(NamedTuple):
 
 
 class Newest:
-    """The newest messages, decoded; called with a channel it returns that message, or None before the first."""
+    """The newest messages, decoded; called with a channel it returns that message, or None before the first.
 
-    def __init__(self, messages: Mapping[str, Any]) -> None:
+    Args:
+        messages: by channel.
+        settings: value by component and dotted name.
+    """
+
+    def __init__(self, messages: Mapping[str, Any], settings: Mapping[tuple[str, str], Any] | None = None) -> None:
         self._messages = messages
+        self._settings = settings or {}
 
     def __call__(self, channel: str) -> Any:
         """Returns the newest message of a channel."""
@@ -50,6 +57,20 @@ class Newest:
     def matching(self, pattern: str) -> dict[str, Any]:
         """Returns the messages of all channels that match a pattern, in the order of their names."""
         return {channel: self._messages[channel] for channel in sorted(matching(self._messages, pattern))}
+
+    def settings(self, components: str, name: str) -> dict[str, Any]:
+        """Returns the settings below `name` of the first component that has them; empty: no component has.
+
+        Args:
+            components: pattern of the names of the components.
+            name: name of the group of settings, such as `mirror`.
+        """
+        found: dict[str, dict[str, Any]] = {}
+        for (component, setting), value in self._settings.items():
+            group, _, rest = setting.partition(".")
+            if group == name and rest and fnmatchcase(component, components):
+                found.setdefault(component, {})[rest] = value
+        return found[min(found)] if found else {}
 
 
 class Scene:

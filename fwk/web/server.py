@@ -1,5 +1,6 @@
 """Serves the console: pages of NiceGUI behind the gate."""
 
+import asyncio
 import socket
 from collections.abc import Callable
 from contextlib import suppress
@@ -13,13 +14,15 @@ from nicegui import app as pages_app
 from nicegui import ui
 from starlette.requests import Request
 
+from fwk.lcm.event_log import LogError
+from fwk.recording.play.timeline import MomentError
 from fwk.web.access import Access, Gate, Role
 from fwk.web.background import give_way
 from fwk.web.console import Console
 from fwk.web.drawings import add_drawings
 from fwk.web.extensions import Extensions
 from fwk.web.job import keep_priority
-from fwk.web.layout import Frame
+from fwk.web.layout import OF_RUNS, Frame
 from fwk.web.log_tail import LogTails
 from fwk.web.pages import board, devices, graph, log, plots, recordings, runs, settings, system, view
 from fwk.web.run_link import Runs
@@ -113,9 +116,15 @@ def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> N
         known = await console.runs.all()
         run = request.query_params.get("run") or console.run or next(iter(known), "")
         role: Role = request.state.role
-        frame = Frame(console, request, role, run, known)
+        try:
+            query = {} if path in OF_RUNS else request.query_params
+            link = await asyncio.to_thread(console.link, query, run, True)
+        except (LogError, MomentError) as error:
+            ui.label(str(error)).classes("q-pa-md text-negative")
+            return
+        frame = Frame(console, request, role, link, known)
         frame.build(path, await _own_pages(console, frame))
-        if run or path in _WITHOUT_RUN:
+        if frame.run or path in _WITHOUT_RUN:
             builder(frame)
         else:
             ui.label(

@@ -13,6 +13,7 @@ from fwk.control.requests import Action
 from fwk.lcm import messages
 from fwk.plan.files.launch_file import host_file, shown
 from fwk.web.access import Role
+from fwk.web.recorded_link import RecordedLink
 from fwk.web.run_link import RunLink
 from fwk.web.scene import Newest, Scene
 
@@ -35,6 +36,10 @@ class View(ABC):
     """Only channels whose type has these members."""
     sees: Sequence[str] = ()
     """Channels beside a camera, without their namespace, whose newest messages `sight` gets."""
+    sight_settings: Sequence[str] = ()
+    """Groups of settings of components beside a camera that `sight` gets, such as its calibration."""
+    settings: Sequence[str] = ()
+    """Patterns `COMPONENT.GROUP` of the settings that `draw` gets."""
     rate_hz = 20.0
     """Highest rate of the drawings in a browser."""
 
@@ -80,9 +85,9 @@ class OpenPage(Protocol):
 class RunAccess:
     """Access of a page to the chosen run: a page always reads, and steers only in the role `STEER`."""
 
-    def __init__(self, link: RunLink, role: Role) -> None:
+    def __init__(self, link: RunLink | RecordedLink, role: Role) -> None:
         self.link = link
-        self.may_steer = role is Role.STEER
+        self.may_steer = role is Role.STEER and not link.recorded
 
     @property
     def name(self) -> str:
@@ -157,7 +162,11 @@ class RunAccess:
 
     def _check(self) -> None:
         if not self.may_steer:
-            raise RefusedError("this console is for reading only; ask for a link that may steer")
+            raise RefusedError(
+                f"{self.link.name} is a recording; branch it on the page Recordings"
+                if self.link.recorded
+                else "this console is for reading only; ask for a link that may steer"
+            )
 
 
 def _encoded(kind: Any, members: Mapping[str, Any], channel: str) -> bytes:

@@ -1,10 +1,10 @@
 """Draws the detections of a robot over the images of its cameras, for the web console.
 
-The calibration is that of the robots in the launch files: the default of the mirror and of the stereo pair.
+The calibration comes from the settings of the components that share it: the cameras and detectors of the robot.
 """
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from procs.vision.stereo_rig import StereoRig
 
 SEES = ("ball_percept", "obstacle_percepts", "line_points", "stereo_obstacles")
 """Channels beside a camera with the detections in its images."""
+CALIBRATION = ("mirror", "rig")
+"""Groups of settings with the calibration of the mirror and of the stereo pair."""
 _BALL = "#ffee58"
 _OBSTACLE = "#ff4081"
 _LINE = "#00e5ff"
@@ -51,9 +53,9 @@ class _StereoLens:
 class _MirrorLens:
     """The omnidirectional camera, whose image is the central square of the frame."""
 
-    def __init__(self, width_px: int, height_px: int) -> None:
+    def __init__(self, calibration: dict[str, Any], width_px: int, height_px: int) -> None:
         size_px = min(width_px, height_px)
-        self.mirror = MirrorConfig(size_px=size_px).mirror()
+        self.mirror = MirrorConfig(**{**calibration, "size_px": size_px}).mirror()
         self.shift_px = np.array(((width_px - size_px) // 2, (height_px - size_px) // 2), np.float64)
 
     def project(self, points_m: Floats) -> Floats:
@@ -68,9 +70,11 @@ def draw_sight(camera: str, newest: Newest, scene: Scene) -> None:
         return
     if name == "stereo_image":
         obstacles: obstacle_percepts_t | None = newest(f"{space}/stereo_obstacles")
-        _draw_obstacles(obstacles, _StereoLens(StereoRig(), frame.width_px), scene)
+        _draw_obstacles(
+            obstacles, _StereoLens(StereoRig(**newest.settings(f"{space}/*", "rig")), frame.width_px), scene
+        )
         return
-    lens = _MirrorLens(frame.width_px, frame.height_px)
+    lens = _MirrorLens(newest.settings(f"{space}/*", "mirror"), frame.width_px, frame.height_px)
     _draw_lines(newest(f"{space}/line_points"), lens, scene)
     _draw_obstacles(newest(f"{space}/obstacle_percepts"), lens, scene)
     _draw_ball(newest(f"{space}/ball_percept"), lens, scene)

@@ -8,7 +8,7 @@ from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import RADIUS_M as BALL_RADIUS_M
 from procs.model.field import SIDES, Field, field_of
 from procs.model.robot import CYAN, MAGENTA, ROBOT, number_of, team_of
-from procs.view.camera_sight import SEES, draw_sight
+from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
 from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
 COLOURS = {CYAN: "#00b0d6", MAGENTA: "#d628aa"}
@@ -29,6 +29,7 @@ class MatchView(View):
     needs = (TRUTH,)
     channels = (TRUTH, MEASURES, GAME_STATE, *(f"*/{name}" for name in MIND))
     sees = SEES
+    sight_settings = CALIBRATION
 
     def draw(self, newest: Newest, scene: Scene) -> None:
         """Draws the newest messages."""

@@ -59,7 +59,9 @@ def build(frame: Frame) -> None:
     async def refresh_list() -> None:
         rows = await link.channels()
         now = rates.measure(rows, monotonic_us())
-        table.rows = [{**row_of(row), "rate": f"{now.get(row['channel'], 0.0):.1f}"} for row in rows]
+        table.rows = [
+            {**row_of(row), "rate": f"{row.get('rate_hz', now.get(row['channel'], 0.0)):.1f}"} for row in rows
+        ]
 
     async def refresh_fields() -> None:
         if not chosen["channel"]:

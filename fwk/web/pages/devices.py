@@ -1,15 +1,14 @@
 """Page of the devices: cameras, lasers, bases and whatever else has an instrument, and a pad to drive with."""
 
 from typing import Any
-from urllib.parse import urlencode
 
 from nicegui import ui
 
-from fwk.web.canvas import Canvas
 from fwk.web.device_view import devices_of
 from fwk.web.driving import Deflection, Stick, Watchman, drives, members_of
 from fwk.web.instruments import CAMERA
 from fwk.web.layout import Frame, body
+from fwk.web.recorded_link import RecordedLink
 from fwk.web.run_link import RunLink
 
 _LIST_S = 2.0
@@ -59,9 +58,8 @@ async def show_device(frame: Frame, channel: str) -> None:
     members = await frame.do(_members(frame.link, channel)) or set()
     ui.label(channel).classes("text-subtitle1").props("data-name=device")
     headline = ui.label("").classes("fwk-value").props("data-name=reading")
-    url = f"/drawing?{urlencode({'run': frame.run, 'device': channel})}"
     period_s = _IMAGE_S if CAMERA.members <= members else _PERIOD_S
-    canvas = Canvas(url, channel, period_s, images=f"/image?{urlencode({'run': frame.run})}")
+    canvas = frame.canvas(channel, period_s, device=channel)
     canvas.classes("fwk-device").props(f'data-name="canvas {channel}"')
     canvas.on_headline(headline.set_text)
     rows = await frame.do(frame.link.channels()) or []
@@ -69,7 +67,7 @@ async def show_device(frame: Frame, channel: str) -> None:
         _pad(frame, channel, members)
 
 
-async def _members(link: RunLink, channel: str) -> set[str]:
+async def _members(link: RunLink | RecordedLink, channel: str) -> set[str]:
     return {*(await link.message_type(channel)).__slots__}
 
 

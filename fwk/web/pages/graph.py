@@ -1,7 +1,5 @@
 """Page of the graph: stages from left to right, channels as curves, states as colours."""
 
-from urllib.parse import urlencode
-
 from nicegui import ui
 
 from fwk.web.layout import Frame, body
@@ -21,7 +19,6 @@ def build(frame: Frame) -> None:
     async def refresh() -> None:
         nonlocal pictures
         pictures += 1
-        query = {"run": frame.run, "around": names.value or "", "n": pictures}
-        image.props["src"] = f"/graph.svg?{urlencode(query)}"
+        image.props["src"] = frame.address("/graph.svg", around=names.value or "", n=str(pictures))
 
     frame.every(_REFRESH_S, refresh)

@@ -3,6 +3,7 @@
 import re
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlencode
 
 from nicegui import ui
 
@@ -12,6 +13,7 @@ from fwk.display.lines import log_line
 from fwk.logs.reader import Filter, from_plain
 from fwk.web.layout import Frame, body
 from fwk.web.lines import Lines
+from fwk.web.recorded_link import RecordedLink
 
 _REFRESH_S = 0.4
 _NUMBER = r"(\d+(?:\.\d+)?)?"
@@ -75,7 +77,9 @@ def build(frame: Frame) -> None:
                 ui.select(list(LEVELS), value="info", label="level").props("dense outlined").props("data-name=level")
             )
             component = ui.input("component or pattern", value=query.get("component", "")).props("data-name=component")
-            ticks = ui.input("ticks A..B", value=query.get("tick", "")).props("data-name=ticks")
+            ticks = ui.input("ticks A..B", value="" if link.recorded else query.get("tick", "")).props(
+                "data-name=ticks"
+            )
             times = ui.input("seconds A..B").props("data-name=times")
             file = ui.input("source file, perhaps :line").props("data-name=file")
             text = ui.input("text (regular expression)").props("data-name=text")
@@ -99,12 +103,14 @@ def build(frame: Frame) -> None:
     for each in (level, *inputs):
         each.on_value_change(again)
 
+    frame.on_tick(again)
+
     async def refresh() -> None:
         nonlocal seen_dir, seen
         run_dir = (await link.about())["run_dir"]
         if run_dir != seen_dir:
             seen_dir = run_dir
-            lines.link_ticks(frame.address("/recordings", log=Path(run_dir).name) + "&tick=")
+            lines.link_ticks(f"/recordings?{urlencode({'log': Path(run_dir).name})}&tick=")
             again()
         try:
             typed = (each.value or "" for each in inputs)
@@ -113,6 +119,7 @@ def build(frame: Frame) -> None:
             mistake.set_text(str(error))
             return
         mistake.set_text("")
+        last = link.tick if isinstance(link, RecordedLink) else _MOST
         found = frame.console.logs.of(run_dir).after(seen)
         if found:
             seen = found[-1][0]
@@ -120,7 +127,7 @@ def build(frame: Frame) -> None:
                 [
                     (number, line["level"], log_line(from_plain(line)), line["tick"])
                     for number, line in found
-                    if wanted.wants(line)
+                    if wanted.wants(line) and line["tick"] <= last
                 ][-2000:]
             )
 

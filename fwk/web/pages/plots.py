@@ -1,9 +1,15 @@
 """Page of the plots: curves of any numeric fields together."""
 
+import asyncio
+
 from nicegui import ui
 
+from fwk.clock import US_PER_S
+from fwk.lcm.event_log import LogError
+from fwk.log_tools.series import series_in
 from fwk.web.layout import Frame, body
-from fwk.web.plotting import Curves, FieldNameError, number_at, parted
+from fwk.web.plotting import Curves, FieldNameError, number_at, parted, recorded_series
+from fwk.web.recorded_link import RecordedLink
 
 _ASK_S = 0.1
 _DRAW_S = 0.5
@@ -13,6 +19,7 @@ def build(frame: Frame) -> None:
     """Makes the page."""
     curves = Curves()
     fields: list[str] = []
+    shown: list[str] = []
     with body():
         asked = frame.request.query_params.get("fields", "")
         chosen = ui.input("fields, such as cyan1/pose.x_m, cyan1/pose.y_m", value=asked)
@@ -44,7 +51,26 @@ def build(frame: Frame) -> None:
         curves.choose(fields)
         chart.options["series"] = []
 
+    async def show_recorded(link: RecordedLink) -> None:
+        """Shows the curves of the whole recording with the chosen tick."""
+        nonlocal shown
+        if shown != fields:
+            shown = [*fields]
+            try:
+                series, _ = await asyncio.to_thread(series_in, link.run.path, shown) if shown else ([], [])
+            except LogError as error:
+                mistake.set_text(str(error))
+                return
+            chart.options["series"] = recorded_series(series)
+        mark_s = (await link.clock())["time_us"] / US_PER_S
+        for each in chart.options["series"][:1]:
+            each["markLine"] = {"symbol": "none", "animation": False, "data": [{"xAxis": mark_s}]}
+        chart.update()
+
     async def ask() -> None:
+        if isinstance(frame.link, RecordedLink):
+            await show_recorded(frame.link)
+            return
         if not fields:
             return
         wanted = {each: parted(each) for each in fields}
@@ -56,11 +82,11 @@ def build(frame: Frame) -> None:
             curves.add(each, header.time_us if header else time_us, number_at(message, field))
 
     async def draw() -> None:
-        if fields:
+        if fields and not frame.link.recorded:
             chart.options["series"] = curves.series()
             chart.update()
 
     chosen.on_value_change(choose)
     choose()
-    frame.every(_ASK_S, ask)
+    frame.every(_DRAW_S if frame.link.recorded else _ASK_S, ask)
     frame.every(_DRAW_S, draw)

@@ -6,11 +6,10 @@ from typing import Any
 
 from nicegui import ui
 
-from fwk.lcm.event_log import LogError
-from fwk.recording.play.timeline import MomentError
-from fwk.web.drawings import views_of_recording
+from fwk.web.drawings import views_of
 from fwk.web.layout import Frame, body
 from fwk.web.pages.player import Player
+from fwk.web.recorded_link import RecordedLink
 from fwk.web.words import size
 
 _COLUMNS = ("run", "ticks", "duration", "seed", "size", "result")
@@ -19,11 +18,11 @@ _LIST_S = 5.0
 
 def build(frame: Frame) -> None:
     """Makes the page."""
-    name = frame.request.query_params.get("log", "")
+    link = frame.link
     with body():
-        if name:
+        if isinstance(link, RecordedLink):
             area = ui.column().classes("w-full gap-1")
-            ui.timer(0.1, lambda: _open(frame, area, name), once=True)
+            ui.timer(0.1, lambda: _open(frame, area, link), once=True)
             return
         columns = [{"name": key, "label": key, "field": key, "sortable": True, "align": "left"} for key in _COLUMNS]
         wanted = ui.input("filter").props("dense outlined clearable").props("data-name=filter")
@@ -53,17 +52,11 @@ def row_of(found: dict[str, Any]) -> dict[str, Any]:
 
 
 def _show(frame: Frame, name: str) -> None:
-    ui.navigate.to(frame.address("/recordings", log=name))
+    ui.navigate.to(frame.address("/recordings", run="", log=name))
 
 
-async def _open(frame: Frame, area: ui.column, name: str) -> None:
-    try:
-        run = await asyncio.to_thread(frame.console.recorded, name, True)
-        views = views_of_recording(frame.console, name)
-    except (LogError, MomentError) as error:
-        with area:
-            ui.label(str(error)).classes("text-negative")
-        return
+async def _open(frame: Frame, area: ui.column, link: RecordedLink) -> None:
+    views = await views_of(frame.console, link)
     others = [Path(each["path"]).name for each in await asyncio.to_thread(frame.console.recordings)]
     with area:
-        Player(frame, run, name, [view.title for view in views], [each for each in others if each != name])
+        Player(frame, link, [view.title for view in views], [each for each in others if each != link.name])

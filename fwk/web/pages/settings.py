@@ -23,7 +23,7 @@ def build(frame: Frame) -> None:
         wanted.props("dense outlined clearable debounce=300").classes("w-full").props("data-name=filter")
         with ui.row().classes("items-center gap-4"):
             different = ui.button("difference to the launch file", icon="difference", on_click=lambda: compare())
-            different.props("dense outline no-caps")
+            different.props("dense outline no-caps").set_visibility(not link.recorded)
             save = ui.switch("keep changes for later runs on this machine")
             save.set_visibility(frame.may_steer)
         with ui.row().classes("w-full items-start no-wrap-md"):

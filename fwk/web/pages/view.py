@@ -1,10 +1,7 @@
 """Page of the views: drawings that projects make of a run, and the images of cameras."""
 
-from urllib.parse import urlencode
-
 from nicegui import ui
 
-from fwk.web.canvas import Canvas
 from fwk.web.drawings import views_of
 from fwk.web.layout import Frame, body
 from fwk.web.pages.devices import show_device
@@ -22,7 +19,7 @@ def build(frame: Frame) -> None:
     async def fill() -> None:
         if area.default_slot.children:
             return
-        views = await views_of(frame.console, frame.run)
+        views = await views_of(frame.console, frame.link)
         asked = frame.request.query_params.get("view", "0")
         number = int(asked) if asked.isdecimal() and int(asked) < len(views) else 0
         with area:
@@ -40,10 +37,10 @@ async def _show(frame: Frame, views: list[View], number: int) -> None:
         headline = ui.label("").classes("text-subtitle1").props("data-name=headline")
         ui.space()
         layers = ui.row().classes("items-center gap-0")
-    url = f"/drawing?{urlencode({'run': frame.run, 'view': number})}"
     drags = frame.may_steer and type(view).moved is not View.moved
     with ui.row().classes("w-full items-start"):
-        canvas = Canvas(url, f"{view.title} of {frame.run}", 1 / view.rate_hz, drags).props("data-name=canvas")
+        canvas = frame.canvas(f"{view.title} of {frame.run}", 1 / view.rate_hz, drags, view=str(number))
+        canvas.props("data-name=canvas")
         chosen = ui.row().classes("w-full items-start")
     hidden: set[str] = set()
 

@@ -322,12 +322,33 @@ def test_recordings_are_shown_tick_by_tick(garden: Garden) -> None:
     expect(page.locator("[data-name=headline]")).to_contain_text("mower <img")
     page.get_by_role("button", name="play").click()
     expect(page.locator("[data-name=tick]")).to_have_text(re.compile(r"tick \d\d"))
+    page.get_by_role("button", name="play").click()
     name = garden.run.run_dir.name
+    page.goto(f"{garden.console.url}/recordings?log={name}&tick=29")
+    page.get_by_role("button", name="one tick on").click()
+    expect(page.locator("[data-name=tick]")).to_have_text("tick 30")
+    page.get_by_role("link", name="Blackboard").click()
+    expect(page.locator("[data-name=tick]")).to_have_text("tick 30")
+    row(page, "a/place").click()
+    x_m = page.locator("[data-name=fields] tr").filter(has_text="x_m")
+    expect(x_m).to_contain_text(f"{2 * math.cos(3.0):.5f}"[:6])
+    page.get_by_role("button", name="one tick back").click()
+    expect(x_m).to_contain_text(f"{2 * math.cos(2.9):.5f}"[:6])
+    page.get_by_role("link", name="Log", exact=True).click()
+    lines = page.locator("[data-name=lines] > div")
+    expect(lines.filter(has_text="grass").first).to_be_visible()
+    assert max(int(each.get_attribute("data-tick") or 0) for each in lines.all()) <= 29
+    page.get_by_role("link", name="Devices").click()
+    row(page, "a/scan").click()
+    expect(page.locator("[data-name=reading]")).to_contain_text("90 beams")
+    expect(page.get_by_role("button", name="pause or resume")).to_have_count(0)
+    graph = page.request.get(f"{garden.console.url}/graph.svg?log={name}&tick=29&around=a/*")
+    assert "a/mower to a/watcher: a/place 10.0 Hz" in graph.text()
     for tick, radius_m in ((1, 2.0), (30, 2.0)):
-        drawing = page.request.get(f"{garden.console.url}/recorded?log={name}&tick={tick}").json()
+        drawing = page.request.get(f"{garden.console.url}/drawing?log={name}&tick={tick}").json()
         circle = next(shape for shape in drawing["shapes"] if shape["k"] == "circle")
         assert circle["x"] == pytest.approx(radius_m * math.cos(0.1 * tick), abs=0.001)
-    assert page.request.get(f"{garden.console.url}/recorded?log=../../etc&tick=1").status == 404
+    assert page.request.get(f"{garden.console.url}/drawing?log=../../etc&tick=1").status == 404
 
 
 def test_an_open_page_outlives_the_run(garden: Garden) -> None:
