@@ -26,6 +26,7 @@ from playwright.sync_api import Page, sync_playwright
 
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
+from fwk.web.background import continue_in_background
 from tools.bench import accounting
 from tools.bench.driver import RunFailedError
 from tools.bench.environments import REPOSITORY
@@ -104,6 +105,7 @@ def main(
     pages: Annotated[str, typer.Option(help="Pages of the console that are open")] = "/view,/",
 ) -> None:
     """Prints the ratios; exit code 1 if the CPU time of a tick grows by more than 5 %."""
+    continue_in_background()  # in a session of its own, whose niceness the terminal does not inherit
     with (
         TemporaryDirectory(prefix="bench-") as home,
         _run(home, launch, speed) as run,
