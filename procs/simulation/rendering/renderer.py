@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from procs.model.algebra import Floats, product
 from procs.model.field import SIDES, Field
@@ -48,7 +49,7 @@ class Renderer:
         self._ground = GroundView(mirror, lay_carpet(field))
         self._posts_m = np.array([post for side in SIDES for post in field.goal_posts(side)])
         self._post_size_m = (field.post_diameter_m / 2, field.goal_height_m)
-        self._seen, self._unseen = _masks(mirror, bodies.robot_radius_m)
+        self._unseen, self._mask = _unseen(mirror, bodies.robot_radius_m)
 
     def render(self, scene: Scene, shake_px: tuple[float, float] = (0.0, 0.0)) -> Picture:
         """Returns the picture, size x size x 3, without noise; equal scenes give equal bytes.
@@ -59,8 +60,7 @@ class Renderer:
         own = scene.own
         frame = self._ground.picture(own.x_m, own.y_m, own.heading_rad, right, down)
         self._draw_upright(frame, scene, np.array((right / 2, down / 2)))
-        cv2.bitwise_and(frame, self._seen, frame)
-        return np.asarray(cv2.bitwise_or(frame, self._unseen, frame), np.uint8)
+        return np.asarray(cv2.copyTo(self._unseen, self._mask, frame), np.uint8)
 
     def _draw_upright(self, frame: Picture, scene: Scene, shift_px: Floats) -> None:
         own, bodies = scene.own, self._bodies
@@ -113,13 +113,13 @@ class Renderer:
 
 
 @lru_cache(maxsize=4)
-def _masks(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, Picture]:
-    """Returns the fixed parts of a frame: the robot's own body, and black outside the mirror; cached."""
+def _unseen(mirror: Mirror, robot_radius_m: float) -> tuple[Picture, NDArray[np.uint8]]:
+    """Returns the fixed part of a frame, the robot's own body and black outside the mirror, and its mask; cached."""
     from_centre_px = np.arange(mirror.size_px) - mirror.centre_px
     radius_px = np.hypot(from_centre_px[:, None], from_centre_px)
     bare = (radius_px >= mirror.radius_px(robot_radius_m)) & (radius_px <= mirror.size_px / 2)
-    seen = np.repeat(np.where(bare, 255, 0).astype(np.uint8)[..., None], 3, axis=2)
-    return seen, np.where(seen > 0, 0, BLACK).astype(np.uint8)
+    black = np.full((*bare.shape, 3), BLACK, np.uint8)
+    return black, np.where(bare, 0, 255).astype(np.uint8)
 
 
 def _seen_from(own: Pose, points_m: Floats) -> Floats:

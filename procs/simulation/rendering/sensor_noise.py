@@ -48,4 +48,5 @@ class SensorNoise:
             return frame
         height, width = frame.shape[:2]
         part = np.s_[top : top + height, left : left + width]
-        return np.asarray(cv2.subtract(cv2.add(frame, self._lighter[part]), self._darker[part]), np.uint8)
+        noisy = cv2.add(frame, self._lighter[part])
+        return np.asarray(cv2.subtract(noisy, self._darker[part], noisy), np.uint8)
