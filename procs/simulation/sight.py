@@ -15,9 +15,12 @@ def hidden(points_m: Floats, bodies_m: Floats, radius_m: float) -> Floats:
     All places are in the frame of the robot that looks. A point on the ray through a body's middle is hidden wholly,
     one that is a radius beside it is not.
     """
-    if not len(points_m) or not len(bodies_m):
-        return np.zeros(len(points_m))
+    if not len(points_m):
+        return np.zeros(0)
     range_m = np.maximum(np.hypot(points_m[:, 0], points_m[:, 1]), 1e-6)
+    bodies_m = bodies_m[np.hypot(bodies_m[:, 0], bodies_m[:, 1]) < range_m.max()]
+    if not len(bodies_m):
+        return np.zeros(len(points_m))
     ahead = points_m / range_m[:, None]
     along_m = product(ahead, bodies_m.T)
     beside_m = np.abs(ahead[:, :1] * bodies_m[:, 1] - ahead[:, 1:] * bodies_m[:, 0])
