@@ -202,6 +202,15 @@ class LogReader:
         with LogBytes(self.path) as log:
             return log.size_bytes
 
+    def check_any(self, events: int) -> None:
+        """Checks after a whole iteration that the file is a log at all.
+
+        Raises:
+            LogError: the iteration found no event, but bytes.
+        """
+        if not events and self.skipped_bytes:
+            raise LogError(f"{self.path}: not an LCM log: no event in {self.skipped_bytes} bytes")
+
     def __iter__(self) -> Iterator[Event]:
         return self.events_from(0)
 

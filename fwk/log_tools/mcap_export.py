@@ -47,6 +47,7 @@ class McapExport:
             LogError: the log cannot be read, or a pattern of the selection matches nothing.
         """
         reader = LogReader(log)
+        number = -1
         for number, (stamp, event) in enumerate(paired(iter(reader))):
             if not number % EVENTS_PER_CALL:
                 progress(reader.position)
@@ -55,6 +56,7 @@ class McapExport:
             if stamp and selection.takes_stamps:
                 self._add(stamp)
             self._add(event)
+        reader.check_any(number + 1)
         self.damaged_bytes = reader.skipped_bytes
         selection.check(str(log))
 

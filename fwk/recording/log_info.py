@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from fwk.lcm.event_log import LogError
 from fwk.lcm.log_parts import is_later_part
 from fwk.lcm.stamped_log import StampedLog
 from fwk.recording.log_contents import ChannelInfo, LogInfo, excerpt_in, note_in
@@ -52,7 +51,6 @@ def _read(reader: StampedLog, progress: Callable[[int], None]) -> LogInfo:
         if not info.events % _EVENTS_PER_CALL:
             progress(reader.position)
     info.size_bytes, info.damaged_bytes = reader.size_bytes, reader.skipped_bytes
-    if info.damaged_bytes and not info.events:
-        raise LogError(f"{reader.path}: not an LCM log: no event in {info.damaged_bytes} bytes")
+    reader.check_any(info.events)
     info.channels = dict(sorted(channels.items()))
     return info
