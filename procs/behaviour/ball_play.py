@@ -28,6 +28,7 @@ _FREE_S = 0.3  # a ball that is lost for longer is set free
 _DRIBBLE_M = 1.0  # then a poorer shot or a pass will do ...
 _RELEASE_M = 1.2  # ... and then the ball must go; the rules allow 3 m, and braking takes its way
 _LONGEST_M = 2.3
+_GENTLE_M_S = 2.2  # arrival of a pass from a set piece, whose receiver has time
 _PUSH_M = 3.0
 _PUSH_M_S = 1.2
 _SLOW_BALL_M_S = 2.5
@@ -41,7 +42,7 @@ _ASIDE_M = 1.2  # way to a place with more room for a shot
 _ASIDE_RAD = (0.0, 0.7, -0.7, 1.3, -1.3)
 _CARRIED_M = 2.3  # way of a dribble
 _BEFORE_GOAL_M = 2.5  # robots with the ball keep that distance from the goal line
-_COMMITTED_S = 1.0  # a kick once begun is carried out in this time, unless its way is blocked
+_COMMITTED_S = 1.6  # a kick once begun is carried out in this time, unless its way is blocked
 
 
 class BallPlay:
@@ -82,6 +83,7 @@ class BallPlay:
         """Returns the order of a set piece's taker: a pass, above all to the mate to which the robot has turned."""
         agreed = [mate for mate in field_players(view) if mate.name == receiver]
         order = self._pass(view, agreed, math.inf, 0.0, receiver)
+        order = order and order._replace(speed_m_s=_GENTLE_M_S)
         for lane_rad in (aim.LANE_RAD, 0.0):
             order = order or self._pass_on(view, math.inf, lane_rad, receiver)
         return order or self._clear(view)
@@ -107,7 +109,7 @@ class BallPlay:
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
-        in_danger = pressed and view.own.place.x_m < _DANGER_M
+        in_danger = pressed and (view.own.place.x_m < _DANGER_M or self._held_s > _PATIENCE_S)
         if order is None and (in_danger or self._held_s > 2 * _PATIENCE_S):
             order = self._clear(view)
         if order is None and (stuck or carried_m > _RELEASE_M):

@@ -144,7 +144,8 @@ class Pass(_Kick):
     """Kicks so that the ball arrives at the place at a speed that a robot can take."""
 
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
-        return ballistics.kick_speed_m_s(distance_m, scene.speed_m_s or _ARRIVAL_M_S)
+        rolls_m = max(0.0, distance_m - 2 * _MOUTH_M)  # from mouth to mouth
+        return ballistics.kick_speed_m_s(rolls_m, scene.speed_m_s or _ARRIVAL_M_S)
 
     def _tolerance_rad(self, _distance_m: float) -> float:
         return 0.05

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from procs.behaviour import ballistics
 from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
 from procs.behaviour.skills.keeping import KeepGoal
@@ -11,7 +12,9 @@ from procs.behaviour.skills.moving import Goto, Mark
 from procs.behaviour.skills.playing import Dribble, Pass, Shoot
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Ball, View
+from procs.model.ball import BALL
 from procs.model.field import Point
+from procs.model.robot import ROBOT
 from tests.procs.behaviour.behaviour_parts import ball, robot, view
 
 OWN = robot("cyan2", 0.0, 0.0)
@@ -169,6 +172,15 @@ def test_kick_before_this_skill_does_not_count_as_its_own() -> None:
 def test_pass_is_softer_the_nearer_the_mate_is() -> None:
     near, far = (Pass().step(scene(view(OWN, ball(0.33, 0.0)), x_m, holds_ball=True)).kick_m_s for x_m in (3.0, 8.0))
     assert 2.5 < near < far < 7.0
+
+
+def test_pass_arrives_at_the_mouth_at_the_wanted_speed() -> None:
+    distance_m, arrival_m_s = 2.7, 2.2
+    kick_m_s = (
+        Pass().step(scene(view(OWN, ball(0.33, 0.0)), distance_m, speed_m_s=arrival_m_s, holds_ball=True)).kick_m_s
+    )
+    rolls_m = distance_m - 2 * ROBOT.held_ball_m(BALL)
+    assert kick_m_s == pytest.approx(ballistics.kick_speed_m_s(rolls_m, arrival_m_s), rel=0.01)
 
 
 def test_aiming_without_end_fails() -> None:

@@ -88,6 +88,11 @@ def test_robot_that_keeps_the_ball_too_long_clears_the_ball() -> None:
     assert decide(with_ball(-2.0, 0.0), holds_ball=True, ticks=140)[:1] == ("shoot",)
 
 
+def test_robot_pressed_for_long_kicks_the_ball_past_its_rival() -> None:
+    contest = with_ball(-2.0, 0.0, robot("", -1.4, 0.0), robot("", -3.0, 2.0))
+    assert decide(contest, holds_ball=True, ticks=90).intention == "clear"
+
+
 def test_shot_once_begun_keeps_its_target() -> None:
     tactics, seen = Tactics(FIELD), with_ball(7.0, 0.0)
     first = tactics.decide(seen, PLAY, job(ATTACKER), True, 0.05)
