@@ -81,18 +81,19 @@ class Agent(Component):
 
     def _command(self, order: Order) -> None:
         place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)
-        if self._is_new(order.skill, place, heading_rad):
+        if self._is_new(order.skill, place, heading_rad, order.speed_m_s):
             command = self.skill.value
             command.skill = order.skill
             command.x_m, command.y_m, command.heading_rad = *place, heading_rad
             command.speed_m_s = order.speed_m_s
             self._call = self.skill.call(expires_s=_EXPIRES_S)
 
-    def _is_new(self, skill: str, place: Point, heading_rad: float) -> bool:
+    def _is_new(self, skill: str, place: Point, heading_rad: float, speed_m_s: float) -> bool:
         command = self.skill.value
         if (
             self._call is None
             or skill != command.skill
+            or speed_m_s != command.speed_m_s
             or math.dist(place, (command.x_m, command.y_m)) > self.config.new_target_m
         ):
             return True
