@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Self
 
-from playwright.sync_api import Browser, Page, Playwright, expect, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, Playwright, expect, sync_playwright
 
 from fwk.host.process import die_with_parent
 from tests.harness.commands import BIN
@@ -63,24 +63,35 @@ class Chromium:
         self._playwright: Playwright = sync_playwright().start()
         self._browser: Browser = self._playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         expect.set_options(timeout=_WAIT_MS)
+        self._looks: dict[tuple[int, int, str], BrowserContext] = {}
         self.outside: list[str] = []
         self.mistakes: list[str] = []
 
-    def open(self, url: str, width_px: int = 1280, height_px: int = 800, scheme: str = "light") -> Page:
-        """Opens a page in a browser of its own, without the cookies of others."""
-        context = self._browser.new_context(
+    def open(
+        self, url: str, width_px: int = 1280, height_px: int = 800, scheme: str = "light", own: bool = False
+    ) -> Page:
+        """Opens a page; pages of one look share cache and cookies, unless the page gets a browser of its `own`."""
+        look = (width_px, height_px, scheme)
+        context = self._looks.get(look) if not own else None
+        if context is None:
+            context = self._new_context(*look)
+            if not own:
+                self._looks[look] = context
+        page = context.new_page()
+        page.set_default_timeout(_WAIT_MS)
+        host = url.split("/")[2]
+        page.on("request", lambda request: self._note(request.url, host))
+        page.on("pageerror", lambda error: self.mistakes.append(str(error)))
+        page.goto(url)
+        return page
+
+    def _new_context(self, width_px: int, height_px: int, scheme: str) -> BrowserContext:
+        return self._browser.new_context(
             viewport={"width": width_px, "height": height_px},
             color_scheme="dark" if scheme == "dark" else "light",
             ignore_https_errors=True,
             reduced_motion="reduce",  # menus that open at once, also on a busy machine
         )
-        page = context.new_page()
-        page.set_default_timeout(_WAIT_MS)
-        own = url.split("/")[2]
-        page.on("request", lambda request: self._note(request.url, own))
-        page.on("pageerror", lambda error: self.mistakes.append(str(error)))
-        page.goto(url)
-        return page
 
     def _note(self, url: str, own: str) -> None:
         if not url.startswith(("data:", "blob:")) and own not in url:
@@ -89,7 +100,11 @@ class Chromium:
     def close_pages(self) -> None:
         """Closes all pages."""
         for context in self._browser.contexts:
-            context.close()
+            if context not in self._looks.values():
+                context.close()
+                continue
+            for page in context.pages:
+                page.close()
 
     def close(self) -> None:
         """Ends the browser."""

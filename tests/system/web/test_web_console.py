@@ -243,7 +243,7 @@ def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:
 def test_two_browsers_see_the_same_and_a_reader_cannot_steer(garden: Garden) -> None:
     reader = Console(garden.folder, "--read-only")
     try:
-        page = garden.browser.open(f"{reader.url}/?run={garden.name}")
+        page = garden.browser.open(f"{reader.url}/?run={garden.name}", own=True)
         expect(page.locator("[data-name=read-only]")).to_be_visible()
         expect(page.get_by_role("button", name="pause or resume")).to_have_count(0)
         expect(page.get_by_role("button", name="stop", exact=True)).to_have_count(0)

@@ -43,11 +43,11 @@ def test_other_addresses_need_tls_and_a_token(garden: Garden, tmp_path: Path) ->
             assert (answer.status, "token" in answer.url) == (200, False)
         with opener.open(f"{base}drawing?run={garden.name}") as answer:
             assert b"shapes" in answer.read()
-        reader = garden.browser.open(f"{links['read']}&run={garden.name}")
+        reader = garden.browser.open(f"{links['read']}&run={garden.name}", own=True)
         expect(reader.locator("[data-name=state]")).to_have_text("running")
         expect(reader.locator("[data-name=read-only]")).to_be_visible()
         expect(reader.get_by_role("button", name="pause or resume")).to_have_count(0)
-        steerer = garden.browser.open(f"{links['steer']}&run={garden.name}")
+        steerer = garden.browser.open(f"{links['steer']}&run={garden.name}", own=True)
         steerer.get_by_role("button", name="pause or resume").click()
         expect(reader.locator("[data-name=state]")).to_have_text("paused")
     finally:
@@ -55,7 +55,7 @@ def test_other_addresses_need_tls_and_a_token(garden: Garden, tmp_path: Path) ->
 
 
 def test_a_browser_that_slept_shows_the_run_again(garden: Garden) -> None:
-    page = garden.open("/view?run=garden")
+    page = garden.open("/view?run=garden", own=True)
     expect(page.locator("[data-name=state]")).to_have_text("running")
     browser = page.context.new_cdp_session(page)
     browser.send("Page.setWebLifecycleState", {"state": "frozen"})
