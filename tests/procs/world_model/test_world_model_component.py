@@ -344,7 +344,7 @@ def test_frames_of_every_second_tick_reach_the_message(parity: int) -> None:
     assert set(ages_us[2:]) == {0}, "messages keep the camera's pace"
 
 
-def test_message_out_of_step_with_the_camera_finds_its_pace_again() -> None:
+def test_message_out_of_step_with_the_camera_finds_its_pace() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for tick in range(20):
         robot.sense(np.array((2.0, 1.0)), [])
