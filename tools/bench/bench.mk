@@ -10,5 +10,5 @@ bench-peers: types
 
 # The benchmark's own message; its code has to be there for mypy and the tests too.
 types: bench-types
-bench-types:
+bench-types: $(READY)
 	.venv/bin/python -P fwk/lcm/typegen.py tools/bench/messages/lcmtypes
