@@ -29,8 +29,8 @@ class Bus:
         self._lcm = lcm.LCM(url)
 
     def play(self, log: Path, *options: str) -> None:
-        """Publishes a log with lcm-logplayer, as fast as recorded: a receiver that pauses loses nothing for 0.2 s."""
-        command = [program("lcm-logplayer"), f"--lcm-url={self.url}", *options, str(log)]
+        """Publishes a log with lcm-logplayer, slower than recorded: a receiver that pauses loses nothing for 0.8 s."""
+        command = [program("lcm-logplayer"), f"--lcm-url={self.url}", "--speed=0.25", *options, str(log)]
         subprocess.run(command, check=True, capture_output=True, timeout=_DEADLINE_S)
 
     def publish_until(self, heard: Callable[[], bool], data: bytes = b"probe", channel: str = PROBE) -> None:

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.system
 
 @pytest.mark.core
 def test_lcm_logger_hears_our_log_from_lcm_logplayer(tmp_path: Path, ports: PortBlock) -> None:
-    bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=40))
+    bus, played = Bus(ports.public_url), write(tmp_path / "played", entries(ticks=20))
     with bus.logger(tmp_path / "heard"):
         bus.play(played)
     assert compare(played, tmp_path / "heard") is None

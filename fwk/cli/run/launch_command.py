@@ -4,7 +4,7 @@ import re
 import shutil
 import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -158,7 +158,7 @@ def launch(
         record_exclude=tuple(record_exclude or ()),
         record_parts={**(record_split or {}), **({"compress": True} if record_compress else {})},
     )
-    with _ending():
+    with _ending(), ExitStack() as held:
         plan = load_plan(file, launch_options, notice)
         _check_names(plan, {"--debug": debug, "--profile": profile})
         _check_video(plan, video)
@@ -169,6 +169,7 @@ def launch(
             plan, lock = on_free_ports(plan)
         else:
             lock = PortLock(Ports.of(plan), plan.file or plan.name, plan.public_url)
+        held.callback(lock.release)
         check_machine(plan)
         run_dir = make_run_dir(name)
         if detach:

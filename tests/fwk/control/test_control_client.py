@@ -6,6 +6,7 @@ import re
 import socket
 import threading
 from collections.abc import Callable, Iterator
+from itertools import count
 
 import pytest
 
@@ -13,6 +14,7 @@ from fwk.clock import monotonic_us
 from fwk.control import address, client
 from fwk.control.client import Client, ControlError, RefusedError
 
+_NUMBERS = count()
 RUNS = {1: {"name": "match", "plan": "soccer", "pid": 11}, 2: {"name": "solo", "plan": "soccer", "pid": 22}}
 
 
@@ -118,7 +120,7 @@ def fake(bound: list[socket.socket]) -> Callable[[bytes], str]:
     def make(sent: bytes) -> str:
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         bound.append(listening)
-        listening.bind(f"\0fwk-control-test-{os.getpid()}-{len(bound)}")
+        listening.bind(f"\0fwk-control-test-{os.getpid()}-{next(_NUMBERS)}")  # a waiting thread keeps a closed one
         listening.listen()
 
         def serve() -> None:

@@ -77,6 +77,8 @@ def test_a_command_is_ended_as_by_ctrl_c() -> None:
 class Run:
     """Stands for the connection to a run."""
 
+    recorded = False
+
     def __init__(self, file: Path, refuses: bool = False) -> None:
         self._file = file
         self._refuses = refuses
