@@ -39,6 +39,12 @@ _PACKAGES = {
 """Program to Debian package, where the names differ."""
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Puts files with slow tests first, so that the workers share short tests at the end."""
+    slow = {item.path for item in items if item.get_closest_marker("slow")}
+    items.sort(key=lambda item: item.path not in slow)
+
+
 @pytest.fixture(autouse=True)
 def _same_environment() -> Iterator[None]:
     """Fails a test that leaves variables behind: commands of later tests would start with them."""
