@@ -80,10 +80,11 @@ class Lives:
                 self._begin(self.plan.components[index], host, incarnation, newest_change)
 
     def stop(self, host: int) -> None:
-        """Asks the lives of a host to leave; they finalize later."""
-        self.leaving[host] = self.running.pop(host, [])
-        for life in self.leaving[host]:
-            life.hold_last_frames()
+        """Asks the lives of a host to leave; they finalize later, unless the host finalized by itself before."""
+        if host in self.running:
+            self.leaving[host] = self.running.pop(host)
+            for life in self.leaving[host]:
+                life.hold_last_frames()
 
     def end(self, host: int) -> None:
         """Ends the lives of a host."""
