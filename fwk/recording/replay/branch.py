@@ -301,6 +301,7 @@ class Branch(Replay):
         elif isinstance(event, ChannelsChanged):
             change = self._changes[event.change]
             if self._follows:
+                self._end_killed(change)
                 self.decisions.check_channels(change)
             opened = [fact.channel for fact in facts_in(change) if fact.channel]
             self._in_envelopes |= {each.name for each in opened if envelope.is_plain(each.type_name)}
@@ -315,6 +316,13 @@ class Branch(Replay):
             for index in self._run_plan.hosts[event.host].components:
                 self._iterations[index] = event.iteration, self._time_us
         super()._take_event(event)
+
+    def _end_killed(self, change: channels_change_t) -> None:
+        """Ends hosts that ended in the run without finalizing: their channels are closed, although they still leave."""
+        gone = [self._run_plan.components[fact.component].host for fact in facts_in(change) if fact.kind == "go"]
+        for host in dict.fromkeys(gone):
+            if host in self._lives.leaving:
+                super()._take_event(HostLost(host))
 
     def _begin_tick(self, tick: int, time_us: int, channels: Sequence[channels_change_t]) -> None:
         if self._follows:
