@@ -193,7 +193,9 @@ class LogReader:
         self.path = path
         self.skipped_bytes = 0
         self.position = 0
-        """End of the newest event of the newest iteration, in bytes from the beginning of the log."""
+        """End of the newest event of the newest iteration, in bytes from the beginning of the log; before the first
+        event the begin of the iteration.
+        """
         LogBytes(path).close()  # raises if it cannot be read
 
     @property
@@ -202,13 +204,13 @@ class LogReader:
         with LogBytes(self.path) as log:
             return log.size_bytes
 
-    def check_any(self, events: int) -> None:
+    def check_any(self) -> None:
         """Checks after a whole iteration that the file is a log at all.
 
         Raises:
             LogError: the iteration found no event, but bytes.
         """
-        if not events and self.skipped_bytes:
+        if self.skipped_bytes and not self.position:
             raise LogError(f"{self.path}: not an LCM log: no event in {self.skipped_bytes} bytes")
 
     def __iter__(self) -> Iterator[Event]:
@@ -216,7 +218,7 @@ class LogReader:
 
     def events_from(self, position: int) -> Iterator[Event]:
         """Yields the events from a byte of the log on, such as a former `position`."""
-        self.skipped_bytes = 0
+        self.skipped_bytes, self.position = 0, position
         with LogBytes(self.path) as log:
             window = _Window(log)
             while position < window.file_bytes:

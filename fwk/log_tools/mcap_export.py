@@ -47,7 +47,6 @@ class McapExport:
             LogError: the log cannot be read, or a pattern of the selection matches nothing.
         """
         reader = LogReader(log)
-        number = -1
         for number, (stamp, event) in enumerate(paired(iter(reader))):
             if not number % EVENTS_PER_CALL:
                 progress(reader.position)
@@ -56,7 +55,7 @@ class McapExport:
             if stamp and selection.takes_stamps:
                 self._add(stamp)
             self._add(event)
-        reader.check_any(number + 1)
+        reader.check_any()
         self.damaged_bytes = reader.skipped_bytes
         selection.check(str(log))
 

@@ -43,7 +43,6 @@ class Messages:
         return self._reader.skipped_bytes
 
     def __iter__(self) -> Iterator[Decoded]:
-        number = -1
         for number, event in enumerate(self._reader):
             if not number % EVENTS_PER_CALL:
                 self._progress(self._reader.position)
@@ -56,7 +55,7 @@ class Messages:
                 continue
             header = Header.of(event.data) if event.in_envelope else None
             yield Decoded(event, types_of(event.data)[0], message, header)
-        self._reader.check_any(number + 1)
+        self._reader.check_any()
         self._selection.check(str(self._reader.path))
 
 

@@ -72,8 +72,7 @@ class Comparison:
         self.skipped_bytes = readers[0].skipped_bytes, readers[1].skipped_bytes
         """Damaged bytes in each log."""
         for reader in readers:
-            if reader.skipped_bytes and reader.skipped_bytes == reader.size_bytes:
-                raise LogError(f"{reader.path}: not an LCM log: no event in {reader.skipped_bytes} bytes")
+            reader.check_any()
         found = [difference for name, channel in self._channels.items() if (difference := channel.end(name))]
         found.sort(key=lambda difference: difference.key)
         self.differences = [replace(difference, names=_names(a, b)) for difference in found]

@@ -51,6 +51,6 @@ def _read(reader: StampedLog, progress: Callable[[int], None]) -> LogInfo:
         if not info.events % _EVENTS_PER_CALL:
             progress(reader.position)
     info.size_bytes, info.damaged_bytes = reader.size_bytes, reader.skipped_bytes
-    reader.check_any(info.events)
+    reader.check_any()
     info.channels = dict(sorted(channels.items()))
     return info
