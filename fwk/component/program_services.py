@@ -9,8 +9,10 @@ from fwk.component.services import WIRE, Request, RequestState, Serves, ServiceE
 from fwk.lcm import messages
 from lcmtypes.core import answer_t
 
-_ANSWERS = {state.value: state for state in (RequestState.DONE, RequestState.ACCEPTED, RequestState.REJECTED)}
-_ANSWERS[RequestState.FAILED.value] = RequestState.FAILED
+_ANSWERS = {
+    state.value: state
+    for state in (RequestState.DONE, RequestState.ACCEPTED, RequestState.REJECTED, RequestState.FAILED)
+}
 _STATES = {wire: state for state, wire in WIRE.items()}
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 from fwk.lcm.event_log import Event, LogReader
@@ -49,10 +50,8 @@ def _described(reader: LogReader, missing: MissingFiles) -> MissingParts:
     after = reader.events_from(missing.position)
     following = next(after, None)
     events = following.number - last - 1 if following else 0
-    ticks = None
-    if following:
-        ticks = _tick(following) or next(filter(None, map(_tick, after)), None)
-    return MissingParts([str(file) for file in missing.files], events, _newest_tick(reversed(before)), ticks)
+    before_tick = _first_tick(chain([following], after)) if following else None
+    return MissingParts([str(file) for file in missing.files], events, _first_tick(reversed(before)), before_tick)
 
 
 def _before(reader: LogReader, begin: int, end: int) -> list[Event]:
@@ -64,9 +63,5 @@ def _before(reader: LogReader, begin: int, end: int) -> list[Event]:
     return found
 
 
-def _newest_tick(events: Iterable[Event]) -> int | None:
-    return next(filter(None, map(_tick, events)), None)
-
-
-def _tick(event: Event) -> int | None:
-    return tick_of(event.channel, event.data)
+def _first_tick(events: Iterable[Event]) -> int | None:
+    return next(filter(None, (tick_of(event.channel, event.data) for event in events)), None)

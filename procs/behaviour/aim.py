@@ -20,7 +20,8 @@ LANE_RAD = 0.12
 _PASS_M_S = 4.3
 _LEAD_S = 0.5  # a mate is assumed to drive on for this time
 _GAIN_1_M = 0.06  # a metre gained is worth as much as this angle of free path in rad
-_TURN_1_RAD = 0.15  # and a radian of turning costs this
+TURN_1_RAD = 0.15
+"""Angle of free path that a radian of turning costs."""
 _ROOM_1_M, _ROOM_M = 0.06, 5.0  # so much is a metre between the receiver and its nearest rival worth, up to so many
 _KEPT_RAD = 0.2  # a receiver is kept unless another is so much better
 
@@ -93,7 +94,7 @@ def best_pass(
             continue
         free_rad = lane_rad(player.place, place, others, ball_m_s=_PASS_M_S)
         turn_rad = abs(wrap_rad(bearing_rad(player.place, place) - player.heading_rad))
-        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - _TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
+        worth = min(free_rad, 0.4) + _GAIN_1_M * gain_m - TURN_1_RAD * turn_rad + _KEPT_RAD * (mate.name == kept)
         worth += _ROOM_1_M * min(_ROOM_M, min((math.dist(place, other.place) for other in others), default=_ROOM_M))
         rank = (free_rad >= (0.0 if mate.name == kept else LANE_RAD), worth)
         if best is None or rank > best[0]:

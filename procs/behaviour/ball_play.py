@@ -35,7 +35,6 @@ _SLOW_BALL_M_S = 2.5
 _CLEARING_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a clearance
 _CLEARED_M = 6.0  # and the way that should be free
 _AIMED_M = 1.5  # a clearance is aimed at a point so near: roughly
-_TURN_1_RAD = 0.15  # a radian of turning costs so much free angle
 _WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)
 _DETOUR_RAD = 0.3  # a radian off the way to the goal costs so much free path
 _ASIDE_M = 1.2  # way to a place with more room for a shot
@@ -214,7 +213,7 @@ class BallPlay:
 
         def worth(way_rad: float) -> float:
             free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), _others(view))
-            return min(0.3, free_rad) - _TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
+            return min(0.3, free_rad) - aim.TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
 
         way_rad = max(_CLEARING_RAD, key=worth)
         return Order("shoot", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")

@@ -34,7 +34,7 @@ WHO: dict[str, Callable[[Launched], int]] = {
 def test_a_stopped_process_in_lockstep_leaves_no_trace(
     launch: Launch, traced: Path, undisturbed: Path, after: Aftermath, stops: list[str]
 ) -> None:
-    """Of the processes stopped one after another, the last lets the run go on for some ticks, or to its end."""
+    """The processes are stopped one after another; when the last one continues, so does the run, perhaps to its end."""
     run = launch(*RUN, "--ticks", str(TICKS))
     run.until_ticks("f/player", 5)
     after.note(run)

@@ -4,11 +4,11 @@ import json
 import os
 import re
 import sys
-from collections.abc import Iterator
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from importlib import import_module
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import pytest
 from typer.testing import CliRunner
@@ -119,17 +119,8 @@ class Queue(Executor):
         return future
 
 
-@pytest.fixture
-def restored_environment() -> Iterator[None]:
-    """Takes back what a cluster of this process sets for its workers: a hash seed, and numbers of threads."""
-    before = dict(os.environ)
-    yield
-    os.environ.clear()
-    os.environ.update(before)
-
-
 @pytest.mark.slow
-@pytest.mark.usefixtures("restored_environment")
+@patch.dict(os.environ)  # a cluster of this process sets variables for its workers
 def test_two_dask_workers_play_the_seeds(launch: Path) -> None:
     distributed: Any = import_module("distributed")
     with distributed.Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
