@@ -24,7 +24,6 @@ class Config(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid",
-        use_attribute_docstrings=True,
         validate_assignment=True,
         validate_default=True,
         allow_inf_nan=False,

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 
 from fwk.component.config import Config
 from fwk.component.declaration import declaration
+from fwk.component.meanings import meanings_of
 from fwk.control.requests import RequestError
 from fwk.model.errors import PlanError, Problems
 from fwk.model.plan import ComponentPlan, Plan
@@ -201,7 +202,7 @@ def _field(kind: Any, key: str) -> tuple[Any, str, bool]:
     """Returns type and meaning of a field of settings, or of a dataclass in them, and whether it is fixed."""
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
-        return found.annotation, found.description or "", bool(found.frozen)
-    if dataclasses.is_dataclass(kind):
-        return get_type_hints(kind).get(key), "", False
+        return found.annotation, found.description or meanings_of(kind).get(key, ""), bool(found.frozen)
+    if isinstance(kind, type) and dataclasses.is_dataclass(kind):
+        return get_type_hints(kind).get(key), meanings_of(kind).get(key, ""), False
     return None, "", False

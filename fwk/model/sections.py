@@ -11,7 +11,7 @@ RestartWhen = Literal["never", "on-failure", "always"]
 TargetLevel = Literal["debug", "info", "warning", "error", "off"]
 """Lowest level of the lines that a target takes; `off`: none."""
 
-_CONFIG: Any = {"extra": "forbid", "use_attribute_docstrings": True, "allow_inf_nan": False}
+_CONFIG: Any = {"extra": "forbid", "allow_inf_nan": False}
 
 
 @dataclass(frozen=True)

@@ -60,6 +60,8 @@ class LaunchOptions:
     """Patterns of the channels that are not recorded."""
     record_parts: Mapping[str, float] = field(default_factory=dict)
     """Parts of the recording: `split_mb` or `split_s`, and `compress`; what is missing is as in the launch file."""
+    run_only: bool = False
+    """Whether `video` and `evaluation`, functions that a run does not call, are taken unchecked, for a quick start."""
 
 
 def load_plan(file: str, options: LaunchOptions = LaunchOptions(), notice: Callable[[str], None] | None = None) -> Plan:
@@ -173,12 +175,17 @@ class _Loading:
             "loop_time_warnings": last(files, "loop_time_warnings", True),
             "public_url": public_url_of(files, problems, options.bus_port),
             "scoreboard": function_of(files, "scoreboard", self.folders, problems),
-            "video": function_of(files, "video", self.folders, problems),
-            "evaluation": function_of(files, "evaluation", self.folders, problems),
+            "video": self._function("video"),
+            "evaluation": self._function("evaluation"),
             "log": log_of(files, problems),
             "runs": runs_of(files),
             **bus_port,
         }
+
+    def _function(self, key: str) -> str:
+        if self.options.run_only:
+            return str(last(self.files, key, ""))
+        return function_of(self.files, key, self.folders, self.problems)
 
     def _check_ports(self, plan: Plan) -> None:
         end = Ports.of(plan).end

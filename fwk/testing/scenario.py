@@ -12,7 +12,7 @@ from fwk.testing.expression import Expression, Words
 class Expectations(BaseModel):
     """Conditions of a scenario; the texts are those of `Expression`."""
 
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid")
 
     eventually: list[str] = []
     """Each must hold at some time."""

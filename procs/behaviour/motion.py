@@ -30,7 +30,7 @@ STANDSTILL = Velocity(0.0, 0.0, 0.0)
 class Limits(BaseModel):
     """Limits and gains of the motion."""
 
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid")
 
     speed_m_s: PositiveFloat = 3.0
     """Highest speed."""

@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, PositiveFloat
 class BallModel(BaseModel):
     """Size, mass and friction; simulator, vision, world model and behaviour use the same."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     radius_m: PositiveFloat = 0.11
     """Radius in metres. Rule book of 2016: a circumference of 0.68 to 0.70 m."""

@@ -39,7 +39,7 @@ class Arc(NamedTuple):
 class Field(BaseModel):
     """Measures of the field, and the geometry that follows from them; all in metres."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     length_m: float = 22.0
     """Length A of the field along x, over the outer edges of the goal lines, in metres."""

@@ -19,7 +19,7 @@ _NAME = re.compile(r"(.*?)(\d*)")
 class RobotModel(BaseModel):
     """A round robot on three omnidirectional wheels with a flat mouth in front; all robots of a match are equal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     radius_m: PositiveFloat = 0.25
     """Radius of the round body, in metres. Rule book of 2016: a footprint of 0.30 to 0.52 m."""
@@ -52,7 +52,7 @@ RADIUS_M = ROBOT.radius_m
 class Player(BaseModel):
     """A robot's place in the match."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     team: Literal["cyan", "magenta"]
     """Cyan defends the goal at negative x."""

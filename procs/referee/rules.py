@@ -12,7 +12,7 @@ from procs.model.field import Field as SoccerField
 class Rules(BaseModel):
     """Times and limits of a match."""
 
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid")
 
     automatic: bool = True
     """The referee decides by itself; false: it only carries out commands, of a person or a RefBox."""

@@ -11,7 +11,7 @@ from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
 class Action(BaseModel):
     """Action of the crew; exactly one of the three is given."""
 
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid")
 
     at_s: NonNegativeFloat = 0.0
     """Logical time, from the beginning of the run."""

@@ -8,7 +8,7 @@ from procs.model.realism import Realism
 class CameraErrors(BaseModel):
     """Errors of a camera with its mirror. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     latency_s: float = 0.0
     """From the exposure until the frame is published. ER-Force: 35 ms, MRA: 25 ms."""

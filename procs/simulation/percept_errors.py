@@ -12,7 +12,7 @@ from procs.model.realism import Realism
 class PerceptErrors(BaseModel):
     """Errors of percepts. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     latency_s: float = 0.0
     """From the exposure until the percepts are published. ER-Force: 35 ms, MRA: 25 ms."""

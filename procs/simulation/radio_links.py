@@ -18,7 +18,7 @@ _BURST_S = 0.2  # the channel makes up for idle time of that length
 class RadioSettings(BaseModel):
     """Quality of the radio. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     loss: float = 0.0
     """Probability that a message does not arrive, for each receiver on its own. ER-Force: 3 % of the commands."""

@@ -157,6 +157,7 @@ def launch(
         record_channels=tuple(record_channels or ()),
         record_exclude=tuple(record_exclude or ()),
         record_parts={**(record_split or {}), **({"compress": True} if record_compress else {})},
+        run_only=video is None,
     )
     with _ending(), ExitStack() as held:
         plan = load_plan(file, launch_options, notice)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from fwk.component.declaration import Declaration
+from fwk.component.meanings import DocumentedSchema
 from fwk.model.errors import Problems
 from fwk.plan.classes import UnusableError, components_in, find_class, imported
 from fwk.plan.files.folders import folders_of, join
@@ -64,7 +65,7 @@ def schema_of_component(use: str) -> Schema:
     join(folders, problems)
     problems.stop_if_any()
     found = find_class(use, folders)
-    return {"$schema": _DIALECT, "title": use, **found.config.model_json_schema()}
+    return {"$schema": _DIALECT, "title": use, **found.config.model_json_schema(schema_generator=DocumentedSchema)}
 
 
 def _uses(files: Files) -> Iterable[str]:
@@ -114,7 +115,7 @@ def _class(use: str, folders: Sequence[str]) -> Declaration | None:
 class _Made:
     def __init__(self, classes: Mapping[str, Declaration], asked: Sequence[Asked], host_specific: bool) -> None:
         model = HostFile if host_specific else LaunchFile
-        self.schema: Schema = {"$schema": _DIALECT, **model.model_json_schema()}
+        self.schema: Schema = {"$schema": _DIALECT, **model.model_json_schema(schema_generator=DocumentedSchema)}
         self._defs: Schema = self.schema.setdefault("$defs", {})
         self._settings = {use: self._settings_of(use, found) for use, found in sorted(classes.items())}
         self._asked = asked
@@ -126,7 +127,7 @@ class _Made:
 
     def _settings_of(self, use: str, found: Declaration) -> Schema:
         """Adds the settings of a class to the definitions; returns a reference to them."""
-        made = found.config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}")
+        made = found.config.model_json_schema(ref_template=f"{_REF}{use}.{{model}}", schema_generator=DocumentedSchema)
         self._defs |= {f"{use}.{name}": _partial(below) for name, below in made.pop("$defs", {}).items()}
         self._defs[use] = _partial(made)
         return {"$ref": f"{_REF}{use}"}

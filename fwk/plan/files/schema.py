@@ -46,7 +46,7 @@ SettingsByComponent = dict[str, dict[str, Any]]
 
 
 class _Entry(BaseModel):
-    model_config = ConfigDict(extra="forbid", use_attribute_docstrings=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", allow_inf_nan=False)
 
 
 def _use_or_command(schema: dict[str, Any]) -> None:

@@ -14,7 +14,7 @@ from procs.model.realism import Realism
 class Noise(BaseModel):
     """Errors and delays of actuators and sensors; `_sd` is a standard deviation. 0: ideal."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, use_attribute_docstrings=True)
+    model_config = ConfigDict(extra="forbid", frozen=True)
 
     drive_delay_s: float = 0.0
     """From the arrival of a wheel command until the motors follow it. CAMBADA: 140 ms, Tribots: 200 ms for the loop."""

@@ -56,6 +56,16 @@ def test_missing_keys_have_defaults(load: Load, folder: Path) -> None:
     assert set(wheels.origins.values()) == {"default"}
 
 
+def test_a_run_imports_only_what_it_uses(folder: Path) -> None:
+    (folder / "heavy.py").write_text("def seen() -> None: ...")
+    (folder / "it.yaml").write_text(f"evaluation: heavy:seen\nvideo: heavy:nothing{DRIVING}")
+    plan = load_plan(str(folder / "it.yaml"), LaunchOptions(run_only=True))
+    assert (plan.evaluation, plan.video, "heavy" in sys.modules) == ("heavy:seen", "heavy:nothing", False)
+    with pytest.raises(PlanError, match="video: module 'heavy' has no 'nothing'"):
+        load_plan(str(folder / "it.yaml"))
+    sys.modules.pop("heavy", None)
+
+
 def test_keys_of_a_file_describe_the_run(load: Load) -> None:
     plan = load(
         "name: other\nperiod_s: 0.01\nclock: wall\nspeed: max\nseed: 9\nstage_time_s: 0.002\n"
