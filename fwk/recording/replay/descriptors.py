@@ -83,11 +83,11 @@ def _reached(number: int, own_terminals: set[str]) -> str:
 
 
 def _connection(number: int) -> str:
-    """Describes a socket that has an address or speaks to hardware; empty: it is one within the machine."""
+    """Describes a socket of the network or of hardware; empty: it is one within the machine."""
     with socket.socket(fileno=os.dup(number)) as copy:
         if copy.family in (socket.AF_UNIX, socket.AF_NETLINK):
             return ""
         if copy.family in (socket.AF_INET, socket.AF_INET6):
             address, port, *_ = copy.getsockname()
-            return f"a connection at {address}:{port}" if port else ""
+            return f"a connection at {address}:{port}" if port else "a socket of the network"
         return f"a socket of family {copy.family}"

@@ -6,28 +6,16 @@ import threading
 import weakref
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import cache
+from importlib import import_module
 from typing import Any, NoReturn
 
-from fwk.recording.replay.descriptors import Descriptors, is_device, is_harmless
+from fwk.recording.replay.attempts import LCM_EVENT, Attempts
+from fwk.recording.replay.descriptors import Descriptors
 
-_PROGRAMS = (
-    "subprocess.Popen",
-    "os.system",
-    "os.exec",
-    "os.posix_spawn",
-    "os.spawn",
-    "os.fork",
-    "os.forkpty",
-    "pty.spawn",
-)
-_SIGNALS = ("os.kill", "os.killpg")
-_NETWORK = ("socket.connect", "socket.bind", "socket.sendto", "socket.sendmsg")
-_MACHINE = ("/sys/", "/proc/")
 _ATTEMPTS_MAX = 10
 """Number of equal attempts in one iteration after which a component counts as one that never stops trying."""
-_LOOKUPS = ("ctypes.util", "platform")
-"""Modules of Python that start programs to examine the machine, for libraries that are being imported."""
 
 
 class ReachesOutsideError(BaseException):
@@ -38,7 +26,7 @@ class Guard:
     """Refuses access of components to the world outside: while it watches them, and in the threads that they start.
 
     It observes files, sockets and programs through Python's audit events, before anything is opened. A library in C
-    opens a device without Python; the guard notices that as soon as the call that opened it returns.
+    opens a device or a socket without Python; the guard notices that as soon as the call that opened it returns.
     """
 
     def __init__(self) -> None:
@@ -52,6 +40,7 @@ class Guard:
         self._elsewhere = False  # a watched component started a thread
         self._installed = False
         self._descriptors = Descriptors()
+        self._events = Attempts()
 
     @contextmanager
     def watching(self, component: str) -> Iterator[None]:
@@ -62,6 +51,7 @@ class Guard:
         """
         if not self._installed:
             self._installed = True
+            _let_lcm_be_heard()
             sys.addaudithook(self._hear)
         self._check(component)
         self._descriptors.note()
@@ -91,7 +81,7 @@ class Guard:
             return
         own = threading.get_ident() == self._thread
         component = self._watched if own else self._threads.get(threading.current_thread(), self._watched)
-        if not component or not (tried := _attempt(event, arguments)):
+        if not component or not (tried := self._events.described(event, arguments)):
             return
         self.refused[component] = tried
         if own:
@@ -113,37 +103,15 @@ def _end_replay(component: str, tried: str) -> NoReturn:
     os._exit(2)
 
 
-def _attempt(event: str, arguments: tuple[Any, ...]) -> str:
-    """Describes the access to the outside; empty: there is none."""
-    if event == "open":
-        return _opening(arguments[0], arguments[2])
-    if event in _PROGRAMS:
-        return "" if _asks_about_the_machine() else "it starts a program"
-    if event in _SIGNALS:
-        return "it sends a signal"
-    return "it uses the network" if event in _NETWORK else ""
+@cache
+def _let_lcm_be_heard() -> None:
+    """Lets the client of the LCM library, which opens and uses its sockets in C, raise an audit event."""
+    with suppress(ImportError):
+        library = import_module("lcm")
 
+        class HeardLCM(library.LCM):  # type: ignore[misc]
+            def __new__(cls, *arguments: Any, **named: Any) -> Any:
+                sys.audit(LCM_EVENT)
+                return super().__new__(cls, *arguments, **named)
 
-def _opening(path: Any, flags: int) -> str:
-    """Describes the opening of a device or of a setting of the machine; empty: the file is another one."""
-    if not isinstance(path, str | bytes | os.PathLike):  # a descriptor that is open already
-        return ""
-    name = os.fsdecode(path)
-    if is_harmless(name):
-        return ""
-    if flags & (os.O_WRONLY | os.O_RDWR) and os.path.realpath(name).startswith(_MACHINE):
-        return f"it writes {name}"
-    try:
-        mode = os.stat(name).st_mode
-    except (OSError, ValueError):
-        return f"it opens {name}" if name.startswith("/dev/") else ""
-    return f"it opens {name}" if is_device(mode) else ""
-
-
-def _asks_about_the_machine() -> bool:
-    frame = sys._getframe()
-    while frame.f_back is not None:
-        frame = frame.f_back
-        if frame.f_globals.get("__name__") in _LOOKUPS:
-            return True
-    return False
+        library.LCM = HeardLCM  # type: ignore[attr-defined]

@@ -116,8 +116,7 @@ class Lives:
 
     def leave_out(self, component: ComponentPlan, reason: str) -> None:
         """Ends a component that a replay must not run; its recorded messages replace it."""
-        said = f"{reason}, which would reach the real world; declare 'reaches_outside' in its class"
-        self.left_out[component.name] = said
+        self.left_out[component.name] = f"{reason}, which would reach the real world"
         self.chosen.discard(component.index)
         for lives in (*self.running.values(), *self.leaving.values()):
             for life in [life for life in lives if life.plan.index == component.index]:
