@@ -127,7 +127,7 @@ def test_guard_refuses_access_to_the_outside(attempt: Callable[[], object], reas
 @pytest.mark.parametrize(
     ("attempt", "reason"),
     [
-        (lambda: Path("board").open("a"), "writes board"),
+        (lambda: Path("board").open("a").close(), "writes board"),
         (lambda: os.open("kept", os.O_RDWR), "writes kept"),
         (lambda: Path("board").write_text("1"), "writes board"),
         (lambda: Path("kept").unlink(), "removes kept"),
