@@ -16,7 +16,8 @@ _CHUNK = 1 << 20
 class RotatingFile:
     """Appends whole lines. A full file `log` becomes `log.1`, that `log.2`; of more than `files` the oldest is removed.
 
-    While the disk is full, lines are left out; `report` gets a text when that begins and when it ends.
+    While the disk is full, lines are left out; `report` gets a text when that begins and when it ends. A deleted file
+    is begun again, and reported.
     """
 
     def __init__(self, path: Path, max_bytes: int, files: int, report: Callable[[str], None]) -> None:
@@ -53,6 +54,9 @@ class RotatingFile:
             self._descriptor = -1
 
     def _append(self, data: bytes) -> None:
+        if self._descriptor >= 0 and not os.fstat(self._descriptor).st_nlink:
+            self.close()
+            self._report(f"{self._path}: was deleted; a new file begins here, the lines before are lost")
         if self._descriptor < 0:
             self._open()
         if self._bytes and self._bytes + len(data) > self._max_bytes:

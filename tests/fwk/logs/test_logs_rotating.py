@@ -46,6 +46,17 @@ def test_an_existing_log_is_continued(tmp_path: Path) -> None:
     assert len(list(read_rotating(written(tmp_path, 2)))) == 5
 
 
+def test_a_deleted_log_is_reported_and_begun_again(tmp_path: Path) -> None:
+    said: list[str] = []
+    log = RotatingFile(tmp_path / "log", 1000, 2, said.append)
+    log.write("before")
+    (tmp_path / "log").unlink()
+    for line in ("after", "later"):
+        log.write(line)
+    assert (tmp_path / "log").read_text() == "after\nlater\n"
+    assert said == [f"{tmp_path / 'log'}: was deleted; a new file begins here, the lines before are lost"]
+
+
 def test_a_follower_misses_nothing_during_rotation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(rotating, "sleep_s", lambda _: None)
     log = RotatingFile(tmp_path / "log", 100, 4, pytest.fail)
