@@ -50,7 +50,6 @@ class TimeSource:
 
     def __init__(self) -> None:
         self._next_us = -1
-        self._was_right = False
         self._wrong = 0
         self._silent = 0
 
@@ -72,18 +71,18 @@ class TimeSource:
     def _mistake(self, now_us: int) -> str:
         """Returns the mistake in `next_us` after an iteration at `now_us`, to be logged; mostly empty.
 
-        A time that is not after `now_us` is reported the 1st, 10th, 100th time; a time that is never set is reported
-        once, after some iterations.
+        A time that is not after `now_us` is reported the 1st, 10th, 100th time; a time that is not set is reported
+        after some iterations in a row.
         """
         if self._next_us > now_us:
-            self._was_right = True
+            self._silent = 0
         elif self._next_us >= 0:
             self._wrong += 1
             if str(self._wrong).strip("0") == "1":
                 so_often = f" ({self._wrong} times so far)" if self._wrong > 1 else ""
                 said = f"next_us = {self._next_us} is not after this tick's time, {now_us} us"
                 return f"time source: {said}; time advances by the period instead{so_often}"
-        elif not self._was_right:
+        else:
             self._silent += 1
             if self._silent == _SILENT_ITERATIONS:
                 return f"time source: next_us was not set in {self._silent} iterations; time advances by the period"

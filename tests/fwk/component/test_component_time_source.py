@@ -12,6 +12,8 @@ class SunConfig(Config):
     step_us: int = 10_000
     """From the time of the tick; 0 or less: not after it."""
     silent: bool = False
+    until_tick: int = 1000
+    """Last tick in which the time is set."""
 
 
 class Sun(Component):
@@ -21,7 +23,7 @@ class Sun(Component):
     time_source: TimeSource
 
     def loop(self) -> None:
-        if not self.config.silent:
+        if not self.config.silent and self.clock.tick <= self.config.until_tick:
             self.time_source.next_us = max(0, self.clock.now_us + self.config.step_us)
 
 
@@ -45,3 +47,7 @@ def test_time_set_backwards_is_reported_repeatedly() -> None:
 
 def test_a_time_source_that_never_sets_time_is_reported_once() -> None:
     assert logged(50, silent=True) == ["time source: next_us was not set in 20 iterations; time advances by the period"]
+
+
+def test_a_time_source_that_stops_setting_time_is_reported_once() -> None:
+    assert logged(50, until_tick=5) == ["time source: next_us was not set in 20 iterations; time advances by the period"]
