@@ -107,11 +107,12 @@ def _end_replay(component: str, tried: str) -> NoReturn:
 def _let_lcm_be_heard() -> None:
     """Lets the client of the LCM library, which opens and uses its sockets in C, raise an audit event."""
     with suppress(ImportError):
-        library = import_module("lcm")
+        library: Any = import_module("lcm")
+        client: Any = library.LCM
 
-        class HeardLCM(library.LCM):  # type: ignore[misc]
+        class HeardLCM(client):  # type: ignore[misc]
             def __new__(cls, *arguments: Any, **named: Any) -> Any:
                 sys.audit(LCM_EVENT)
                 return super().__new__(cls, *arguments, **named)
 
-        library.LCM = HeardLCM  # type: ignore[attr-defined]
+        library.LCM = HeardLCM
