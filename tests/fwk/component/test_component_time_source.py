@@ -50,4 +50,6 @@ def test_a_time_source_that_never_sets_time_is_reported_once() -> None:
 
 
 def test_a_time_source_that_stops_setting_time_is_reported_once() -> None:
-    assert logged(50, until_tick=5) == ["time source: next_us was not set in 20 iterations; time advances by the period"]
+    assert logged(50, until_tick=5) == [
+        "time source: next_us was not set in 20 iterations; time advances by the period"
+    ]
