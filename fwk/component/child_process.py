@@ -78,12 +78,13 @@ class ChildProcess:
         os.set_blocking(self._in, False)
         self._ended = os.pidfd_open(self.pid)
 
-    def exchange(self, request: bytes, length_of: Callable[[bytearray], int], timeout_s: float | None) -> bytes:
+    def exchange(self, request: bytes, length_of: Callable[[bytearray, int], int], timeout_s: float | None) -> bytes:
         """Sends a request and waits for the whole answer.
 
         Args:
             request: bytes for the program's standard input.
-            length_of: returns the length of the answer that begins with the given bytes; 0: not known yet.
+            length_of: returns the length of the answer that begins with the given bytes; 0: not known yet. Its
+                second argument is the number of bytes that it was asked about before.
             timeout_s: wall time after which the program has failed; None: no limit.
 
         Raises:
@@ -95,7 +96,7 @@ class ChildProcess:
             self.kill()
             raise
 
-    def _exchange(self, request: bytes, length_of: Callable[[bytearray], int], timeout_s: float | None) -> bytes:
+    def _exchange(self, request: bytes, length_of: Callable[[bytearray, int], int], timeout_s: float | None) -> bytes:
         until_us = None if timeout_s is None else monotonic_us() + round(timeout_s * US_PER_S)
         left, answer, length = memoryview(request), bytearray(), 0
         while left or not length or len(answer) < length:
@@ -110,7 +111,7 @@ class ChildProcess:
                     raise ProgramError(f"'{self.command}' {self._end()}") from None
             if self._out in readable and (piece := os.read(self._out, _PIECE)):
                 answer += piece
-                length = length or length_of(answer)
+                length = length or length_of(answer, len(answer) - len(piece))
                 if max(length, len(answer)) > ANSWER_BYTES_MAX:
                     raise ProgramError(f"'{self.command}' answers with more than {ANSWER_BYTES_MAX >> 20} MiB")
             elif readable and not left:

@@ -26,7 +26,7 @@ class FileProcess:
         self._words = find_words(command)
         self._folder = Path(tempfile.mkdtemp(prefix="fwk-program-"))
 
-    def exchange(self, request: bytes, _length_of: Callable[[bytearray], int], timeout_s: float | None) -> bytes:
+    def exchange(self, request: bytes, _length_of: Callable[[bytearray, int], int], timeout_s: float | None) -> bytes:
         """Writes the request to the input file, runs the program, and returns its output file.
 
         Args:

@@ -43,8 +43,8 @@ class Coding(Protocol):
     def request(self, asked: ProgramRequest) -> bytes:
         """Returns a request as bytes."""
 
-    def length_of(self, begun: bytearray) -> int:
-        """Returns the length of an answer; 0 if it is not known yet."""
+    def length_of(self, begun: bytearray, searched: int) -> int:
+        """Returns the length of an answer; 0 if it is not known yet, as it was not in the first `searched` bytes."""
 
     def answer(self, data: bytes, writers: Mapping[str, Writes[Any] | ServicePort]) -> list[tuple[str, Any]]:
         """Returns the messages of an answer, each with its port.
@@ -67,9 +67,9 @@ class JsonLines:
         told["inputs"] = {port: fresh for port, fresh in inputs.items() if fresh}
         return json.dumps(told, default=list).encode() + b"\n"
 
-    def length_of(self, begun: bytearray) -> int:
-        """Returns the length up to the first line end."""
-        return begun.find(b"\n") + 1
+    def length_of(self, begun: bytearray, searched: int) -> int:
+        """Returns the length up to the first line end, which does not lie in the first `searched` bytes."""
+        return begun.find(b"\n", searched) + 1
 
     def answer(self, data: bytes, writers: Mapping[str, Writes[Any] | ServicePort]) -> list[tuple[str, Any]]:
         """Reads an object with a message, or a list of messages, by port.
@@ -112,7 +112,7 @@ class LcmFrames:
         length = _HEAD.size - 4 + len(body)
         return _HEAD.pack(length, kind, asked.tick, asked.time_us, asked.period_us, len(parts)) + body
 
-    def length_of(self, begun: bytearray) -> int:
+    def length_of(self, begun: bytearray, _searched: int) -> int:
         """Returns the length that the first four bytes name."""
         return 4 + int.from_bytes(begun[:4], "big") if len(begun) >= _COUNT.size else 0
 

@@ -21,6 +21,7 @@ def run(command: list[str], **options: object) -> subprocess.CompletedProcess[st
     return subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, **options)  # type: ignore[call-overload, no-any-return]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("typed", [["--help"], ["ps", "--json"], ["check", "one-robot.yaml"]])
 def test_a_full_disk_is_a_sentence(typed: list[str]) -> None:
     with open("/dev/full", "w") as full:
@@ -78,6 +79,7 @@ def test_too_few_descriptors_are_a_sentence(tmp_path: Path) -> None:
     assert ended.value.code == 2
 
 
+@pytest.mark.slow
 def test_a_run_with_few_descriptors_is_refused(tmp_path: Path, ports: PortBlock) -> None:
     def limit() -> None:
         resource.setrlimit(resource.RLIMIT_NOFILE, (24, 24))

@@ -83,6 +83,7 @@ def test_bad_input_of_play_is_explained(tmp_path: Path, ports: PortBlock, words:
     assert reason in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.system
 @pytest.mark.core
 def test_lcm_logger_hears_exactly_the_played_log(tmp_path: Path, ports: PortBlock) -> None:

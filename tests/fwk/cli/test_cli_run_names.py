@@ -34,6 +34,7 @@ def detached(folder: Path, ports: PortBlock) -> Iterator[subprocess.CompletedPro
     run(folder, "fwk", "stop", "--all", "--run", "garden")
 
 
+@pytest.mark.slow
 @pytest.mark.system
 @pytest.mark.core
 def test_a_run_in_the_background_is_found_and_ended(

@@ -35,6 +35,7 @@ def test_no_heavy_module_is_imported(typed: str, tmp_path: Path) -> None:
     assert "fwk.cli.commands" not in imported
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("typed", ["config list", "config set a/b.c=1", "bb list", "log", "stop --all", "runs list"])
 def test_looks_at_a_run_import_nothing_that_computes(typed: str, tmp_path: Path) -> None:
     command = [sys.executable, "-c", PROGRAM, *typed.split(), *(["--run", "none"] if typed != "runs list" else [])]

@@ -104,11 +104,24 @@ def test_failures_are_named_and_leave_no_program(answer: str, reason: str) -> No
 
 
 def test_large_requests_and_answers_cross() -> None:
-    both = 3_000_000
-    child = ChildProcess(["sh", "-c", f"head -c {both} /dev/zero | tr '\\0' x; read line; echo; sleep 30"])
+    both = 300_000
+    child = ChildProcess(["sh", "-c", f"head -c {both} /dev/zero | tr '\\0' x; read line; echo; read rest"])
     answer = child.exchange(b"y" * both + b"\n", JsonLines().length_of, 30.0)
     assert answer == b"x" * both + b"\n"
     child.close()
+
+
+def test_each_byte_of_an_answer_is_searched_once() -> None:
+    child, asked = ChildProcess(["sh", "-c", "head -c 300000 /dev/zero; echo; read rest"]), []
+
+    def length_of(begun: bytearray, searched: int) -> int:
+        asked.append((searched, len(begun)))
+        return JsonLines().length_of(begun, searched)
+
+    child.exchange(b"", length_of, 30.0)
+    child.close()
+    assert [searched for searched, _ in asked] == [0, *(length for _, length in asked[:-1])]
+    assert JsonLines().length_of(bytearray(b"a\nb"), 2) == 0
 
 
 def test_programs_that_cannot_start_are_named(tmp_path: Path) -> None:
@@ -188,8 +201,8 @@ def test_binary_answers_are_read_and_checked() -> None:
     data = encode(message, "motor")
     part = (0).to_bytes(4, "big") + len(data).to_bytes(4, "big") + data
     whole = (4 + len(part)).to_bytes(4, "big") + (1).to_bytes(4, "big") + part
-    assert coding.length_of(bytearray(whole[:7])) == 0
-    assert coding.length_of(bytearray(whole[:8])) == len(whole)
+    assert coding.length_of(bytearray(whole[:7]), 0) == 0
+    assert coding.length_of(bytearray(whole[:8]), 7) == len(whole)
     ((port, read),) = coding.answer(whole, writers)
     assert (port, read.vx_m_s) == ("motor", 2.0)
     for broken, reason in (

@@ -72,6 +72,7 @@ def test_a_path_without_numbers_is_refused(tmp_path: Path, path: str, reason: st
     assert reason in str(error.value)
 
 
+@pytest.mark.slow
 def test_the_command_draws_pictures(tmp_path: Path) -> None:
     log, out = recording(tmp_path / "log"), tmp_path / "drive.png"
     words = ["plot", "cyan1/odometry.x_m", "cyan1/odometry.vx_m_s", "--from", str(log), "-o"]
@@ -108,6 +109,7 @@ def heard_live(ticks: int) -> Iterator[Heard]:
         yield Heard("cyan1/odometry", b"broken", time_us)
 
 
+@pytest.mark.slow
 def test_a_live_run_is_drawn_again_and_again(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

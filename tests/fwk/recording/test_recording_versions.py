@@ -47,6 +47,7 @@ def test_an_old_recording_replays_byte_for_byte(folder: Path) -> None:
     assert "equal: " in replayed(folder, "--only", "a/watcher", "--only", "a/reader")
 
 
+@pytest.mark.slow
 def test_a_changed_component_differs_from_an_old_recording(folder: Path) -> None:
     source = folder / "workshop.py"
     source.write_text(source.read_text().replace("self.reading.value.gain = self.config.gain", "pass"))
@@ -69,6 +70,7 @@ def test_an_old_recording_holds_the_events_of_today() -> None:
     assert sum(len(tick.record.settings) for tick in ticks) == 1
 
 
+@pytest.mark.slow
 def test_old_recordings_are_listed_and_compared(folder: Path) -> None:
     said = fwk(folder, "log-info", "log.lcm")
     assert "core_v1.tick_record_t" in said

@@ -115,6 +115,7 @@ def test_ten_robots_score(ten: Played) -> None:
     assert len({event.robot for event in events if event.kind == match_event_t.KICK}) >= 3
 
 
+@pytest.mark.slow
 def test_keeper_saves_shots_that_it_can_reach() -> None:
     for y_m in (-0.8, 0.0, 0.8):
         system = match(["cyan1", "cyan2"], 1, {}, starts={"cyan2": (9.0, 6.0, 0.0)})

@@ -185,6 +185,7 @@ def _playing() -> game_state_t:
     return game
 
 
+@pytest.mark.slow
 def test_launch_file_gives_every_measure_its_samples() -> None:
     system = system_of("soccer-1v1.yaml", seed=2)
     system.tick(110)

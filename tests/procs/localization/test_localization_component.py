@@ -55,6 +55,7 @@ def test_driving_robot_stays_localized_within_10_cm() -> None:
     assert 0.5 < np.mean(nees) < 6.0, "3 for an honest covariance"
 
 
+@pytest.mark.slow
 def test_latency_of_the_camera_does_not_bias_a_driving_robot() -> None:
     """At 2.5 m/s and 2 rad/s the robot drives 9 cm and turns 4 degrees on between exposure and frame."""
     robot = FakeRobot(seed=6)

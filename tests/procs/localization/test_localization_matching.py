@@ -52,6 +52,7 @@ def test_line_gives_no_information_about_position_along_it() -> None:
     assert found.poses[0] == pytest.approx((0.0, 4.5, 0.0), abs=0.02)
 
 
+@pytest.mark.slow
 def test_blockwise_table_equals_the_table_of_all_lines(monkeypatch: pytest.MonkeyPatch) -> None:
     places_m = np.random.default_rng(1).uniform((-11.0, -8.0), (11.0, 8.0), (5000, 2))
     by_blocks = LineMap(FIELD).look_up(*places_m.T)

@@ -28,6 +28,7 @@ def test_kidnapped_robot_localizes_within_5_s_a_hundred_times() -> None:
     assert np.isfinite(times).sum() >= 98
 
 
+@pytest.mark.slow
 def test_repeated_kidnapping_does_not_bias_the_compass() -> None:
     robot = FakeRobot(seed=8)
     robot.place()

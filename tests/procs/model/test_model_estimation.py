@@ -3,6 +3,8 @@
 import subprocess
 import sys
 
+import pytest
+
 LEAN = """
 import sys
 from procs.model.estimation import KalmanFilter, linear_sum_assignment
@@ -29,9 +31,11 @@ def run(program: str) -> None:
     subprocess.run([sys.executable, "-W", "ignore", "-c", program], check=True, timeout=120)
 
 
+@pytest.mark.slow
 def test_estimation_imports_no_statistics_and_no_optimizers() -> None:
     run(LEAN)
 
 
+@pytest.mark.slow
 def test_already_imported_library_is_used() -> None:
     run(ORDINARY)

@@ -128,6 +128,7 @@ def place_of(percept: ball_percept_t) -> Floats:
     return np.array(world(percept.x_m, percept.y_m))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("what", ["ball", "robot"])
 @pytest.mark.parametrize("away_m", AWAY_M)
 def test_errors_grow_with_distance_as_those_of_pictures(what: str, away_m: float) -> None:
@@ -159,6 +160,7 @@ def test_ball_in_flight_appears_further_away() -> None:
     assert place_of(percept) == pytest.approx((OWN[0] + 4.0, OWN[1]))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0])
 def test_share_of_missed_balls_is_that_of_the_settings(share: float) -> None:
     eyes = bench(realism="none", ball_missed=share)
@@ -166,6 +168,7 @@ def test_share_of_missed_balls_is_that_of_the_settings(share: float) -> None:
     assert seen / 400 == pytest.approx(1.0 - share, abs=0.08)
 
 
+@pytest.mark.slow
 def test_phantoms_come_at_their_rate() -> None:
     eyes = bench(realism="none", ball_phantoms_1_s=1.0, robot_phantoms_1_s=2.0)
     balls = sum(look(eyes, truth((30.0, 0.0))).visible for _ in range(1200))

@@ -59,6 +59,7 @@ def test_message_arrives_as_it_was_sent() -> None:
     assert inbox.header.tick == 6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loss", [0.0, 0.03, 0.3, 1.0])
 def test_each_link_loses_that_share_independently(loss: float) -> None:
     bench = radio(loss=loss)

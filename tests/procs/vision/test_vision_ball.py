@@ -67,6 +67,7 @@ def test_still_ball_is_found_to_a_small_part_of_a_pixel(distance_m: float, most_
     assert math.sqrt((errors**2).sum(axis=1).mean()) < most_m
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("distance_m", [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 def test_covariance_matches_the_errors_of_a_shaking_mirror(distance_m: float) -> None:
     errors, normed, missed = sightings(distance_m, SHAKE_PX)

@@ -52,6 +52,7 @@ def test_robot_ahead_is_found_at_its_place(ahead_m: float) -> None:
     assert np.sqrt(np.mean(np.square(errors), axis=0)) == pytest.approx((0.0, 0.0), abs=0.03 + 0.015 * ahead_m**2)
 
 
+@pytest.mark.slow
 def test_stated_covariances_are_those_of_the_errors() -> None:
     surprises = []
     for seed in range(40):

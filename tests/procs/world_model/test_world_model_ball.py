@@ -114,6 +114,7 @@ def test_own_kick_is_believed_before_any_sighting() -> None:
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.25)
 
 
+@pytest.mark.slow
 def test_fused_ball_beats_the_best_single_robot() -> None:
     places = [(-2.0, 0.5), (3.0, -2.0), (-4.0, 4.0), (5.0, 4.0)]
 
@@ -162,6 +163,7 @@ def nees(eyes_at: list[tuple[float, float]], runs: int, frames: int = 30) -> flo
     return float(np.mean(values))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("eyes_at", [[(-2.0, 0.0)], [(-2.0, 0.0), (3.0, 2.0), (0.0, -4.0)]])
 def test_covariance_is_honest(eyes_at: list[tuple[float, float]]) -> None:
     runs = 60
@@ -333,6 +335,7 @@ def carried(frames: int) -> list[Floats]:
     return [np.array((np.cos(a), np.sin(a), -2.0 * np.sin(a), 2.0 * np.cos(a))) for a in angles]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("states", "contact"),
     [

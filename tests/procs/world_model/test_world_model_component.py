@@ -241,6 +241,7 @@ def test_team_ball_beats_median_and_matches_best_robot() -> None:
     assert fused <= 1.1 * min(alone)
 
 
+@pytest.mark.slow
 def test_without_any_radio_each_robot_relies_on_itself() -> None:
     fused, alone = ball_errors(loss=1.0, blind=False, seeds=1)
     assert fused == pytest.approx(np.sqrt(np.mean(np.square(alone))))

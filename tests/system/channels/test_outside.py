@@ -110,7 +110,6 @@ def test_a_flood_from_outside_is_bounded_and_reported(launch: Launch, tmp_path: 
     checked(run, run.end(), 65)
 
 
-@pytest.mark.core
 def test_fwk_send_is_an_outside_program(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
     write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
     run = Steered(launch(FILE), ports)

@@ -55,7 +55,6 @@ def test_an_unchanged_branch_equals_its_run(
     assert not list(tmp_path.glob(".cache/fwk/runs/*branch*"))
 
 
-@pytest.mark.core
 def test_a_changed_branch_parts_from_its_run_after_the_tick(tmp_path: Path) -> None:
     recording(tmp_path, orchestra, "orchestra.yaml")
     branched(tmp_path, 20, "--set", "d/player.bursts=0", "--until-tick", "40")

@@ -38,7 +38,6 @@ def where(terminal: Terminal) -> tuple[int, int]:
     return int(found[1]), int(found[2])
 
 
-@pytest.mark.core
 def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
     stopped = debugged(recorded, "e/player", "--from-tick", "20", "--verify")
     assert where(stopped) == (20, 19)
