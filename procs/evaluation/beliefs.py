@@ -10,7 +10,8 @@ import numpy as np
 
 from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, true_robot_t, world_model_t
 from procs.evaluation.piece import Piece
-from procs.model.frames import Floats, wrap
+from procs.evaluation.poses import START_S, pose_samples
+from procs.model.frames import Floats
 from procs.model.robot import team_of
 
 NEAR_M = 4.0
@@ -21,9 +22,7 @@ SETTLED_S = 0.3
 """A ball without a touch or a bounce for that time rolls freely."""
 _CONTACT_S = 0.1
 _INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
-_START_S = 4.0  # until all robots know their places
 _PLACED_S = 0.5  # the crew puts the ball down in no time, which no ball in play does
-_WRONG_M, _WRONG_RAD = 1.0, 0.5
 _SAME_M = 1.0  # an opponent further from all robots is not one of them
 _DRIVING_M_S = 0.5
 _STALE_S = 0.2  # older sightings of a robot are not averaged
@@ -31,6 +30,9 @@ _KICK_M_S = 2.0
 _JUMP_M = 0.2
 _BOUNCE_M_S = 1.0  # no ball that rolls or slides changes its velocity by so much in a tick
 _KNOWN_SHARE = 0.1
+
+PARTICLES, AVERAGE = "200 particles: ", "plain average: "
+"""Begins of the names of what baselines reach that observe the same match."""
 
 Samples = dict[str, Floats]
 """Measure to its samples: (n), or (n, 2) where the measure is a ratio."""
@@ -52,21 +54,29 @@ class _Ball(NamedTuple):
 
 def believed(piece: Piece) -> Samples:
     """Returns the samples of every measure of beliefs."""
-    return _ball_samples(piece) | _fusion(piece) | _kicks(piece) | _opponents(piece) | _poses(piece)
+    own = pose_samples(piece) | _ball_samples(piece) | _fusion(piece) | _kicks(piece) | _opponents(piece)
+    return own | _baselines(piece)
 
 
-def _models(piece: Piece) -> Iterator[tuple[str, int, world_model_t, ground_truth_t]]:
-    for robot, models in sorted(piece.by_robot.get("world_model", {}).items()):
+def _baselines(piece: Piece) -> Samples:
+    """Returns the samples of the localization by particles, and of the plain average of the team's sightings."""
+    averages = _ball_samples(piece, "average_ball")
+    names = ("ball moving, position", "ball rolling freely, position", "ball resting, position")
+    return pose_samples(piece, "particle_pose", PARTICLES) | {AVERAGE + name: averages[name] for name in names}
+
+
+def _models(piece: Piece, interface: str = "world_model") -> Iterator[tuple[str, int, world_model_t, ground_truth_t]]:
+    for robot, models in sorted(piece.by_robot.get(interface, {}).items()):
         for tick, model in models.items():
-            if tick * piece.period_s >= _START_S and tick in piece.truth:
+            if tick * piece.period_s >= START_S and tick in piece.truth:
                 yield robot, tick, model, piece.truth[tick]
 
 
-def _ball_samples(piece: Piece) -> Samples:
+def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
     seen: list[_Ball] = []
     known: list[bool] = []
     placed, bounced = _placed(piece), _bounced(piece)
-    for robot, tick, model, truth in _models(piece):
+    for robot, tick, model, truth in _models(piece, interface):
         known.append(model.ball.known)
         if model.ball.known and tick not in placed:
             seen.append(_ball(piece, robot, tick, model, truth, tick in bounced))
@@ -123,7 +133,7 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
     return _Ball(
         float(error @ error),
         (ball.vx_m_s - truth.ball_vx_m_s) ** 2 + (ball.vy_m_s - truth.ball_vy_m_s) ** 2,
-        bool(error @ np.linalg.solve(covariance, error) < _INSIDE_95),
+        bool(covariance.any() and error @ np.linalg.solve(covariance, error) < _INSIDE_95),
         math.dist((own.x_m, own.y_m), (truth.ball_x_m, truth.ball_y_m)) <= NEAR_M,
         math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s),
         "itself" if robot in touching else "another" if touching else "",
@@ -188,7 +198,7 @@ def _kicks(piece: Piece) -> Samples:
     delays_s = []
     for tick, events in piece.events.items():
         for kick in events:
-            if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= _START_S:
+            if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= START_S:
                 delays_s += _delays_s(piece, tick, kick.robot)
     return {"velocity known after a kick": np.array(delays_s)}
 
@@ -202,7 +212,7 @@ def _delays_s(piece: Piece, kicked: int, kicker: str) -> list[float]:
     if len(flight) * piece.period_s < SETTLED_S:
         return []
     delays_s = []
-    for models in piece.by_robot["world_model"].values():
+    for models in piece.by_robot.get("world_model", {}).values():
         found = (tick for tick in flight if tick in models and _knows(models[tick], piece.truth[tick]))
         delays_s.append((next(found, math.inf) - kicked) * piece.period_s)
     return delays_s
@@ -239,20 +249,3 @@ def _opponents(piece: Piece) -> Samples:
 
 def _between_m(estimate: robot_estimate_t | world_model_t, robot: true_robot_t) -> float:
     return math.dist((estimate.x_m, estimate.y_m), (robot.x_m, robot.y_m))
-
-
-def _poses(piece: Piece) -> Samples:
-    errors_m2, turns_rad2, wrong = [], [], []
-    for robot, tick, model, _ in _models(piece):
-        if model.localized:
-            own = piece.robot(tick, robot)
-            error_m, turn_rad = _between_m(model, own), wrap(model.heading_rad - own.heading_rad)
-            errors_m2.append(error_m**2)
-            turns_rad2.append(turn_rad**2)
-            wrong.append(error_m > _WRONG_M or abs(turn_rad) > _WRONG_RAD)
-    began = sum(now and not before for before, now in zip([False, *wrong], wrong, strict=False))
-    return {
-        "pose, position": np.array(errors_m2),
-        "pose, heading": np.array(turns_rad2),
-        "wrong pose believed": np.array([(began, len(wrong) * piece.period_s / 60 / 1000)]),
-    }

@@ -12,7 +12,7 @@ from procs.evaluation.conduct import conducted
 from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
-from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, ratio, root_ratio, rows_of
+from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
 from procs.model.frames import Floats
 
 
@@ -31,9 +31,12 @@ def samples_of(piece: Piece) -> Samples:
 
 
 def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
-    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table."""
+    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table.
+
+    Measures without samples are left out: no match has all.
+    """
     pieces: list[Samples] = [{name: _samples(values, name) for name, values in result.items()} for result in results]
-    rows = rows_of(pieces)
+    rows = [row for row in rows_of(pieces) if row.samples]
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
     try:
@@ -45,5 +48,5 @@ def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
 
 def _samples(values: list[float], name: str) -> Floats:
     """Returns samples as they were measured; an empty list of pairs gets its two columns back."""
-    pairs = next(each.statistic for each in MEASURES if each.name == name) in (ratio, root_ratio)
+    pairs = next(each.statistic for each in MEASURES if each.name == name) in (rate, ratio, root_ratio)
     return np.array(values, np.float64).reshape(-1, 2) if pairs else np.array(values, np.float64)

@@ -12,6 +12,7 @@ from lcmtypes.soccer import (
     ground_truth_t,
     match_event_t,
     match_events_t,
+    pose_t,
     skill_status_t,
     team_message_t,
     true_robot_t,
@@ -24,6 +25,9 @@ BELIEFS: dict[str, Any] = {
     "team_message": team_message_t,
     "skill_status": skill_status_t,
     "kicker_state": kicker_state_t,
+    "pose": pose_t,
+    "particle_pose": pose_t,
+    "average_ball": world_model_t,
 }
 """Interfaces of each robot that a piece keeps."""
 

@@ -8,10 +8,11 @@ from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
-from procs.evaluation.beliefs import Samples
+from procs.evaluation.beliefs import AVERAGE, PARTICLES, Samples
 from procs.model.frames import Floats
 
 _REDRAWS = 1000
+_NEVER = 3.0  # events that were expected at most, with a probability of 95 %, if none was seen
 
 
 def rms(samples: Floats) -> float:
@@ -33,6 +34,11 @@ def ratio(samples: Floats) -> float:
     """Sum of the first column by the sum of the second (n, 2)."""
     below = samples[:, 1].sum() if len(samples) else 0.0
     return float(samples[:, 0].sum() / below) if below else np.nan
+
+
+def rate(samples: Floats) -> float:
+    """Number of events, the first column, by the time in which they happened, the second (n, 2)."""
+    return ratio(samples)
 
 
 def root_ratio(samples: Floats) -> float:
@@ -71,20 +77,32 @@ MEASURES = [
     Measure("opponents, lag", ratio, "s", "0"),
     Measure("opponents known", mean, "share", ">= 0.80"),
     Measure("opponents that do not exist", mean, "share", ""),
+    Measure("pose known", mean, "share", ""),
     Measure("pose, position", rms, "m", "<= 0.10"),
     Measure("pose, heading", rms, "rad", "<= 0.03"),
-    Measure("wrong pose believed", ratio, "/1000 min", "0"),
-    Measure("collisions above 1 m/s", ratio, "/min", "<= 1"),
-    Measure("collisions above 3 m/s", ratio, "/min", "0"),
+    Measure("wrong pose believed", rate, "/1000 min", "0"),
+    Measure("kidnapped, found within 10 s", mean, "share", ">= 0.99"),
+    Measure("kidnapped, time until found", median, "s", "<= 2"),
+    Measure(f"{PARTICLES}pose known", mean, "share", ""),
+    Measure(f"{PARTICLES}pose, position", rms, "m", ""),
+    Measure(f"{PARTICLES}pose, heading", rms, "rad", ""),
+    Measure(f"{PARTICLES}wrong pose believed", rate, "/1000 min", ""),
+    Measure(f"{PARTICLES}kidnapped, found within 10 s", mean, "share", ""),
+    Measure(f"{PARTICLES}kidnapped, time until found", median, "s", ""),
+    Measure(f"{AVERAGE}ball moving, position", rms, "m", ""),
+    Measure(f"{AVERAGE}ball rolling freely, position", rms, "m", ""),
+    Measure(f"{AVERAGE}ball resting, position", rms, "m", ""),
+    Measure("collisions above 1 m/s", rate, "/min", "<= 1"),
+    Measure("collisions above 3 m/s", rate, "/min", "0"),
     Measure("distance violated at restarts", mean, "share", "0"),
     Measure("half violated at kick-offs", mean, "share", "0"),
     Measure("passes controlled by the receiver", mean, "share", ">= 0.80"),
     Measure("captures that bounce", mean, "share", ""),
     Measure("ball free", mean, "share", ""),
-    Measure("shots", ratio, "/min", ""),
-    Measure("goals", ratio, "/min", ""),
-    Measure("goals of cyan", ratio, "/min", ""),
-    Measure("goals of magenta", ratio, "/min", ""),
+    Measure("shots", rate, "/min", ""),
+    Measure("goals", rate, "/min", ""),
+    Measure("goals of cyan", rate, "/min", ""),
+    Measure("goals of magenta", rate, "/min", ""),
 ]
 """Rows of the table in their order."""
 
@@ -105,7 +123,8 @@ class Row:
 def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, seed: int = 1) -> list[Row]:
     """Computes the table; the interval comes from redrawing whole pieces, as samples of a piece depend on each other.
 
-    A single piece gives no interval: its limits are NaN.
+    A single piece gives no interval: its limits are NaN. The interval of events that were never seen ends at the rate
+    with which seeing none has a probability of 5 %.
     """
     rng = np.random.default_rng(seed)
     draws = rng.integers(len(pieces), size=(_REDRAWS, len(pieces)))
@@ -118,6 +137,8 @@ def rows_of(pieces: Sequence[Samples], measures: Sequence[Measure] = MEASURES, s
             sound = [each for each in redrawn if not np.isnan(each)]
             if sound:
                 low, high = np.quantile(sound, (0.025, 0.975), method="inverted_cdf").tolist()
+        if measure.statistic is rate and value == 0.0:
+            low, high = 0.0, _NEVER / sum(float(each[:, 1].sum()) for each in samples)
         count = sum(map(len, samples))
         rows.append(Row(measure.name, value, low, high, count, measure.unit, measure.goal))
     return rows

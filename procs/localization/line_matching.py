@@ -78,6 +78,8 @@ def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 
     step_information, step_gradient = information, gradient
     for _ in range(iterations):
         step = np.linalg.solve(step_information + _DAMPING, step_gradient[..., None])[..., 0]
+        if (np.abs(step) < _CONVERGED).all():
+            break
         poses = poses - np.minimum(np.maximum(step, -_LONGEST_STEP), _LONGEST_STEP)
         step_information, step_gradient, new_scores = _evaluate(lines, points, poses, robust_m)
         better = new_scores >= scores
@@ -86,8 +88,6 @@ def match(lines: LineMap, points: LinePoints, starts: Floats, iterations: int = 
             step_information[better],
             new_scores[better],
         )
-        if (np.abs(step) < _CONVERGED).all():
-            break
     return Matches(kept, information, scores)
 
 

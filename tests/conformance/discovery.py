@@ -14,7 +14,7 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 ROOT = Path(__file__).parents[2]
 LAUNCH = ROOT / "launch"
-FILES = ("frames.yaml", "vision.yaml", "soccer-percepts.yaml", "soccer.yaml")  # those that take less time first
+FILES = ("frames.yaml", "vision.yaml", "soccer-percepts.yaml", "soccer.yaml", "kidnapped.yaml")  # preferred ones first
 
 
 def discovered() -> list[type[Component]]:

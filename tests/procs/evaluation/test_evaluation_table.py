@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from procs.evaluation.table import Measure, as_json, as_text, mean, median, ratio, rms, root_ratio, rows_of
+from procs.evaluation.table import Measure, as_json, as_text, mean, median, rate, ratio, rms, root_ratio, rows_of
 from procs.model.frames import Floats
 
 
@@ -55,6 +55,15 @@ def test_single_piece_has_no_interval() -> None:
     rows = rows_of([{"error": np.array([4.0])}], [ERROR])
     assert as_text(rows).splitlines()[1].split() == ["error", "2.000", "1", "m", "<=", "1"]
     assert json.loads(as_json(rows))[0]["low"] is None
+
+
+def test_interval_of_an_event_that_was_never_seen_ends_above_zero() -> None:
+    events = Measure("event", rate, "/min", "0")
+    (row,) = rows_of([{"event": np.array([(0.0, 5.0)])}, {"event": np.array([(0.0, 10.0)])}], [events])
+    assert (row.value, row.low) == (0.0, 0.0)
+    assert row.high == pytest.approx(0.2)  # three events in fifteen minutes
+    (row,) = rows_of([{"event": np.array([(0.0, 5.0)])}, {"event": np.array([(2.0, 5.0)])}], [events])
+    assert row.value == pytest.approx(0.2)
 
 
 def test_infinite_value_stays_valid_json() -> None:

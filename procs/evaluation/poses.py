@@ -1,0 +1,109 @@
+"""Errors of what robots believe about their own poses, and how soon a robot that was carried away knows its place."""
+
+import math
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from lcmtypes.soccer import pose_t
+from procs.evaluation.piece import Piece
+from procs.model.frames import Floats, wrap
+
+START_S = 4.0
+"""Time until all robots know their places; nothing before counts."""
+FOUND_S = 10.0
+"""A robot that was carried away has so long to find its place."""
+_WRONG_M, _WRONG_RAD = 1.0, 0.5
+_RIGHT_M, _RIGHT_RAD = 0.3, 0.3
+_JUMP_M_S = 20.0  # a robot that moves faster was carried
+
+
+class _Belief(NamedTuple):
+    """Belief of a robot about its pose in one tick, beside the truth."""
+
+    tick: int
+    localized: bool
+    error_m: float
+    error_rad: float
+    carried: bool
+    """The robot was set down elsewhere in this tick."""
+
+    @property
+    def wrong(self) -> bool:
+        """A wrong pose is believed."""
+        return self.localized and (self.error_m > _WRONG_M or self.error_rad > _WRONG_RAD)
+
+    @property
+    def right(self) -> bool:
+        """A right pose is believed."""
+        return self.localized and self.error_m < _RIGHT_M and self.error_rad < _RIGHT_RAD
+
+
+def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dict[str, Floats]:
+    """Returns the samples of the poses in an interface of the robots; `prefix` goes before each name.
+
+    A robot that was carried away cannot know that at once: until it knows that it is lost, or knows its place, its
+    errors do not count.
+    """
+    errors_m2: list[float] = []
+    turns_rad2: list[float] = []
+    known: list[bool] = []
+    found_s: list[float] = []
+    wrongs = 0
+    for robot in sorted(piece.by_robot.get(interface, {})):
+        unaware, was_wrong = False, False
+        beliefs = list(_beliefs(piece, interface, robot))
+        found_s += _found_s(beliefs, piece.period_s)
+        for belief in beliefs:
+            unaware = (unaware or belief.carried) and belief.wrong
+            if not unaware:
+                known.append(belief.localized)
+                wrongs += belief.wrong and not was_wrong
+                if belief.localized:
+                    errors_m2.append(belief.error_m**2)
+                    turns_rad2.append(belief.error_rad**2)
+            was_wrong = belief.wrong
+    samples = {
+        "pose known": np.array(known, np.float64),
+        "pose, position": np.array(errors_m2),
+        "pose, heading": np.array(turns_rad2),
+        "wrong pose believed": np.array([(wrongs, sum(known) * piece.period_s / 60 / 1000)]),
+        "kidnapped, found within 10 s": np.array([time_s <= FOUND_S for time_s in found_s], np.float64),
+        "kidnapped, time until found": np.array(found_s),
+    }
+    return {prefix + name: values for name, values in samples.items()}
+
+
+def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
+    """Yields the beliefs of a robot in the order of the ticks."""
+    before: tuple[float, float] | None = None
+    told: dict[int, pose_t] = piece.by_robot[interface][robot]
+    for tick, pose in sorted(told.items()):
+        if tick in piece.truth and tick * piece.period_s >= START_S:
+            own = piece.robot(tick, robot)
+            at = (own.x_m, own.y_m)
+            carried = before is not None and math.dist(before, at) > _JUMP_M_S * piece.period_s
+            before = at
+            yield _Belief(
+                tick,
+                bool(pose.localized),
+                math.dist((pose.x_m, pose.y_m), at),
+                abs(wrap(pose.heading_rad - own.heading_rad)),
+                carried,
+            )
+
+
+def _found_s(beliefs: list[_Belief], period_s: float) -> list[float]:
+    """Returns for each kidnapping the time until the place is known; infinite if it is not within `FOUND_S`.
+
+    A kidnapping that the robot has less time for, before the next one or the end, does not count.
+    """
+    times_s = []
+    for place, belief in enumerate(beliefs):
+        if belief.carried:
+            rest = beliefs[place + 1 : place + 1 + round(FOUND_S / period_s)]
+            if len(rest) * period_s >= FOUND_S - period_s / 2 and not any(each.carried for each in rest):
+                found = next((each.tick for each in rest if each.right), math.inf)
+                times_s.append((found - belief.tick) * period_s)
+    return times_s
