@@ -10,7 +10,7 @@ from fwk.lcm.event_log import Event, LogError, LogReader
 from fwk.lcm.stamped_log import stamp_in
 from fwk.log_tools.new_file import new_log
 from fwk.log_tools.selection import Selection
-from fwk.recording.play.timeline import MomentError, Timeline
+from fwk.recording.play.timeline import Moment, MomentError, Timeline
 from fwk.recording.versions import EXCERPT, PLAN, excerpt
 
 Progress = Callable[[int], None]
@@ -61,17 +61,18 @@ def cut(
     """
     first, last, is_recording = _interval(log, begin, end, last_s)
     reader, done = LogReader(log), Cut(log, out)
-    done.replayable = is_recording and not first and selection.is_all
+    done.replayable = is_recording and not first.position and selection.is_all
     with new_log(out, replace) as made:
         if is_recording:
             plan = next(iter(LogReader(log)))
+            begin_us = first.time_us if first.position else plan.time_us
             if selection.takes(plan):
-                made.append(plan.channel, plan.data, plan.time_us)
+                made.append(plan.channel, plan.data, begin_us)
                 if not done.replayable:
                     words = f"the last {last_s:g} s" if last_s is not None else begin and f"from {begin}"
                     text = ", ".join(filter(None, (log.name, words, end and f"to {end}", *selection.texts)))
-                    made.append(EXCERPT, excerpt(text), plan.time_us)
-        for stamp, event in paired(_between(reader, first, last, progress)):
+                    made.append(EXCERPT, excerpt(text), begin_us)
+        for stamp, event in paired(_between(reader, first.position, last, progress)):
             if is_recording and event.channel == PLAN:
                 continue
             done.replayable &= event.channel != EXCERPT
@@ -96,8 +97,8 @@ def paired(events: Iterator[Event]) -> Iterator[tuple[Event | None, Event]]:
         yield stamps.pop(event.channel, None), event
 
 
-def _interval(log: Path, begin: str, end: str, last_s: float | None) -> tuple[int, int | None, bool]:
-    """Returns the first position, the position behind the last event, and whether the log is a recording."""
+def _interval(log: Path, begin: str, end: str, last_s: float | None) -> tuple[Moment, int | None, bool]:
+    """Returns the first moment, the position behind the last event, and whether the log is a recording."""
     timeline = Timeline(log)
     try:
         if last_s is not None:
@@ -110,7 +111,7 @@ def _interval(log: Path, begin: str, end: str, last_s: float | None) -> tuple[in
     if last and last.position < first.position:
         raise LogError(f"{log}: '{end}' is before '{begin}'; exchange --from and --to")
     after = timeline.after(last.position) if last else None
-    return first.position, after.position if after else None, timeline.is_recording
+    return first, after.position if after else None, timeline.is_recording
 
 
 def _between(reader: LogReader, first: int, last: int | None, progress: Progress) -> Iterator[Event]:

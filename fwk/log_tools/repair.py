@@ -6,6 +6,8 @@ from pathlib import Path
 from fwk.lcm.event_log import LogReader
 from fwk.log_tools.cut import EVENTS_PER_CALL, Progress
 from fwk.log_tools.new_file import new_log
+from fwk.recording.log_contents import ChangedBytes
+from fwk.recording.log_index import changed
 from fwk.recording.ticks import tick_of
 from fwk.recording.versions import RECORD
 
@@ -24,6 +26,8 @@ class Repaired:
     """Events that are missing before the newest whole one, according to the numbers of the events."""
     last_tick: int | None = None
     """Newest tick that is complete; None: the log holds no tick record."""
+    changed: list[ChangedBytes] = field(default_factory=list)
+    """Parts of the damaged log that are not what was written, according to its index; their whole events are kept."""
     unfinished_events: int = 0
     """Events after the record of that tick: of a tick that has no record."""
 
@@ -36,7 +40,7 @@ def repair(log: Path, out: Path, replace: bool = False, progress: Progress = lam
     Raises:
         LogError: the log cannot be read, holds no whole event, or the new one cannot be written.
     """
-    reader, done = LogReader(log), Repaired(log, out)
+    reader, done = LogReader(log), Repaired(log, out, changed=changed(log))
     end = skipped = following = 0
     with new_log(out, replace) as made:
         for event in reader:

@@ -10,6 +10,7 @@ _RANDOM = "draws unseeded random numbers"
 _THREADS = "starts threads or processes, whose order varies"
 _ORDER = "depends on the order of a set"
 _PROCESS = "depends on the process: addresses, and hashes of texts"
+_ENVIRONMENT = "reads environment variables"
 _FILES = "depends on the order of files in a folder"
 _CALLS = {
     **dict.fromkeys(("time.time", "time.monotonic", "time.perf_counter", "time.process_time"), _TIME),
@@ -21,13 +22,16 @@ _CALLS = {
     **dict.fromkeys(("multiprocessing.Process", "multiprocessing.Pool"), _THREADS),
     **dict.fromkeys(("concurrent.futures.ThreadPoolExecutor", "concurrent.futures.ProcessPoolExecutor"), _THREADS),
     **dict.fromkeys(("os.listdir", "os.scandir", "os.walk", "glob.glob", "glob.iglob"), _FILES),
-    **dict.fromkeys(("id", "hash"), _PROCESS),
+    **dict.fromkeys(("id", "hash", "os.getpid"), _PROCESS),
+    **dict.fromkeys(("os.getenv", "os.environ.get"), _ENVIRONMENT),
 }
 _SEEDED = ("random.Random", "numpy.random.default_rng", "numpy.random.RandomState", "numpy.random.SeedSequence")
 """Generators that are unseeded only without arguments."""
 _HARMLESS = ("random.seed", "numpy.random.seed", "numpy.random.Generator", "numpy.random.PCG64")
-_IN_ORDER = ("list", "tuple", "enumerate", "iter", "zip", "map", "next")
-"""Functions that keep the order of what they are given."""
+_IN_ORDER = ("list", "tuple", "enumerate", "iter", "zip", "map", "next", "sum")
+"""Functions whose result depends on the order of what they are given; a sum does by the rounding."""
+_MAKE_SETS = ("union", "intersection", "difference", "symmetric_difference", "copy")
+"""Methods of a set that return a set."""
 
 
 @dataclass(frozen=True)
@@ -79,10 +83,14 @@ class _Lines:
             if isinstance(node, ast.Call):
                 if reason := self._call(node):
                     yield node.lineno, reason
-                if self._dotted(node.func) in _IN_ORDER and any(map(self._is_set, node.args)):
+                if self._takes_order(node):
                     yield node.lineno, _ORDER
+            elif isinstance(node, ast.Starred) and self._is_set(node.value):
+                yield node.lineno, _ORDER
             elif isinstance(node, (ast.For, ast.comprehension)) and self._is_set(node.iter):
                 yield node.iter.lineno, _ORDER
+            elif isinstance(node, ast.Subscript) and self._dotted(node.value) == "os.environ":
+                yield node.lineno, _ENVIRONMENT
 
     def _call(self, node: ast.Call) -> str:
         name = self._dotted(node.func)
@@ -94,10 +102,19 @@ class _Lines:
             return _RANDOM
         return ""
 
+    def _takes_order(self, node: ast.Call) -> bool:
+        """Returns whether the result of a call depends on the order of a set."""
+        method = node.func.attr if isinstance(node.func, ast.Attribute) else ""
+        if method == "pop" and isinstance(node.func, ast.Attribute):
+            return not node.args and self._is_set(node.func.value)
+        return (method == "join" or self._dotted(node.func) in _IN_ORDER) and any(map(self._is_set, node.args))
+
     def _is_set(self, node: ast.expr, known: bool = True) -> bool:
         if isinstance(node, ast.BinOp) and isinstance(node.op, (ast.BitOr, ast.BitAnd, ast.Sub, ast.BitXor)):
             return self._is_set(node.left, known)
         if isinstance(node, ast.Call):
+            if isinstance(node.func, ast.Attribute) and node.func.attr in _MAKE_SETS:
+                return self._is_set(node.func.value, known)
             return self._dotted(node.func) in ("set", "frozenset")
         if known and isinstance(node, (ast.Name, ast.Attribute)):
             return ast.unparse(node) in self._sets

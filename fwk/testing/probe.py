@@ -6,6 +6,7 @@ python -m fwk.testing.probe LOG REPOSITORY FOLDER CONDITION [COMPONENT...]
 import json
 import sys
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,9 @@ from fwk.testing.expression import Expression, ExpressionError
 
 DIFFERS = "differs"
 """Condition: a component writes something else than in the recording."""
+
+
+_SIDES = "the recording", "the replay"
 
 
 class NoChannelError(Exception):
@@ -63,7 +67,7 @@ class Probe(Replay):
         super()._tick(tick)
         if self.condition is None:
             holds = bool(self.differences)
-            self.text = str(self.differences[0]) if holds else ""
+            self.text = str(replace(self.differences[0], names=_SIDES)) if holds else ""
         else:
             holds = bool(self.condition.value(self._value))
         if holds:

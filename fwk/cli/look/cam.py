@@ -30,7 +30,7 @@ def cam(
     show: Annotated[bool, typer.Option("--show", help="draw it in the terminal, as without --save")] = False,
     raw: Annotated[bool, typer.Option("--raw", help="with --save: uncompressed bytes, row by row")] = False,
     log: Annotated[
-        Path | None, typer.Option(metavar="LOG", help="a recording with pictures, or its run directory")
+        Path | None, typer.Option(metavar="LOG", help="a recording with pictures, or its run by name or directory")
     ] = None,
     tick: Annotated[
         int | None, typer.Option(min=1, metavar="N", help="with --log: the newest frame up to tick N")

@@ -9,7 +9,7 @@ import typer
 from fwk.cli.arguments import folder
 from fwk.cli.look.public_messages import listening
 from fwk.cli.output import BAD_INPUT, FAILED
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import RunChoice
 from fwk.lcm.event_log import LogReader
@@ -51,7 +51,7 @@ def monitor(
             _complain(error, BAD_INPUT)
         try:
             if log:
-                _read(made, find_log(log), count)
+                _read(made, find_log_with_types(log, types), count)
             else:
                 _listen(made, chosen, count)
             made.end()

@@ -11,7 +11,7 @@ import typer
 from fwk.cli.arguments import new_file, seconds
 from fwk.cli.look.public_messages import listening
 from fwk.cli.output import say
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.log_options import Force, Types
 from fwk.cli.recordings.progress import progress_of
 from fwk.cli.run_options import BAD_INPUT, Json, RunChoice
@@ -71,11 +71,11 @@ def plot(
     if out and not run:
         raise typer.BadParameter("--out draws a recording; name it with --from RUN_OR_LOG")
     with failing(BAD_INPUT):
-        use_types_of(types)
         if not run:
+            use_types_of(types)
             _follow(paths, last, chosen)
             return
-        log = find_log(run)
+        log = find_log_with_types(run, types)
         draw = _library("plot", "matplotlib").draw if out else None
         drawn = None if out else _library("terminal_plot", "plotext").drawn
         with progress_of("reading", log) as progress:

@@ -8,21 +8,21 @@ from typing import Annotated
 import typer
 
 from fwk.cli.arguments import folder
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, located
+from fwk.cli.recordings.user_folders import use_types_of_run
 from fwk.cli.run_options import Json
-from fwk.lcm.type_registry import use_types_of
 from fwk.model.plan import Plan
 from fwk.plan.what_ran import different_modules, other_kernel
 from fwk.recording.compare import Comparison, plan_in
 from fwk.recording.differing import differing, lines_of
 from fwk.recording.log_index import changed
 
-EQUAL, DIFFERENT, UNUSABLE = 0, 1, 2
+DIFFERENT, UNUSABLE = 1, 2
 
 
 def compare(
-    a: Annotated[Path, typer.Argument(metavar="A", help="log or run directory")],
-    b: Annotated[Path, typer.Argument(metavar="B", help="log or run directory")],
+    a: Annotated[Path, typer.Argument(metavar="A", help="log, or run by its name or directory")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="log, or run by its name or directory")],
     common: Annotated[
         bool, typer.Option("--common", help="only sequence numbers that both logs reach; for logs of different length")
     ] = False,
@@ -36,8 +36,9 @@ def compare(
     Exit codes: 0 the same messages; 1 different; 2 a file cannot be used.
     """
     with failing(UNUSABLE):
-        use_types_of(types)
-        logs = find_log(a), find_log(b)
+        logs = located(a)[0], located(b)[0]  # equal logs may both lack a part
+        for log in logs:
+            use_types_of_run(log, types)
         plans = plan_in(logs[0]), plan_in(logs[1])
         notes = list(_different_conditions((str(a), str(b)), plans))
         result = Comparison(*logs, common)
@@ -54,7 +55,9 @@ def compare(
         components = [row.plain() for row in rows]
         answer = {"equal": difference is None, "difference": difference, "components": components, **counts}
         typer.echo(json.dumps({**answer, "notes": notes}))
-        raise typer.Exit(DIFFERENT if difference else EQUAL)
+        if difference:
+            raise typer.Exit(DIFFERENT)
+        return
     for path, skipped in zip((a, b), result.skipped_bytes, strict=True):
         if skipped:
             typer.echo(f"{path}: {skipped} damaged bytes skipped", err=True)
@@ -64,7 +67,6 @@ def compare(
             typer.echo(line)
         raise typer.Exit(DIFFERENT)
     typer.echo(f"equal: {result.messages} messages on {result.channels} channels")
-    raise typer.Exit(EQUAL)  # also if both lack a part
 
 
 def _different_conditions(names: tuple[str, str], plans: tuple[Plan | None, Plan | None]) -> Iterator[str]:

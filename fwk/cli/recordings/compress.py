@@ -17,7 +17,8 @@ from fwk.recording.part_compressor import compress_part
 
 
 def compress(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="log or run directory")], as_json: Json = False
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="log, or run by its name or directory")],
+    as_json: Json = False,
 ) -> None:
     """Compresses a log in place with Zstandard; all commands for logs read it as before.
 

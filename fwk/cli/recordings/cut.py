@@ -9,7 +9,7 @@ import typer
 
 from fwk.cli.arguments import seconds
 from fwk.cli.output import say
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.log_options import (
     Channels,
     Exclude,
@@ -24,7 +24,6 @@ from fwk.cli.recordings.log_options import (
 )
 from fwk.cli.recordings.progress import progress_of
 from fwk.cli.run_options import BAD_INPUT, Json
-from fwk.lcm.type_registry import use_types_of
 from fwk.log_tools.cut import cut as cut_log
 from fwk.log_tools.selection import Selection
 
@@ -92,8 +91,7 @@ def _write(
     types: Path,
 ) -> None:
     with failing(BAD_INPUT):
-        use_types_of(types)
-        log = find_log(path)
+        log = find_log_with_types(path, types)
         with progress_of("reading", log) as progress:
             done = cut_log(log, out, selection, *interval, force, progress)
     if as_json:

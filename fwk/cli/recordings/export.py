@@ -10,7 +10,7 @@ import typer
 
 from fwk.cli.arguments import new_file
 from fwk.cli.output import say
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.log_options import (
     Channels,
     Exclude,
@@ -64,8 +64,7 @@ def export(
     if chosen is None:
         raise typer.BadParameter(f"which format? use --to {'|'.join(Format)}")
     with failing(BAD_INPUT):
-        use_types_of(types)
-        found = find_log(log)
+        found = find_log_with_types(log, types)
         with progress_of("exporting", found) as progress:
             selection = Selection(channels or (), exclude or (), kinds or ())
             done = export_log(found, out, chosen, selection, force, progress)

@@ -9,18 +9,17 @@ import typer
 
 from fwk.cli.arguments import folder
 from fwk.cli.output import say, say_table
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.progress import progress_of
 from fwk.clock import US_PER_S
 from fwk.display.table import Column, Table
 from fwk.lcm.log_parts import parts_of
-from fwk.lcm.type_registry import use_types_of
 from fwk.recording.log_contents import ChannelInfo, LogInfo
 from fwk.recording.log_info import log_info as read_info
 
 
 def log_info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="log or run directory")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", help="log, or run by its name or directory")],
     check: Annotated[
         bool, typer.Option("--check", help="read every message and compare the check sums; exit 1 at damage")
     ] = False,
@@ -34,8 +33,7 @@ def log_info(
     A log with an index beside it (`log.lcm.index`, which a run writes at its end) opens at once, whatever its size.
     """
     with failing(2):
-        use_types_of(types)
-        log = find_log(file)
+        log = find_log_with_types(file, types)
         with progress_of("reading", log) as progress:
             info = read_info(log, check, progress)
     if as_json:

@@ -7,7 +7,7 @@ import typer
 
 from fwk.cli.arguments import folder, new_file
 
-Log = Annotated[Path, typer.Argument(metavar="LOG", help="log or run directory")]
+Log = Annotated[Path, typer.Argument(metavar="LOG", help="log, or run by its name or directory")]
 Out = Annotated[Path, typer.Option("--out", "-o", parser=new_file, metavar="FILE", help="the new log")]
 Force = Annotated[bool, typer.Option("--force", help="replace FILE if it exists")]
 Types = Annotated[

@@ -16,7 +16,9 @@ from fwk.log_tools.merge import merge as merge_logs
 
 
 def merge(
-    logs: Annotated[list[Path], typer.Argument(metavar="LOG...", help="logs or run directories, two or more")],
+    logs: Annotated[
+        list[Path], typer.Argument(metavar="LOG...", help="logs, or runs by their names or directories, two or more")
+    ],
     out: Out,
     align: Annotated[
         bool, typer.Option("--align", help="let all logs begin at 0 s, for logs of different clocks")

@@ -12,7 +12,7 @@ import typer
 from fwk.bus.public import PublicBus
 from fwk.cli.arguments import folder, speed
 from fwk.cli.output import BAD_INPUT, FAILED, INTERRUPTED
-from fwk.cli.recordings.find_log import failing, find_log
+from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.play_controls import Controls
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import Json
@@ -71,7 +71,7 @@ def play(
     """
     with failing(BAD_INPUT):
         use_folders([str(types)])
-        timeline = Timeline(find_log(run))
+        timeline = Timeline(find_log_with_types(run, types))
         try:
             chosen = Channels(channels or (), exclude or (), _names(remap or ()))
             plugins = Plugins(plugin or ())

@@ -27,7 +27,8 @@ def repair(log: Log, out: Out, force: Force = False, as_json: Json = False) -> N
         with progress_of("reading", found) as progress:
             done = repair_log(found, out, force, progress)
     if as_json:
-        typer.echo(json.dumps({**asdict(done), "log": str(done.log), "out": str(done.out)}))
+        parts = [part._asdict() for part in done.changed]
+        typer.echo(json.dumps({**asdict(done), "log": str(done.log), "out": str(done.out), "changed": parts}))
         return
     say(f"{out}: {done.events} events", *_losses(done))
 
@@ -36,6 +37,7 @@ def _losses(done: Repaired) -> list[str]:
     made = [f"lost: bytes {first} to {last}, not a whole event" for first, last in done.lost_bytes]
     if done.lost_events:
         made.append(f"lost: {done.lost_events} events, according to the numbers of the others")
+    made += [f"damaged: {part}; their whole events are kept" for part in done.changed if not part.missing]
     if done.last_tick is not None:
         made.append(f"last whole tick: {done.last_tick}; {done.unfinished_events} events after it")
     return made or ["nothing is lost"]

@@ -20,6 +20,7 @@ from fwk.model.plan import Plan
 from fwk.plan.what_ran import blas_kernel, changed_modules, other_kernel
 from fwk.recording.difference import Difference
 from fwk.recording.differing import Differing, differing, lines_of
+from fwk.recording.log_index import changed
 from fwk.recording.replay.recording import Recording, RecordingError
 from fwk.recording.replay.replay import Replay
 from fwk.recording.travel.debugger import LEFT, Travel
@@ -98,6 +99,7 @@ def _replayed(
         recording = _opened(log)
         done = Replay(recording, only)
         notes = list(_not_as_in_the_run(recording.plan))
+        notes += [f"damaged: {part}" for part in changed(log)] if verify else ()
         for text in notes:
             typer.echo(f"{log}: {text}", err=True)
         run(done)

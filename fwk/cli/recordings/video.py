@@ -17,7 +17,7 @@ from fwk.recording.video import VideoError, drawing
 
 
 def video(
-    log: Annotated[Path, typer.Argument(metavar="LOG", help="log or run directory")],
+    log: Annotated[Path, typer.Argument(metavar="LOG", help="log, or run by its name or directory")],
     out: Annotated[
         Path, typer.Option("--out", "-o", parser=video_file, metavar="FILE.mp4", help="where the video goes")
     ],

@@ -19,7 +19,7 @@ IN_USE = "in-use"
 GB = 1_000_000_000
 KEEP = "keep"
 """File that protects a run directory from automatic removal."""
-_NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-.+-\d+", re.ASCII)
+_NAME = re.compile(r"\d{4}-\d\d-\d\dT\d\d-\d\d-\d\d-(.+)-\d+", re.ASCII)
 
 
 class RunDirError(Exception):
@@ -98,9 +98,14 @@ def _alone(folder: Path) -> Iterator[None]:
 
 
 def named(path: Path) -> Path:
-    """Returns the run directory of a name from `fwk runs list`, unless the path exists as typed."""
-    own = Path.home() / RUNS / path.name
-    return own if str(path) == path.name and not os.path.lexists(path) and os.path.isdir(own) else path
+    """Returns the run directory of a name from `fwk runs list`, or the newest one of a run's own name (`--run NAME`),
+    unless the path exists as typed.
+    """
+    if str(path) != path.name or os.path.lexists(path):
+        return path
+    runs = Path.home() / RUNS
+    own = [folder for folder in runs.glob("*") if (found := _NAME.fullmatch(folder.name)) and found[1] == path.name]
+    return runs / path.name if os.path.isdir(runs / path.name) else max(own, default=path)
 
 
 def in_use(path: Path) -> bool:

@@ -159,3 +159,13 @@ def test_a_run_removes_excess_directories_and_reports_it(tmp_path: Path) -> None
     assert "removed the 2 oldest run directories" in done.stdout
     assert there(folder / RUNS)[:-1] == names[2:]
     assert not any(each.in_use for each in run_dirs(folder / RUNS))
+
+
+def test_a_log_is_found_by_the_name_of_its_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    names = make(tmp_path / RUNS, 1, 2)
+    assert named(Path("match")) == tmp_path / RUNS / names[1]  # the newest
+    assert (named(Path(names[0])).name, named(Path("mat"))) == (names[0], Path("mat"))
+    (tmp_path / "match").touch()
+    monkeypatch.chdir(tmp_path)
+    assert named(Path("match")) == Path("match")

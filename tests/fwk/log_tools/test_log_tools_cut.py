@@ -97,6 +97,7 @@ def test_the_last_seconds_are_an_interval(tmp_path: Path) -> None:
     log = recording(tmp_path / "log")
     done = cut(log, tmp_path / "out", ALL, last_s=0.2)
     assert (ticks_in(done.out), excerpt_in(done.out)) == ((6, 10), "log, the last 0.2 s")
+    assert log_info(done.out).duration_s == pytest.approx(0.2)  # the plan stands at the beginning of the interval
     assert cut(log, tmp_path / "all", ALL, last_s=99).events == log_info(log).events
     both = ["cut", str(log), "-o", str(tmp_path / "both"), "--last", "1", "--to", "3"]
     assert "--last is an interval of its own" in CliRunner().invoke(app, both).stderr

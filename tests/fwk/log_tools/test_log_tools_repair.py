@@ -56,3 +56,12 @@ def test_a_file_that_is_not_a_log_leaves_no_file(tmp_path: Path) -> None:
     with pytest.raises(LogError, match="no event would be in it"):
         repair(tmp_path / "text", tmp_path / "out")
     assert [path.name for path in tmp_path.iterdir()] == ["text"]
+
+
+def test_bytes_that_are_not_what_was_written_are_named(tmp_path: Path) -> None:
+    log = repair(recording(tmp_path / "log"), tmp_path / "indexed").out
+    data = bytearray(log.read_bytes())
+    data[data.index(b"cyan1/odometry", len(data) // 2) + 40] ^= 1
+    log.write_bytes(data)
+    said = CliRunner().invoke(app, ["repair", str(log), "-o", str(tmp_path / "out")]).stdout
+    assert f"damaged: bytes 0 to {len(data) - 1} (ticks 1 to 11) are not the bytes that were written" in said
