@@ -34,7 +34,11 @@ class SeveralNames(TyperCommand):
     """Command whose `--only` and `--without` take several names in a row: `--only cyan1 world`."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        return super().parse_args(ctx, spread(args))
+        try:
+            return super().parse_args(ctx, spread(args))
+        except typer.BadParameter as error:
+            error.message = error.message.replace("Value error, ", "")  # pydantic's words, in some versions of typer
+            raise
 
     def invoke(self, ctx: Any) -> Any:
         _is_incomplete.set(False)

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.arguments import seconds
+from fwk.cli.output import notice
 from fwk.control import client
 from fwk.control.client import RUN_VARIABLE, ControlError, RefusedError
 
@@ -36,7 +37,11 @@ SomeNames = Annotated[
 
 @contextmanager
 def asking() -> Iterator[None]:
-    """Turns errors of a run into a sentence on stderr and an exit code; Ctrl-C ends a command that watches."""
+    """Turns errors of a run into a sentence on stderr and an exit code; Ctrl-C ends a command that watches.
+
+    A request that has no answer after a second is a note on stderr.
+    """
+    before = client.notice.set(notice)
     try:
         yield
     except ControlError as error:
@@ -44,6 +49,8 @@ def asking() -> Iterator[None]:
         raise typer.Exit(exit_code(error)) from error
     except KeyboardInterrupt as interrupt:
         raise typer.Exit(0) from interrupt
+    finally:
+        client.notice.reset(before)
 
 
 def exit_code(error: ControlError) -> int:

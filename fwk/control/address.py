@@ -20,6 +20,11 @@ def gateway_address(bus_port: int) -> str:
     return f"\0{_GATEWAY}{bus_port}"
 
 
+def supervisor_beside(control_address: str) -> str:
+    """Returns the address of the supervisor of the run that a control socket belongs to."""
+    return control_address.replace(_GATEWAY, _SUPERVISOR)
+
+
 def running() -> list[int]:
     """Returns the bus ports of the runs on this machine, from the kernel's list of sockets.
 

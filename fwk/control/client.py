@@ -4,7 +4,8 @@ import contextlib
 import json
 import os
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextvars import ContextVar
 from typing import Any, Self
 
 from fwk.clock import US_PER_S, monotonic_us
@@ -17,8 +18,11 @@ _CHUNK = 64 << 10
 _DESCRIPTORS_MAX = 4
 _ANSWER_MAX_BYTES = 64 << 20
 _LOOK_S = 1.0
+_NOTICE_US = US_PER_S
 _TOGETHER = 64
 """Number of runs that are asked at a time."""
+notice: ContextVar[Callable[[str], None] | None] = ContextVar("notice", default=None)
+"""Takes a text about a request that has had no answer for a second; without it, such requests wait silently."""
 _NEEDED = frozenset(("name", "plan", "pid"))
 """Keys of the answer by which a run is chosen."""
 
@@ -44,6 +48,7 @@ class Client:
 
     def __init__(self, socket_address: str, timeout_s: float = TIMEOUT_S) -> None:
         self._rest = b""
+        self._descriptors: list[int] = []
         self._address = socket_address
         self._timeout_s = timeout_s
         self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -74,15 +79,19 @@ class Client:
         within_s = timeout_s or self._timeout_s
         self.send(verb, **fields)
         try:
-            return self.answer(monotonic_us() + round(within_s * US_PER_S))
+            return self._patient(monotonic_us() + round(within_s * US_PER_S))
         except TimeoutError as error:
-            waits = self._waits() if verb != "status" else ""
-            raise NoAnswerError(f"{self._run()} has not answered within {within_s:g} s{waits}") from error
+            remedy = self._remedy() if verb != "status" else ""
+            raise NoAnswerError(f"{self._run()} has not answered within {within_s:g} s{remedy}") from error
         except EOFError as error:
             raise ControlError("the run has ended") from error
 
-    def follow(self, verb: str, within_s: float | None = None, **fields: Any) -> Iterator[dict[str, Any]]:
+    def follow(
+        self, verb: str, within_s: float | None = None, notices: bool = False, **fields: Any
+    ) -> Iterator[dict[str, Any]]:
         """Sends a request and yields all its answers until the run ends or `within_s` has passed.
+
+        With `notices`, each answer is expected within a second, as that of `ask` is.
 
         Raises:
             ControlError: refused, or not an answer.
@@ -91,9 +100,20 @@ class Client:
         end_us = None if within_s is None else monotonic_us() + round(within_s * US_PER_S)
         while True:
             try:
-                yield self.answer(end_us)
+                yield self._patient(end_us) if notices else self.answer(end_us)
             except (TimeoutError, EOFError):
                 return
+
+    def _patient(self, end_us: int | None) -> dict[str, Any]:
+        """Returns the next answer; after a second without it, says what the run waits for."""
+        tell, first_us = notice.get(), monotonic_us() + _NOTICE_US
+        if tell and (end_us is None or first_us < end_us):
+            try:
+                return self.answer(first_us)
+            except TimeoutError:
+                waits = self._waits_for()
+                tell(f"no answer yet; the run waits for {', '.join(waits)}" if waits else "no answer of the run yet")
+        return self.answer(end_us)
 
     def send(self, verb: str, **fields: Any) -> None:
         """Sends a request."""
@@ -108,13 +128,14 @@ class Client:
             TimeoutError: `end_us` has passed.
             ControlError: the run refuses, or what came is not an answer.
         """
-        parts, size, descriptors = [self._rest], len(self._rest), list[int]()
+        parts, size, descriptors = [self._rest], len(self._rest), self._descriptors
         while b"\n" not in parts[-1]:
             self._socket.settimeout(None if end_us is None else max(0, end_us - monotonic_us()) / US_PER_S)
             try:
                 data, found, _, _ = socket.recv_fds(self._socket, _CHUNK, _DESCRIPTORS_MAX)
                 descriptors += found
-            except BlockingIOError as error:
+            except (BlockingIOError, TimeoutError) as error:
+                self._rest = b"".join(parts)
                 raise TimeoutError from error
             except ConnectionError:
                 data = b""
@@ -125,6 +146,7 @@ class Client:
             if size > _ANSWER_MAX_BYTES:
                 raise ControlError(f"{self._run()} sends an answer without end")
         line, _, self._rest = b"".join(parts).partition(b"\n")
+        self._descriptors = []
         answer = self._read(line)
         if not answer.get("ok"):
             raise RefusedError(_plain(str(answer.get("error"))))
@@ -147,17 +169,23 @@ class Client:
         process = f"pid {self.pid}" if self.pid else "a process that is not visible from here"
         return f"the run at @{self._address[1:]} ({process})"
 
-    def _waits(self) -> str:
+    def _remedy(self) -> str:
         """Names the components that keep the current tick from ending; most requests take effect after it."""
-        try:
-            with Client(self._address, 1.0) as other:
-                waits_for = other.ask("status").get("waits_for", [])
-        except ControlError:
-            return ""
+        waits_for = self._waits_for()
         if not waits_for:
             return ""
         hint = "" if waits_for == ["gateway"] else ": a component that does not come back can be stopped"
         return f"; its loop waits for {', '.join(waits_for)}{hint}"
+
+    def _waits_for(self) -> list[str]:
+        """Returns the components that the main loop waits for, as its supervisor says on another connection."""
+        try:
+            with Client(address.supervisor_beside(self._address), _LOOK_S) as other:
+                other.send("status")
+                found: list[str] = other.answer(monotonic_us() + round(_LOOK_S * US_PER_S)).get("waits_for", [])
+                return found
+        except (ControlError, TimeoutError, EOFError):
+            return []
 
 
 class _Answer(dict[str, Any]):

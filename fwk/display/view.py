@@ -102,7 +102,8 @@ class View:
         period_ms = self.plan.period_us / 1000 / (self.plan.speed or 1)
         busiest = slowest(self.loop_times, 1)
         if busiest and busiest[0].mean_ms > period_ms:
-            return f"slower than asked; {busiest[0].name} takes {busiest[0].mean_ms:.0f} ms of {period_ms:g} ms a tick"
+            takes = f"{busiest[0].name} takes {busiest[0].mean_ms:.0f} ms"
+            return f"slower than asked; {takes}, but a tick has only {period_ms:g} ms"
         hosts, cores = len(self.plan.hosts), len(os.sched_getaffinity(0))
         if hosts <= cores:
             return "slower than asked; 'fwk top' shows where the time goes"

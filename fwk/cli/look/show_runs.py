@@ -14,7 +14,7 @@ from fwk.display.table import Column, Table
 
 def show_runs(as_json: bool) -> int:
     """Prints a row for each run of this user."""
-    found = [_one(port) for port in sorted(client.look())]
+    found = running()
     if as_json:
         say(json.dumps(found, indent=2))
     elif not found:
@@ -22,6 +22,11 @@ def show_runs(as_json: bool) -> int:
     else:
         say_table(_table(found))
     return 0
+
+
+def running() -> list[dict[str, Any]]:
+    """Returns the status of each run, without its components; a run that does not answer has only its port."""
+    return [_one(port) for port in sorted(client.look())]
 
 
 def _one(port: int) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from fwk.cli.look.show_runs import running
 from fwk.cli.output import say_table
 from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, prune, run_dirs
 from fwk.cli.run.run_record import RunRecord, age_s, read_record
@@ -45,8 +46,9 @@ def run_directories() -> None:
 def list_runs(as_json: Json = False) -> None:
     """Lists all run directories, the oldest first: start, duration, seed, result, size, and state."""
     found = run_dirs(Path.home() / RUNS)
+    waiting = _waiting() if any(each.in_use for each in found) else {}
     if as_json:
-        typer.echo(json.dumps([_plain(each) for each in found], indent=2))
+        typer.echo(json.dumps([_plain(each, waiting.get(str(each.path), [])) for each in found], indent=2))
         return
     table = Table(
         "run",
@@ -64,7 +66,7 @@ def list_runs(as_json: Json = False) -> None:
         size = f"{each.size_bytes / _MB:.1f}"
         table.add(
             *(each.path.name, _started(record), _duration(each, record), ticks, seed, size, _word(each)),
-            _result(each, record),
+            _result(each, record, waiting.get(str(each.path), [])),
             style="green" if each.in_use else "red" if record.exit_code else "",
         )
     say_table(table)
@@ -121,11 +123,18 @@ def _duration(run: RunDir, record: RunRecord) -> str:
     return "" if seconds is None else f"{seconds:.1f} s"
 
 
-def _result(run: RunDir, record: RunRecord) -> str:
+def _waiting() -> dict[str, list[str]]:
+    """Returns the components that each run of this machine waits for, by run directory."""
+    return {run["run_dir"]: run["waits_for"] for run in running() if run["answers"]}
+
+
+def _result(run: RunDir, record: RunRecord, waits_for: list[str]) -> str:
+    if waits_for:
+        return f"waits for {', '.join(waits_for)}"
     result = "; ".join(record.result.splitlines())
     return result if result or run.in_use or record.started_us is None else "ended without a result"
 
 
-def _plain(run: RunDir) -> dict[str, object]:
+def _plain(run: RunDir, waits_for: list[str]) -> dict[str, object]:
     about = {"path": str(run.path), "size_bytes": run.size_bytes, "in_use": run.in_use, "kept": run.kept}
-    return {**about, **asdict(read_record(run.path))}
+    return {**about, "waits_for": waits_for, **asdict(read_record(run.path))}

@@ -73,7 +73,7 @@ def _called(
     with client.gateway(chosen) as gateway:
         data = _encoded(gateway, name, fields, chosen)
         last: dict[str, Any] = {}
-        for answer in gateway.follow("call", timeout_s, name=name, data=data.hex(), expires_s=expires_s):
+        for answer in gateway.follow("call", timeout_s, True, name=name, data=data.hex(), expires_s=expires_s):
             last = {"reply": {}, "reason": "", **answer, "timed_out": False}
             if last["state"] not in ("sent", "accepted") or (accepted and last["state"] == "accepted"):
                 return last

@@ -2,8 +2,10 @@
 
 import pytest
 import typer
+from typer.testing import CliRunner
 
 from fwk.cli.arguments import seconds, speed, spread
+from fwk.cli.commands import app
 
 
 @pytest.mark.parametrize(
@@ -31,3 +33,11 @@ def test_a_speed_is_a_factor_or_max(typed: str, meant: float) -> None:
 def test_speeds_and_durations_that_no_clock_can_wait_for(read: type, typed: str) -> None:
     with pytest.raises(typer.BadParameter, match=f"'{typed}' is not a .*; use "):
         read(typed)
+
+
+@pytest.mark.parametrize("words", [["completion", "tcsh"], ["log", "--level", "loud"]])
+def test_a_value_that_is_not_a_choice_is_a_plain_sentence(words: list[str]) -> None:
+    result = CliRunner().invoke(app, words)
+    assert result.exit_code == 2
+    assert f"'{words[-1]}' is not one of" in result.output
+    assert "Value error" not in result.output

@@ -148,6 +148,14 @@ def test_a_result_of_several_lines_is_shown_in_one_row(home: Path) -> None:
     assert "not started: a/b: no port; c/d: no file" in said("list")
 
 
+def test_the_list_names_what_a_run_waits_for(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    made = make_run_dir("match", home)
+    row = {"run_dir": str(made), "waits_for": ["a/b"], "answers": True}
+    monkeypatch.setattr("fwk.cli.recordings.runs.running", lambda: [row, {"bus_port": 7, "answers": False}])
+    assert "waits for a/b" in said("list")
+    assert json.loads(said("list", "--json"))[0]["waits_for"] == ["a/b"]
+
+
 @pytest.mark.system
 def test_a_run_removes_excess_directories_and_reports_it(tmp_path: Path) -> None:
     folder = tmp_path

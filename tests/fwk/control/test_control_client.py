@@ -163,6 +163,32 @@ def test_an_answer_that_lacks_a_key_is_refused_where_it_is_used(fake: Callable[[
             part["state"]
 
 
+def test_a_request_that_waits_names_what_the_run_waits_for(
+    bound: list[socket.socket], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(client, "_NOTICE_US", 50_000)
+    listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+    bound.append(listening)
+    listening.bind(f"\0fwk-control-test-{os.getpid()}-{next(_NUMBERS)}")
+    listening.listen()
+
+    def serve() -> None:
+        slow, _ = listening.accept()
+        slow.sendall(b'{"ok": true,')
+        other, _ = listening.accept()
+        other.sendall(b'{"ok": true, "waits_for": ["a/b"]}\n')
+        slow.sendall(b' "tick": 7}\n')
+        bound.extend((slow, other))
+
+    threading.Thread(target=serve, daemon=True).start()
+    said: list[str] = []
+    before = client.notice.set(said.append)
+    with Client(str(listening.getsockname().decode())) as run:
+        assert run.ask("pause")["tick"] == 7
+    client.notice.reset(before)
+    assert said == ["no answer yet; the run waits for a/b"]
+
+
 def test_silent_and_false_runs_hide_no_other(fake: Callable[[bytes], str], monkeypatch: pytest.MonkeyPatch) -> None:
     real = b'{"ok": true, "name": "match", "plan": "soccer", "pid": 11}\n'
     sent = [b"", b"[]\n", b"", b'{"ok": true}\n', b" ", real]

@@ -138,7 +138,7 @@ def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -
     [
         (2, 1000, "3 processes share 2 cores: start it with --hosting robot"),
         (4, 1000, "'fwk top' shows where the time goes"),
-        (2, 70_000, "cyan1/camera takes 70 ms of 50 ms a tick"),
+        (2, 70_000, "cyan1/camera takes 70 ms, but a tick has only 50 ms"),
     ],
 )
 def test_a_run_below_the_desired_speed_names_the_cause(
@@ -152,7 +152,7 @@ def test_a_run_below_the_desired_speed_names_the_cause(
         view.take(packet("fwk/status", status(TRACKER, 1, speed=0.3, busy_us=busy_us)))
     assert view.slowness == f"slower than asked; {cause}"
     drawing = drawn(*[status(TRACKER, 1, speed=0.3, busy_us=70_000)] * 9, columns=80)
-    assert row(drawing, "slower").endswith("cyan1/camera takes 70 ms of 50 ms a tick")
+    assert row(drawing, "slower").endswith("cyan1/camera takes 70 ms, but a tick has only 50 ms")
 
 
 @pytest.mark.parametrize("columns", [40, 60, 80, 120])
