@@ -24,6 +24,8 @@ from fwk.supervisor.options import RunOptions
 
 DELETED = b"deleted"
 """Beginning of the packet that names a deleted file of the run to the supervisor."""
+UNWRITTEN = b"unwritten"
+"""Beginning of the packet that says what could not be recorded."""
 
 
 def run_gateway(
@@ -60,6 +62,7 @@ def run_gateway(
         targets.above(sinks.Display(plan, display, gateway.log.error), plan.log.console),
         sinks.Newest(plan, control, lambda: gateway.lost + sum(each.dropped for each in recorders)),
     ]
+    unwritten = ""
     if options.record:
         try:
             recorder = _recorder(plan, options.record, rings, gateway.log.error)
@@ -70,13 +73,17 @@ def run_gateway(
             gateway.sinks.insert(0, targets.above(recorded, plan.log.recording))
         except LogError as error:
             gateway.log.error(f"{error}; the run goes on without a recording")
+            unwritten = "there is no recording"
     run_files = RunFiles(options, gateway.log.error)
     gateway.sinks.append(run_files)
     network.run(gateway.serve())
-    if run_files.deleted:
-        control.setblocking(True)
-        with suppress(OSError):  # the supervisor has died
-            control.send(DELETED + b"\0" + run_files.deleted.encode())
+    if dropped := sum(each.dropped for each in recorders):
+        unwritten = f"the recording lacks {dropped} messages that could not be written"
+    control.setblocking(True)
+    for what, text in ((DELETED, run_files.deleted), (UNWRITTEN, unwritten)):
+        if text:
+            with suppress(OSError):  # the supervisor has died
+                control.send(what + b"\0" + text.encode())
     return 0
 
 

@@ -11,7 +11,7 @@ from fwk.control.watcher import Watcher
 from fwk.display.display import run_display
 from fwk.gateway.gateway import FINISHING
 from fwk.host.process import ENDED_WELL, StopSignal, die_with_parent, end_child, name_process, run_forked, wait_for_end
-from fwk.launcher.gateway_process import DELETED, run_gateway
+from fwk.launcher.gateway_process import DELETED, UNWRITTEN, run_gateway
 from fwk.launcher.reservations import Reservations
 from fwk.model.plan import Plan
 from fwk.recording import sinks
@@ -37,6 +37,8 @@ class HelperProcesses:
         """Messages that the gateway never got; known after the end."""
         self.deleted = ""
         """File of the run that was deleted during the run; empty: none; known after the end."""
+        self.unwritten = ""
+        """What could not be recorded, as text; empty: nothing; known after the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()
@@ -99,6 +101,7 @@ class HelperProcesses:
                 self.gave_up = f"the gateway was not done {when}; killed: the recording may lack its end"
         newest.pop(FINISHING.decode(), None)
         self.deleted = newest.pop(DELETED.decode(), b"").decode()
+        self.unwritten = newest.pop(UNWRITTEN.decode(), b"").decode()
         self.lost = int(newest.pop(sinks.LOST, 0))
         if self._gateway:
             how = wait_for_end(self._gateway)

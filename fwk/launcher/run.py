@@ -20,7 +20,7 @@ from fwk.model.plan import Plan
 from fwk.supervisor.barrier import WINDOW
 from fwk.supervisor.options import Outcome, RunOptions
 from fwk.supervisor.processes.zygote import Zygote
-from fwk.supervisor.supervisor import Machine, Supervisor
+from fwk.supervisor.supervisor import INTERRUPTED, Machine, Supervisor
 
 __all__ = [
     "ControlNameError",
@@ -60,10 +60,8 @@ def run(plan: Plan, options: RunOptions, lock: PortLock) -> Outcome:
     if failures and not failed:
         reason, failed = f"failed: {'; '.join(failures)}", True
     newest = _decoded(plan, helpers.stop())
-    if helpers.gave_up and not failed:
-        reason, failed = f"broken: {helpers.gave_up}", True
-    if helpers.deleted and not failed:
-        reason, failed = f"broken: {helpers.deleted}", True
+    if not failed:
+        reason, failed = ending(reason, helpers)
     zygote.close()
     reservations.release()
     return Outcome(
@@ -77,6 +75,18 @@ def run(plan: Plan, options: RunOptions, lock: PortLock) -> Outcome:
         helpers.lost,
         helpers.deleted,
     )
+
+
+def ending(reason: str, helpers: HelperProcesses) -> tuple[str, bool]:
+    """Returns the reason for the end of a run whose components are well, and whether it failed nevertheless.
+
+    A recording that a full disk has cut short is a failure, unless the user ended the run: the log named it then.
+    """
+    if broken := helpers.gave_up or helpers.deleted:
+        return f"broken: {broken}", True
+    if helpers.unwritten and reason != INTERRUPTED:
+        return f"{reason}, but {helpers.unwritten}", True
+    return reason, False
 
 
 def _rings(plan: Plan, options: RunOptions) -> dict[str, Ring]:

@@ -43,6 +43,9 @@ from fwk.supervisor.tick_log import TickLog
 from fwk.supervisor.wait_report import WaitReport
 from lcmtypes.core import status_t
 
+INTERRUPTED = "interrupted"
+"""Reason for the end of a run that a signal has ended."""
+
 
 class GatewayProcess(Protocol):
     """The gateway as the supervisor sees it."""
@@ -185,7 +188,7 @@ class Supervisor:
         broken = [f"{entry.name}: {entry.reason}" for entry in self._core.hosts if entry.failed]
         if broken:
             return f"failed: {'; '.join(broken)}", True
-        return ("interrupted" if self._interrupted() else f"{self.loop.tick} ticks done"), False
+        return (INTERRUPTED if self._interrupted() else f"{self.loop.tick} ticks done"), False
 
     def _stop_hosts(self) -> Steps[list[str]]:
         """Stops all hosts, even if other processes end in between; returns the ends of those."""
