@@ -35,32 +35,33 @@ class Listeners:
         self._port = port
         self._look_us = 0
         self._queue_look_us = 0
-        self._held_up = ""  # name of a listener with datagrams in its socket
+        self._held_up: list[str] = []  # names of listeners with datagrams in their sockets
         self._inodes: set[str] = set()
         self._processes: dict[str, int] = {}  # by inode of their sockets
         self._threads: dict[int, list[int]] = {}  # by process: open files with the states of its threads
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last check
 
-    def busy(self) -> str | None:
-        """Returns the name of a listener that is still busy; empty if none is, None if none exists."""
+    def busy(self) -> list[str] | None:
+        """Returns the names of the listeners that are still busy; None if no listener exists."""
         now_us = monotonic_us()
         if now_us >= self._look_us:
             self._look()
             self._look_us = now_us + (LOOK_US if self._inodes else FIRST_LOOK_US)
         if not self._inodes:
             return None
+        found: list[str] = []
         for process, threads in list(self._threads.items()):
             try:
                 # One thread may pass its work to another during a check, so all are checked twice.
                 if any(_can_run(thread) for thread in threads) or any(_can_run(thread) for thread in threads):
-                    return _name_of(process)
+                    found.append(_name_of(process))
             except OSError:  # the program, or one of its threads, has ended
                 self._forget(process)
                 self._look_us = now_us
         if self._held_up or now_us >= self._queue_look_us:
             self._queue_look_us = now_us + QUEUE_LOOK_US
             self._held_up = self._with_datagrams()
-        return self._held_up
+        return list(dict.fromkeys(found + self._held_up))
 
     def close(self) -> None:
         """Closes the files with the states."""
@@ -88,11 +89,9 @@ class Listeners:
                 for thread in threads:
                     self._threads[process].append(os.open(f"{thread}/stat", os.O_RDONLY | os.O_CLOEXEC))
 
-    def _with_datagrams(self) -> str:
-        for socket in sockets_on(self._port):
-            if socket.waiting and socket.inode in self._processes:
-                return _name_of(self._processes[socket.inode])
-        return ""
+    def _with_datagrams(self) -> list[str]:
+        waiting = [each.inode for each in sockets_on(self._port) if each.waiting]
+        return [_name_of(self._processes[inode]) for inode in waiting if inode in self._processes]
 
     def _forget(self, process: int) -> None:
         for file in self._threads.pop(process):

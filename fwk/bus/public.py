@@ -79,10 +79,10 @@ class PublicBus:
         with contextlib.suppress(OSError):
             self._sender.sendto(datagram, self._address)
 
-    def busy_listener(self) -> str | None:
-        """Returns the name of a program that still works on earlier messages; None if no program can listen."""
+    def busy_listeners(self) -> list[str] | None:
+        """Returns the names of the programs that still work on earlier messages; None if no program can listen."""
         busy = self._listeners.busy()
-        return "" if busy is None and self._leaves_machine else busy
+        return [] if busy is None and self._leaves_machine else busy
 
     def receive(self) -> tuple[str, bytes, int] | None:
         """Returns the next message of another program as (channel, data, port of its sender); None when none waits.

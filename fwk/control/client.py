@@ -229,6 +229,21 @@ def _asked(ports: list[int]) -> dict[int, dict[str, Any]]:
     return found
 
 
+def states() -> list[dict[str, Any]]:
+    """Returns the status of each run, with the number of its components in their place; a run that does not answer has
+    only its port.
+    """
+    return [_state(port) for port in sorted(look())]
+
+
+def _state(port: int) -> dict[str, Any]:
+    with contextlib.suppress(ControlError), Client(address.supervisor_address(port), _LOOK_S) as run:
+        status = run.ask("status")
+        found = [each["state"] for each in status.pop("components")]
+        return {**status, "components": len(found), "failed": found.count("failed"), "answers": True}
+    return {"bus_port": port, "answers": False}
+
+
 def find_run(chosen: str | int | None) -> int:
     """Returns the bus port of a run: the one with that name or bus port, else the one that FWK_RUN names, else the only
     one.

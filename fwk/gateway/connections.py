@@ -55,6 +55,6 @@ class Outsiders(Protocol):
         """Sends one datagram to them."""
         ...
 
-    def busy_listener(self) -> str | None:
-        """Returns the name of a program that still works on earlier messages; empty: none; None: no program listens."""
+    def busy_listeners(self) -> list[str] | None:
+        """Returns the names of the programs that still work on earlier messages; None: no program listens."""
         ...

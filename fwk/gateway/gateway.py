@@ -93,11 +93,11 @@ class Gateway:
             self._handlers[public.fileno()] = self._hear_outside
         for descriptor in (*self._handlers, self._records.receiver.fileno()):
             network.watch(descriptor)
-        self._overrun = ""  # listener that was reported last
+        self._overrun: set[str] = set()  # listeners that were reported
         self.publisher = PacedPublisher(
             network.now_us,
             public.send if public else _drop,
-            public.busy_listener if public else _none,
+            public.busy_listeners if public else _none,
             REAL_TIME_PATIENCE_US if plan.clock == "wall" else PATIENCE_US,
         )
         """Sends what goes to the public bus."""
@@ -156,9 +156,9 @@ class Gateway:
 
     def _publish_due(self) -> None:
         self.publisher.send_due()
-        if self.publisher.overrun != self._overrun:
-            self._overrun = self.publisher.overrun
-            self.log.warning(f"public bus: {self._overrun} does not keep up; it may lack messages")
+        if (overrun := self.publisher.overrun) and overrun not in self._overrun:
+            self._overrun.add(overrun)
+            self.log.warning(f"public bus: {overrun} does not keep up; it may lack messages")
 
     def _finish(self) -> Steps[None]:
         """Writes the remaining data and closes everything."""

@@ -35,29 +35,30 @@ class PacedPublisher:
     Args:
         now_us: returns the wall time in microseconds.
         send: sends one datagram.
-        busy_listener: returns the name of a program that has not handled earlier datagrams; empty if all listeners
-        have, None if no program can listen.
-        patience_us: longest wall time that the queue waits for a busy listener.
+        busy_listeners: returns the names of the programs that have not handled earlier datagrams; None if no program
+        can listen.
+        patience_us: longest wall time that the queue waits for a busy listener. One that stays busy for longer is not
+        waited for until it has been idle again, so that only that listener lacks datagrams.
     """
 
     def __init__(
         self,
         now_us: Callable[[], int],
         send: Callable[[bytes], None],
-        busy_listener: Callable[[], str | None],
+        busy_listeners: Callable[[], list[str] | None],
         patience_us: int,
     ) -> None:
         self.overrun = ""
-        """Listener that was busy for so long that it may lack datagrams; empty: none."""
+        """Listener that was busy for so long that it may lack datagrams, the newest one; empty: none."""
         self._now_us = now_us
         self._send = send
-        self._busy_listener = busy_listener
+        self._busy_listeners = busy_listeners
         self._patience_us = patience_us
         self._queue: deque[bytes] = deque()
         self._size = 0  # datagrams in the queue that count
         self._group = LEAST
         self._due_us = 0
-        self._busy_us = 0  # wall time since which a listener is busy; 0: none is
+        self._busy_us: dict[str, int] = {}  # by busy listener: wall time since which it is
         self._tick_us = now_us()  # wall time of the newest tick
         self._interval_us = float(LONGEST_US)  # mean wall time between ticks
 
@@ -91,20 +92,22 @@ class PacedPublisher:
         if not self._queue or now_us < self._due_us:
             return
         excess = self._size - QUEUE_MAX
-        busy = self._busy_listener()
+        busy = self._busy_listeners()
         if busy is None:
             self._send_group(self._size)
             return
-        self._busy_us = (self._busy_us or now_us) if busy else 0
+        self._busy_us = {name: self._busy_us.get(name, now_us) for name in busy}
         self._due_us = now_us + SLOT_US
-        if busy and excess <= 0 and now_us < self._busy_us + self._patience_us:
+        overdue = [name for name, since_us in self._busy_us.items() if now_us >= since_us + self._patience_us]
+        if len(overdue) < len(busy) and excess <= 0:
             return
-        self.overrun = busy or self.overrun
+        lacking = overdue if excess <= 0 else busy
+        self.overrun = lacking[0] if lacking and self.overrun not in lacking else self.overrun
         self._send_group(max(self._group, excess))
 
     def send_all(self) -> None:
         """Sends whatever waits; listeners may lack some of it."""
-        self.overrun = self._busy_listener() or self.overrun or "a listener"
+        self.overrun = next(iter(self._busy_listeners() or ()), self.overrun or "a listener")
         self._send_group(self._size)
 
     def _send_group(self, left: int) -> None:

@@ -135,9 +135,9 @@ class _Public(Signal):
     def send(self, datagram: bytes) -> None:
         """Drops the datagram: no program outside listens."""
 
-    def busy_listener(self) -> str:
+    def busy_listeners(self) -> list[str]:
         """Names no listener: the gateway paces what it publishes for programs that it cannot see."""
-        return ""
+        return []
 
 
 class _SupervisorConnection(Signal):

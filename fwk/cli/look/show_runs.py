@@ -1,20 +1,17 @@
 """Prints the runs that are going on."""
 
-import contextlib
 import json
 from typing import Any
 
 from fwk.cli.output import say, say_table
 from fwk.clock import US_PER_S
 from fwk.control import client
-from fwk.control.address import supervisor_address
-from fwk.control.client import Client, ControlError
 from fwk.display.table import Column, Table
 
 
 def show_runs(as_json: bool) -> int:
     """Prints a row for each run of this user."""
-    found = running()
+    found = client.states()
     if as_json:
         say(json.dumps(found, indent=2))
     elif not found:
@@ -22,19 +19,6 @@ def show_runs(as_json: bool) -> int:
     else:
         say_table(_table(found))
     return 0
-
-
-def running() -> list[dict[str, Any]]:
-    """Returns the status of each run, without its components; a run that does not answer has only its port."""
-    return [_one(port) for port in sorted(client.look())]
-
-
-def _one(port: int) -> dict[str, Any]:
-    with contextlib.suppress(ControlError), Client(supervisor_address(port), 1.0) as run:
-        status = run.ask("status")
-        states = [each["state"] for each in status.pop("components")]
-        return {**status, "components": len(states), "failed": states.count("failed"), "answers": True}
-    return {"bus_port": port, "answers": False}
 
 
 def _table(found: list[dict[str, Any]]) -> Table:

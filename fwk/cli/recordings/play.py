@@ -112,7 +112,7 @@ class _Playing:
     ) -> None:
         self.messages = 0
         self._player, self._bus, self._channels, self._plugins = player, bus, channels, plugins
-        self._publisher = PacedPublisher(monotonic_us, bus.send, bus.busy_listener, _LISTENER_PATIENCE_US)
+        self._publisher = PacedPublisher(monotonic_us, bus.send, bus.busy_listeners, _LISTENER_PATIENCE_US)
         self._controls = Controls(player)
         self._keyboard = keyboard
         self._shows = bool(keyboard.descriptors) and sys.stdout.isatty()
@@ -130,7 +130,7 @@ class _Playing:
         Raises:
             PluginError: a plugin failed.
         """
-        while wait and self._bus.busy_listener() is None and not self._controls.quits:
+        while wait and self._bus.busy_listeners() is None and not self._controls.quits:
             self._sleep(monotonic_us() + _LOOK_US)
         self._player.resume(monotonic_us()) if not self._player.paused else None
         while not self._controls.quits and not (self._player.ended and not self._publisher.waiting):

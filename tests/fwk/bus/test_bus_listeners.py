@@ -39,8 +39,8 @@ def listening() -> Iterator[tuple[subprocess.Popen[str], int]]:
 
 def busy_within(made: Listeners, seconds: float) -> str:
     for _ in range(round(seconds / 0.01)):
-        if name := made.busy():
-            return name
+        if names := made.busy():
+            return names[0]
         sleep_s(0.01)
     return ""
 

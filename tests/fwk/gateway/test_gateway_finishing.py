@@ -62,10 +62,10 @@ class Ending:
     def send(self, _: bytes) -> None:
         self.sent.append(self.network.time_us)
 
-    def busy_listener(self) -> str:
+    def busy_listeners(self) -> list[str]:
         """Handles what it gets only after a time just below the gateway's patience."""
         self._take_report()
-        return "slow" if self.sent and self.network.time_us < self.sent[-1] + BUSY_US else ""
+        return ["slow"] if self.sent and self.network.time_us < self.sent[-1] + BUSY_US else []
 
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         assert not self.closed

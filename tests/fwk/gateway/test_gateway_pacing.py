@@ -18,7 +18,11 @@ class Paced:
         self.sent: list[bytes] = []
         self.groups: list[int] = []
         self.busy: str | None = ""
-        self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append, lambda: self.busy, PATIENCE_US)
+        self.others: list[str] = []
+        self.publisher = PacedPublisher(lambda: self.now_us, self.sent.append, self.busy_listeners, PATIENCE_US)
+
+    def busy_listeners(self) -> list[str] | None:
+        return None if self.busy is None else [*filter(None, (self.busy,)), *self.others]
 
     def tick(self, count: int, datagram: Callable[[int], bytes] = lambda number: b"%d" % number) -> None:
         """Ends a tick in which so many datagrams were written."""
@@ -85,6 +89,22 @@ def test_a_listener_that_stays_busy_is_overrun_and_named() -> None:
     assert len(paced.sent) == 100
     assert max(paced.groups) <= LARGEST
     assert paced.publisher.overrun == "lcm-logger"
+
+
+def test_a_listener_that_stays_busy_takes_nothing_from_the_others() -> None:
+    paced = Paced()
+    paced.tick(200)
+    paced.busy = "lcm-spy"
+    paced.pass_time(PATIENCE_US + 3 * SLOT_US)
+    paced.others = ["lcm-logger"]
+    paced.pass_time(2 * SLOT_US)
+    sent = len(paced.sent)
+    paced.pass_time(PATIENCE_US // 2)
+    assert (len(paced.sent), paced.publisher.overrun) == (sent, "lcm-spy")
+    paced.others = []
+    paced.pass_time(200 * SLOT_US)
+    assert len(paced.sent) == 200
+    assert max(paced.groups) <= LARGEST
 
 
 def test_the_rest_leaves_at_once_at_the_end() -> None:
