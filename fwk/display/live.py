@@ -51,7 +51,7 @@ def press(key: str, view: View, steering: Steering) -> None:
     elif key in ("+", "=", "-"):
         speed = steering.speed() or (view.status.speed if view.status else 1.0)
         factor = 0.5 if key == "-" else 2.0
-        steering.change_speed(min(SPEED_MAX, max(SPEED_MIN, speed * factor)))
+        steering.change_speed(min(SPEED_MAX, max(SPEED_MIN, float(f"{speed * factor:.2g}"))))
     elif key == "m":
         steering.change_speed(0.0)
     elif key == "q":

@@ -101,7 +101,7 @@ class LoopTimes:
             stage_us, stage = self._slowest_stage
             busy_us, host, its_stage = self._slowest_host
             self._log.warning(
-                f"loop time missed: tick {tick} took {took_us / 1000:.1f} ms, desired are {desired_us / 1000:g} ms; "
+                f"loop time missed: tick {tick} took {took_us / 1000:.1f} ms, desired are {desired_us / 1000:.3g} ms; "
                 f"slowest stage {self._plan.stages[stage]} ({stage_us / 1000:.1f} ms), "
                 f"slowest component {self.name_of(host, its_stage)} ({busy_us / 1000:.1f} ms){self._missed.between()}"
             )

@@ -1,7 +1,9 @@
 """Candidates for the next word of a command line: commands, options, and names of running and recorded things."""
 
 import os
+import sys
 from collections.abc import Callable, Iterable
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +12,7 @@ from fwk.control import client
 from fwk.control.client import ControlError
 
 _TIMEOUT_S = 3.0  # a busy machine answers slowly
+_LAUNCH_FILES = (".yaml", ".yml")
 _RUNS = Path(".cache", "fwk", "runs")
 
 
@@ -64,8 +67,32 @@ def _values(command: Command, parameter: Parameter, typed: list[str]) -> Iterabl
     chosen = next((typed[at + 1] for at, word in enumerate(typed[:-1]) if word in ("--run", "--bus-port")), None)
     if command.words == ("fwk", "call"):
         metavar = "COMMANDS"
+    file = next((word for word in typed if word.endswith(_LAUNCH_FILES)), None)
+    if file and chosen is None and metavar in _IN_FILE:
+        return _IN_FILE[metavar](_rows(file))
     source = _SOURCES.get(metavar)
     return source(chosen) if source else []
+
+
+def _rows(file: str) -> list[dict[str, Any]]:
+    """Returns the settings of a launch file that was typed before; none of one that has mistakes."""
+    from fwk.control.settings import RunSettings
+    from fwk.model.errors import PlanError
+    from fwk.plan.load import load_plan
+
+    try:
+        with redirect_stdout(sys.stderr):  # modules of components may print
+            return RunSettings(load_plan(file)).rows([])
+    except PlanError:
+        return []
+
+
+def _components_of(rows: list[dict[str, Any]]) -> Iterable[str]:
+    return (row["component"] for row in rows)
+
+
+def _assignments_of(rows: list[dict[str, Any]]) -> Iterable[str]:
+    return (f"{row['component']}.{row['setting']}=" for row in rows)
 
 
 def _components(chosen: str | None) -> Iterable[str]:
@@ -99,9 +126,7 @@ def _recordings(_: str | None) -> Iterable[str]:
 
 
 def _launch_files(_: str | None) -> Iterable[str]:
-    return (
-        (each for each in os.listdir("launch") if each.endswith((".yaml", ".yml"))) if os.path.isdir("launch") else ()
-    )
+    return (each for each in os.listdir("launch") if each.endswith(_LAUNCH_FILES)) if os.path.isdir("launch") else ()
 
 
 def _ask(chosen: str | None, verb: str) -> dict[str, Any]:
@@ -125,3 +150,9 @@ _SOURCES: dict[str, Callable[[str | None], Iterable[str]]] = {
     "FILE": _launch_files,
 }
 """Metavar of a parameter to the source of its values. The shells add file names where a source gives none."""
+_IN_FILE: dict[str, Callable[[list[dict[str, Any]]], Iterable[str]]] = {
+    "NAME": _components_of,
+    "PATH=VALUE": _assignments_of,
+    "NAME.SETTING": lambda rows: (each.rstrip("=") for each in _assignments_of(rows)),
+}
+"""Metavar of a parameter to what the settings of a typed launch file offer for it."""

@@ -11,6 +11,7 @@ from fwk.cli.commands import app
 from fwk.cli.complete.candidates import complete
 from fwk.control import client
 from fwk.control.client import ControlError
+from fwk.control.settings import RunSettings
 
 ANSWERS: dict[str, Any] = {
     "status": {"components": [{"name": "cyan1/agent"}, {"name": "cyan1/base"}, {"name": "world/referee"}]},
@@ -82,6 +83,30 @@ def test_launch_files_and_recordings_are_found(tmp_path: Path, monkeypatch: pyte
     assert complete(["fwk-launch", "g"]) == ["garden.yaml"]
     assert complete(["fwk", "replay", "20"]) == ["2026-garden-7"]
     assert complete(["fwk", "compare", "2026-garden-7", "2"]) == ["2026-garden-7"]
+
+
+@pytest.mark.parametrize(
+    ("typed", "found"),
+    [
+        ("fwk-launch garden.yaml --set bed/", ["bed/probe.gain="]),
+        ("fwk check garden.yaml --set bed/", ["bed/probe.gain="]),
+        ("fwk-launch garden.yaml --without ", ["bed/probe"]),
+        ("fwk config get --file garden.yaml ", ["bed/probe.gain"]),
+        ("fwk status --run match w", ["world/referee"]),
+    ],
+)
+def test_a_typed_launch_file_names_components_and_settings(
+    asked: list[str | None], typed: str, found: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(RunSettings, "rows", lambda *_: [{"component": "bed/probe", "setting": "gain"}])
+    monkeypatch.setattr(RunSettings, "__init__", lambda *_: None)
+    monkeypatch.setattr("fwk.plan.load.load_plan", str)
+    assert complete(typed.split(" ")) == found
+
+
+def test_a_launch_file_with_mistakes_names_nothing(tmp_path: Path) -> None:
+    (tmp_path / "broken.yaml").write_text("components: {a/b: {use: nowhere}}")
+    assert complete(["fwk-launch", str(tmp_path / "broken.yaml"), "--set", "a"]) == []
 
 
 def test_without_a_run_there_are_no_names(monkeypatch: pytest.MonkeyPatch) -> None:
