@@ -1,5 +1,6 @@
 """Checks of the machine: each tries one thing that runs need, and names a command that helps."""
 
+import errno
 import mmap
 import os
 import resource
@@ -174,6 +175,6 @@ def _is_free(port: int) -> bool:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         try:
             probe.bind((LOOPBACK, port))
-        except OSError:
-            return False
+        except OSError as error:
+            return error.errno == errno.EADDRNOTAVAIL  # there is no loopback; another check says so
     return True

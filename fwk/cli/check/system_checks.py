@@ -91,7 +91,8 @@ def orphans(titles: Callable[[], dict[int, tuple[int, str]]] | None = None) -> F
 def _titles() -> dict[int, tuple[int, str]]:
     found = {}
     for process in psutil.process_iter(["ppid", "cmdline"]):
-        found[process.pid] = (process.info["ppid"] or 0, " ".join(process.info["cmdline"] or ()))
+        title = " ".join(process.info["cmdline"] or ()).rstrip()  # padded to the length of the command line before
+        found[process.pid] = (process.info["ppid"] or 0, title)
     return found
 
 

@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import typer
@@ -49,6 +50,12 @@ def test_processes_without_a_supervisor_are_named() -> None:
     assert found.text == "without a supervisor: 20 (other gateway), 21 (other red/base)"
     assert found.advice == "kill -9 20 21"
     assert os.getpid() in checks._titles()
+
+
+def test_a_padded_title_of_a_supervisor_is_its_own(monkeypatch: pytest.MonkeyPatch) -> None:
+    process = SimpleNamespace(pid=7, info={"ppid": 1, "cmdline": ["fwk: match supervisor          "]})
+    monkeypatch.setattr("psutil.process_iter", lambda _: [process])
+    assert checks.orphans() == Finding(Severity.OK, "processes of runs", "1 run, no process left behind")
 
 
 def test_a_slow_clock_and_a_wrong_date_are_found(tmp_path: Path) -> None:
