@@ -6,6 +6,7 @@ from collections.abc import Sequence
 import libcst as cst
 
 from fwk.plan.files.launch_file import shown
+from fwk.scaffold.changes import ScaffoldError
 from fwk.scaffold.source import Source
 
 Line = cst.SimpleStatementLine | cst.BaseCompoundStatement
@@ -119,8 +120,18 @@ def _rank(source: Source, line: Line, order: Sequence[str]) -> int:
 
 
 def parsed(source: Source, text: str) -> cst.SimpleStatementLine:
-    """Returns a line of code with the line ends and indentation of the file."""
-    return cst.ensure_type(cst.parse_statement(text, config=source.module.config_for_parsing), cst.SimpleStatementLine)
+    """Returns a line of code with the line ends and indentation of the file.
+
+    Raises:
+        ScaffoldError: the text is not valid Python, since a word in it is a keyword, or its quotes end too early.
+    """
+    try:
+        made = cst.parse_statement(text, config=source.module.config_for_parsing)
+    except cst.ParserSyntaxError as error:
+        raise ScaffoldError(
+            f"'{text}' is not valid Python; choose a name that is not a keyword, and a plain text"
+        ) from error
+    return cst.ensure_type(made, cst.SimpleStatementLine)
 
 
 def is_empty(line: Line) -> bool:

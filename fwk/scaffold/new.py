@@ -9,7 +9,7 @@ from fwk.model.errors import hint
 from fwk.plan.files.launch_file import FOLDER, shown
 from fwk.scaffold.changes import Change, ScaffoldError, content, edited
 from fwk.scaffold.project import Project, check_module_is_free, check_name, check_types_are_free, package_of
-from fwk.scaffold.templates import component_template, kinds, project_files
+from fwk.scaffold.templates import class_name, component_template, kinds, names_in, project_files
 
 _NAMESPACE = re.compile(r"[A-Za-z_][\w-]*", re.ASCII)
 _README, _HEADING = "README.md", "## Components"
@@ -46,6 +46,8 @@ def new_component(
     check_name(name, "a component")
     if kind not in kinds():
         raise ScaffoldError(f"no kind of component '{kind}'; {hint(kind, kinds())}")
+    if {name, class_name(name)} & names_in(kind):
+        raise ScaffoldError(f"components use the name '{name}' themselves; choose another one, such as {name}_part")
     check_types_are_free(name, project.root)
     check_module_is_free(name, project.package)
     file = project.launch_file(launch)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import libcst as cst
 
+from fwk.component.component import Component
 from fwk.scaffold.changes import ScaffoldError
 from fwk.scaffold.class_lines import attributes, code_of, lines_of, taken, uses, with_line, with_lines, without
 from fwk.scaffold.imports import add_import, remove_unused
@@ -89,6 +90,8 @@ def _refuse_other_use(source: Source, class_: cst.ClassDef, name: str) -> None:
     """Refuses the name of a method or of a plain attribute of the class."""
     if not _NAME.fullmatch(name):
         raise ScaffoldError(f"'{name}' is not the name of a port; write one word, such as ball")
+    if hasattr(Component, name):
+        raise ScaffoldError(f"every component has '{name}'; choose another name")
     for line in lines_of(class_):
         if isinstance(line, cst.FunctionDef | cst.ClassDef) and line.name.value == name:
             raise ScaffoldError(

@@ -3,6 +3,7 @@
 import keyword
 import pkgutil
 import re
+import unicodedata
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,7 +16,80 @@ from fwk.scaffold.changes import ScaffoldError
 NAME_MAX = 24
 _DEFAULT_PACKAGE = "parts"
 _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
+_UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
+
+_RESERVED = frozenset(
+    [
+        "abstract",
+        "alignas",
+        "alignof",
+        "auto",
+        "bool",
+        "boolean",
+        "byte",
+        "catch",
+        "char",
+        "const",
+        "constexpr",
+        "decltype",
+        "default",
+        "delete",
+        "do",
+        "double",
+        "enum",
+        "explicit",
+        "export",
+        "extends",
+        "extern",
+        "final",
+        "float",
+        "friend",
+        "goto",
+        "implements",
+        "inline",
+        "instanceof",
+        "int",
+        "interface",
+        "long",
+        "mutable",
+        "namespace",
+        "native",
+        "new",
+        "noexcept",
+        "nullptr",
+        "operator",
+        "package",
+        "private",
+        "protected",
+        "public",
+        "register",
+        "short",
+        "signed",
+        "sizeof",
+        "static",
+        "strictfp",
+        "struct",
+        "super",
+        "switch",
+        "synchronized",
+        "template",
+        "this",
+        "throw",
+        "throws",
+        "transient",
+        "typedef",
+        "typeid",
+        "typename",
+        "union",
+        "unsigned",
+        "using",
+        "virtual",
+        "void",
+        "volatile",
+    ]
+)
+"""Words of C++ and Java that cannot name a package of message types there."""
 
 
 def package_of(root: Path) -> str:
@@ -85,21 +159,37 @@ def check_name(name: str, what: str) -> str:
         ScaffoldError: the name is not a lower-case identifier, is a keyword of Python, or is too long.
     """
     if not _NAME.fullmatch(name):
-        right = re.sub(r"[^a-z0-9]+", "_", _HUMP.sub("_", name).lower()).strip("_0123456789") or "ball_tracker"
-        raise ScaffoldError(f"'{name}' is not the name of {what}; write lower-case words, such as {right}")
-    if keyword.iskeyword(name) or keyword.issoftkeyword(name):
+        raise ScaffoldError(f"'{name}' is not the name of {what}; write lower-case words, such as {_nearest(name)}")
+    if _is_keyword(name):
         raise ScaffoldError(f"'{name}' is a keyword of Python; choose another name for {what}")
     if len(name) > NAME_MAX:
         raise ScaffoldError(f"'{name}' has {len(name)} characters; the name of {what} has at most {NAME_MAX}")
     return name
 
 
+def _nearest(name: str) -> str:
+    """Returns a name of lower-case words that is like another text."""
+    letters = unicodedata.normalize("NFKD", _HUMP.sub("_", name).lower().translate(_UMLAUTS))
+    ascii_letters = "".join(each for each in letters if not unicodedata.combining(each))
+    right = re.sub(r"[^a-z0-9]+", "_", ascii_letters).strip("_0123456789")
+    return f"{right}_part" if _is_keyword(right) else right[:NAME_MAX].rstrip("_") or "ball_tracker"
+
+
+def _is_keyword(name: str) -> bool:
+    return keyword.iskeyword(name) or keyword.issoftkeyword(name)
+
+
 def check_types_are_free(name: str, root: Path) -> None:
-    """Checks that a package of message types would not hide an installed one.
+    """Checks that a package of message types would not hide an installed one, and works in other languages.
 
     Raises:
-        ScaffoldError: another folder has a package of that name.
+        ScaffoldError: another folder has a package of that name, or the name is a word of C++ or Java.
     """
+    if name in _RESERVED:
+        raise ScaffoldError(
+            f"'{name}' is a word of C++ or Java, where it cannot name message types; choose another name, such as "
+            f"{name}_part"
+        )
     others = [each for each in lcmtypes.__path__ if Path(each).resolve() != (root / "lcmtypes").resolve()]
     if name in {module.name for module in pkgutil.iter_modules(others)}:
         raise ScaffoldError(f"'{name}' is a package of installed message types; choose another name")

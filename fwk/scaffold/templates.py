@@ -3,11 +3,14 @@
 `Thing` stands for the name as a class, and `things` for the package of components.
 """
 
+import ast
 import re
 from pathlib import Path
 from typing import NamedTuple
 
 import yaml
+
+from fwk.component.component import Component
 
 _FOLDER = Path(__file__).with_name("templates")
 _PROJECT = "project"
@@ -38,6 +41,22 @@ def kinds() -> list[str]:
 def class_name(name: str) -> str:
     """Returns the class name for a name: `ball_tracker` becomes `BallTracker`."""
     return "".join(part.capitalize() for part in name.split("_"))
+
+
+def names_in(kind: str) -> set[str]:
+    """Returns the names that the classes of a kind of component use: attributes, methods and imports."""
+    found = set(dir(Component))
+    for path in sorted((_FOLDER / kind / "things").glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, (ast.Import, ast.ImportFrom)):
+                found |= {each.asname or each.name for each in node.names}
+            elif isinstance(node, ast.FunctionDef):
+                found.add(node.name)
+            elif isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name):
+                found.add(node.target.id)
+            elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "self":
+                found.add(node.attr)
+    return {each for each in found if not _WORD.search(each)}
 
 
 def project_files(name: str, package: str) -> dict[str, str]:

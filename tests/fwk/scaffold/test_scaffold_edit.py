@@ -241,6 +241,8 @@ def test_mistakes_name_file_and_line(tmp_path: Path, monkeypatch: pytest.MonkeyP
     refused(PLAIN.replace("def loop", "def ball"), "tracker.py:22: Tracker has a 'ball' already")
     refused(PLAIN.replace('stage = "think"', "ball = 3"), "tracker.py:17: Tracker has a 'ball' already")
     refused(PLAIN, "'a b' is not the name of a port", PortRequest("reads", "a b", ("garden.ball_t",)))
+    refused(PLAIN, "is not valid Python; choose a name that", PortRequest("reads", "class", ("garden.ball_t",)))
+    refused(PLAIN, "every component has 'finalize'", PortRequest("reads", "finalize", ("garden.ball_t",)))
     refused(PLAIN, "tracker.py:10: TrackerConfig has 'gain: float = 0.3' already", SettingRequest("gain", "int", "3"))
     there = PLAIN.replace("class TrackerConfig", "class Others")
     refused(there, "tracker.py:19: the settings of Tracker, TrackerConfig, are not", SettingRequest("x", "int", "3"))

@@ -58,6 +58,12 @@ def test_readme_without_the_table_stays_as_it_is(project: Project) -> None:
     [
         ("Ball-Tracker", "'Ball-Tracker' is not the name of a component; write lower-case words, such as ball_tracker"),
         ("7", "such as ball_tracker"),
+        ("Türöffner", "such as tueroeffner"),
+        ("double", "'double' is a word of C++ or Java, where it cannot name message types"),
+        ("def_", "such as def_part"),
+        ("config", "components use the name 'config' themselves; choose another one, such as config_part"),
+        ("loop", "components use the name 'loop'"),
+        ("writes", "components use the name 'writes'"),
         ("while", "'while' is a keyword of Python"),
         ("a" * 25, "has 25 characters; the name of a component has at most 24"),
         ("core", "'core' is a package of installed message types"),
