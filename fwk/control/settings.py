@@ -2,7 +2,7 @@
 
 import dataclasses
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
@@ -22,6 +22,7 @@ from fwk.plan.files.settings import effective
 from fwk.plan.files.source import Node
 
 _NOW = "now"
+_LIMITS = {"gt": "more than", "ge": "at least", "lt": "less than", "le": "at most"}
 
 
 @dataclass(frozen=True)
@@ -182,13 +183,13 @@ def _value(values: Any, dotted: str) -> Any:
 
 @cache
 def _described(kind: type[Config], dotted: str) -> dict[str, Any]:
-    """Returns type and meaning of a setting, and whether it can be changed during the run."""
+    """Returns type, range and meaning of a setting, and whether it can be changed during the run."""
     annotation: Any = kind
-    meaning, editable = "", True
+    meaning, limits, editable = "", "", True
     for key in dotted.split("."):
-        annotation, meaning, fixed = _field(annotation, key)
+        annotation, meaning, limits, fixed = _field(annotation, key)
         editable = editable and not fixed
-    return {"type": _type_name(annotation), "meaning": meaning, "editable": editable}
+    return {"type": _type_name(annotation), "range": limits, "meaning": meaning, "editable": editable}
 
 
 def _type_name(annotation: Any) -> str:
@@ -198,11 +199,19 @@ def _type_name(annotation: Any) -> str:
     return name.replace("typing.", "")
 
 
-def _field(kind: Any, key: str) -> tuple[Any, str, bool]:
-    """Returns type and meaning of a field of settings, or of a dataclass in them, and whether it is fixed."""
+def _field(kind: Any, key: str) -> tuple[Any, str, str, bool]:
+    """Returns type, meaning and range of a field of settings, or of a dataclass in them, and whether it is fixed."""
     if isinstance(kind, type) and issubclass(kind, BaseModel) and key in kind.model_fields:
         found = kind.model_fields[key]
-        return found.annotation, found.description or meanings_of(kind).get(key, ""), bool(found.frozen)
+        meaning = found.description or meanings_of(kind).get(key, "")
+        return found.annotation, meaning, _range(found.metadata), bool(found.frozen)
     if isinstance(kind, type) and dataclasses.is_dataclass(kind):
-        return get_type_hints(kind).get(key), meanings_of(kind).get(key, ""), False
-    return None, "", False
+        return get_type_hints(kind).get(key), meanings_of(kind).get(key, ""), "", False
+    return None, "", "", False
+
+
+def _range(limits: Iterable[Any]) -> str:
+    """Returns the limits of a number in words, such as `at least 0, less than 1`; empty: it has none."""
+    return ", ".join(
+        f"{word} {getattr(each, name)}" for each in limits for name, word in _LIMITS.items() if hasattr(each, name)
+    )

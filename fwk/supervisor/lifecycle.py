@@ -80,7 +80,7 @@ class Lifecycle(Generic[H]):
         return names.index(name)
 
     def hosts(self, action: Action, patterns: Sequence[str], force: bool = False) -> list[H]:
-        """Returns the hosts concerned; with `force`, unloading includes the components that need them.
+        """Returns the hosts concerned; with `force`, stopping and unloading include the components that need them.
 
         Raises:
             RequestError: the request cannot be granted; names the components that prevent it.
@@ -93,7 +93,7 @@ class Lifecycle(Generic[H]):
             raise RequestError(f"{error}{_LOADED if action == 'load' else ''}") from error
         if action == "load":
             chosen = [index for index in with_needs(chosen, components) if index in chosen or not self._runs(index)]
-        elif action == "unload" and force:
+        elif action in ("stop", "unload") and force:
             chosen = [index for index in with_users(chosen, components) if index in chosen or self._runs(index)]
         elif action == "unload":
             self._check_users(chosen)

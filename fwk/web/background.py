@@ -16,12 +16,17 @@ other sessions."""
 _SESSION_NICENESS = 10
 """Where a run needs all processors, the session gets a tenth of one of them: enough to open a page in seconds."""
 _LOWEST = 19
+_TURN_S = 0.1
+"""Least time between two changes of sessions' niceness that the kernel permits to users."""
+_TURNS = 100
+"""Number of turns in which a process that has got a signal must end; afterwards it is killed."""
 
 
 def continue_in_background() -> None:
     """Continues in a child process in a session of its own; does not return in the calling process.
 
-    The calling process forwards signals to the child and ends as the child ends. The child ends with its parent.
+    The calling process forwards signals to the child and ends as the child ends; a child that has not ended ten seconds
+    after a signal is killed. The child ends with its parent.
     """
     sys.stdout.flush()
     sys.stderr.flush()
@@ -48,15 +53,39 @@ def give_way() -> None:
 
 
 def _status_of(child: int, awaited: set[signal.Signals]) -> int:
-    """Forwards signals until the child ends; returns its wait status."""
+    """Forwards signals until the child ends; returns its wait status, 0 if it had to be killed after a signal."""
+    turns, hurried = -1, False  # since the last signal; negative: none has come
     while True:
-        number = signal.sigwait(awaited)
-        if number != signal.SIGCHLD:
-            os.kill(child, number)
-            continue
+        found = signal.sigwaitinfo(awaited) if turns < 0 else signal.sigtimedwait(awaited, _TURN_S)
+        if found and found.si_signo in _FORWARDED:
+            os.kill(child, found.si_signo)
+            turns = 0
+        if turns >= 0:
+            hurried = hurried or _hurried(child)
+            turns += 1
+        if turns == _TURNS:
+            os.kill(child, signal.SIGKILL)
         ended, status = os.waitpid(child, os.WNOHANG)
         if ended:
-            return status
+            return 0 if turns >= _TURNS else status
+
+
+def _hurried(child: int) -> bool:
+    """Gives a child that is to end the usual priority: it would hardly ever run where no processor is idle.
+
+    Returns whether the kernel has permitted that; soon after another change it does not.
+    """
+    with suppress(OSError):
+        for thread in Path(f"/proc/{child}/task").iterdir():
+            os.sched_setscheduler(int(thread.name), os.SCHED_OTHER, os.sched_param(0))
+            os.setpriority(os.PRIO_PROCESS, int(thread.name), 0)
+    try:
+        Path(f"/proc/{child}/autogroup").write_text("0")
+    except BlockingIOError:
+        return False
+    except OSError:  # no sessions' niceness here
+        return True
+    return True
 
 
 def _end_as(status: int) -> NoReturn:

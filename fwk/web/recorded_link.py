@@ -115,7 +115,7 @@ class RecordedLink:
         return [
             {
                 **{"component": each.name, "setting": setting, "value": value, "type": type(value).__name__},
-                **{"origin": origin, "meaning": "", "editable": False},
+                **{"origin": origin, "range": "", "meaning": "", "editable": False},
             }
             for each in self._plan().components
             for setting, origin in each.origins.items()

@@ -1,7 +1,7 @@
 """Forms made from message types, to send messages and requests."""
 
 import json
-from typing import Any, Literal
+from typing import Any
 
 from nicegui import ui
 
@@ -79,9 +79,7 @@ async def send_form(frame: Frame, channel: str) -> None:
         if sender == OUTSIDE:
             answer = await frame.do(access.call(service, members))
             if answer:
-                reason = f": {answer['reason']}" if answer["reason"] else ""
-                look: Literal["positive", "negative"] = "positive" if answer["state"] == "done" else "negative"
-                ui.notify(f"{service}: {answer['state']}{reason}", type=look, multi_line=True)
+                ui.notify(f"{service}: {answer['state']}", type="positive")
         else:
             await frame.do(access.send(channel, members), f"{channel}: sent")
 

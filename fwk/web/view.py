@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from fwk.bus.public import PublicBus
+from fwk.component.services import RequestState
 from fwk.control.client import RefusedError
 from fwk.control.host_file import KeepError, Kept, keep
 from fwk.control.requests import Action
@@ -19,6 +20,7 @@ from fwk.web.scene import Newest, Scene
 
 _CALL_S = 10.0
 _STEER_S = 60.0
+_WELL = (RequestState.SENT, RequestState.ACCEPTED, RequestState.DONE)
 
 
 class View(ABC):
@@ -97,6 +99,11 @@ class RunAccess:
     async def steer(self, action: Action, names: Sequence[str], force: bool = False) -> dict[str, Any]:
         """Starts, stops, restarts, reloads, loads or unloads components; returns when it has happened.
 
+        Args:
+            action: the change.
+            names: the components, or patterns.
+            force: stops and unloads also the components that need them.
+
         Raises:
             ControlError: refused, or not permitted.
         """
@@ -140,10 +147,20 @@ class RunAccess:
         return answer
 
     async def call(self, name: str, members: Mapping[str, Any], timeout_s: float = _CALL_S) -> dict[str, Any]:
-        """Sends a command or a request, such as `house/pour`; returns the last answer with `state` and `reason`."""
+        """Sends a command or a request, such as `house/pour`; returns its last answer within the time.
+
+        The `state` of that is `done`, or `sent` or `accepted` while the component, or a paused run, lets it wait.
+
+        Raises:
+            ControlError: not permitted, refused, or the component could not carry it out; the text gives its reason.
+        """
         self._check()
         kind = await self.link.message_type(f"{name}@outside")
-        return await self.link.call(name, _encoded(kind, members, name), timeout_s)
+        answer = await self.link.call(name, _encoded(kind, members, name), timeout_s)
+        if answer["state"] not in _WELL:
+            reason = f": {answer['reason']}" if answer["reason"] else ""
+            raise RefusedError(f"{name}: {answer['state']}{reason}")
+        return answer
 
     async def send(self, channel: str, members: Mapping[str, Any]) -> int:
         """Writes a message on a channel that the launch file opens for programs outside; returns its bytes."""

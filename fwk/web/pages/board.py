@@ -13,10 +13,10 @@ from fwk.web.words import age, rows_of, seconds
 
 _COLUMNS = {
     "channel": "channel",
-    "type": "type",
-    "writer": "writer",
     "rate": "Hz",
     "age": "age",
+    "type": "type",
+    "writer": "writer",
     "messages": "messages",
     "bytes": "bytes",
     "readers": "readers",

@@ -141,5 +141,6 @@ def _typed(value: Any) -> str:
 
 def _details(row: dict[str, Any]) -> str:
     in_file = f"in the launch file: {_typed(row['in_file'])}" if "in_file" in row else ""
-    parts = (in_file, row["type"], row["origin"], "" if row["editable"] else "fixed for the run", row["meaning"])
+    fixed = "" if row["editable"] else "fixed for the run"
+    parts = (in_file, row["type"], row["range"], row["origin"], fixed, row["meaning"])
     return ", ".join(filter(None, parts))

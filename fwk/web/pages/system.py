@@ -116,7 +116,7 @@ def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:
 
     async def steer(action: Action) -> None:
         if chosen:
-            answer = await frame.do(frame.access.steer(action, list(chosen), action == "unload" and force.value))
+            answer = await frame.do(frame.access.steer(action, list(chosen), force.value))
             if answer:
                 ui.notify("; ".join(sentence(each, answer["tick"]) for each in answer["processes"]), type="info")
 
@@ -125,7 +125,7 @@ def _buttons(frame: Frame, chosen: list[str]) -> list[ui.button]:
         button = ui.button(action, icon=icon, on_click=lambda action=action: steer(action))
         made.append(button.props("dense outline no-caps size=sm").props(f"data-name={action}"))
         button.set_enabled(False)
-    force = ui.checkbox("unload with all that need it").props("dense").classes("q-ml-sm")
+    force = ui.checkbox("stop and unload with all that need it").props("dense").classes("q-ml-sm")
     return made
 
 

@@ -114,7 +114,9 @@ def test_a_master_is_unloaded_once_it_has_no_users(steering: Lifecycle[HostProce
     assert names(steering.hosts("unload", ["r/camera"])) == ["r/camera"]
     state(table, "r/finder", running=True)
     assert names(steering.hosts("unload", ["r/camera", "r/finder"])) == ["r/camera", "r/finder"]
-    assert names(steering.hosts("unload", ["r/camera"], force=True)) == ["r/camera", "r/finder"]
+    for action in ("stop", "unload"):
+        assert names(steering.hosts(action, ["r/camera"], force=True)) == ["r/camera", "r/finder"]
+    assert names(steering.hosts("stop", ["r/camera"])) == ["r/camera"]
 
 
 def test_readers_that_lose_their_writer_are_named(steering: Lifecycle[HostProcess], table: list[HostProcess]) -> None:

@@ -14,7 +14,7 @@ from lcmtypes.robot import imu_t
 
 
 class Inner(Config):
-    deep: int = 1
+    deep: int = Field(1, ge=0, lt=10)
     """Depth."""
 
 
@@ -72,12 +72,14 @@ def test_a_row_has_all_columns(settings: RunSettings) -> None:
             "value": 0.3,
             "origin": "soccer.yaml:4",
             "type": "float",
+            "range": "",
             "meaning": "Speed.",
             "editable": True,
         }
     ]
     (deep,) = settings.rows(["b/turner.inner"])
     assert (deep["setting"], deep["type"], deep["meaning"]) == ("inner.deep", "int", "Depth.")
+    assert deep["range"] == "at least 0, less than 10"
 
 
 def test_new_values_show_their_origin_once_in_force(settings: RunSettings) -> None:

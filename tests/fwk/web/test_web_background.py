@@ -10,17 +10,22 @@ from pathlib import Path
 
 import pytest
 
+from tests.harness.runs import pause
+
 PROGRAM = """
 import os, signal, sys
+from fwk.web import background
 from fwk.web.background import continue_in_background, give_way
 
 def told(number, frame):
     os.write(1, signal.Signals(number).name.encode() + b"\\n")
     if "abort" in sys.argv:
         os.abort()
-    if number == signal.SIGTERM:
+    if number == signal.SIGTERM and "deaf" not in sys.argv:
         os._exit(7)
 
+if "deaf" in sys.argv:
+    background._TURNS = 2
 continue_in_background()
 for number in (signal.SIGINT, signal.SIGTERM):
     signal.signal(number, told)
@@ -43,6 +48,14 @@ class Background:
         assert self.parent.stdout
         return self.parent.stdout.readline().strip()
 
+    def wait_for_priority(self) -> None:
+        """Waits until the session of the child has the usual niceness, and the child the usual policy."""
+        autogroup = Path(f"/proc/{self.pid}/autogroup")
+        while autogroup.exists() and not autogroup.read_text().endswith("nice 0\n"):
+            pause()
+        if os.geteuid() == 0:
+            assert os.sched_getscheduler(self.pid) == os.SCHED_OTHER
+
 
 @pytest.fixture
 def background(request: pytest.FixtureRequest) -> Iterator[Background]:
@@ -64,9 +77,18 @@ def test_signals_reach_the_child_and_its_exit_code_is_kept(background: Backgroun
     assert not autogroup.exists() or autogroup.read_text().endswith("nice 10\n")
     background.parent.send_signal(signal.SIGINT)
     assert background.line() == "SIGINT"
+    background.wait_for_priority()
     background.parent.send_signal(signal.SIGTERM)
     assert background.line() == "SIGTERM"
     assert background.parent.wait(120) == 7
+
+
+@pytest.mark.parametrize("background", [("deaf",)], indirect=True)
+def test_a_child_that_does_not_end_is_killed(background: Background) -> None:
+    background.parent.send_signal(signal.SIGINT)
+    assert background.line() == "SIGINT"
+    assert background.parent.wait(120) == 0
+    assert background.line() == "", "no process keeps the output open"
 
 
 @pytest.mark.parametrize("background", [("abort",)], indirect=True)

@@ -17,6 +17,7 @@ from fwk.web.pages.runs import launch_files
 from fwk.web.run_link import RunLink
 from fwk.web.usage import Usage
 from fwk.web.view import RunAccess
+from lcmtypes.soccer import place_ball_t
 
 
 def test_a_command_tells_its_output_and_its_end() -> None:
@@ -79,9 +80,10 @@ class Run:
 
     recorded = False
 
-    def __init__(self, file: Path, refuses: bool = False) -> None:
+    def __init__(self, file: Path, refuses: bool = False, state: str = "done") -> None:
         self._file = file
         self._refuses = refuses
+        self._state = state
         self.asked: list[dict[str, Any]] = []
 
     async def about(self) -> dict[str, Any]:
@@ -93,9 +95,32 @@ class Run:
             raise RefusedError("too large")
         return {"tick": 7}
 
+    async def message_type(self, channel: str) -> Any:
+        assert channel == "world/place_ball@outside"
+        return place_ball_t
+
+    async def call(self, name: str, data: bytes, timeout_s: float) -> dict[str, Any]:
+        self.asked.append({"name": name, "x_m": place_ball_t.decode(data).x_m, "timeout_s": timeout_s})
+        return {"state": self._state, "reason": "the ball is frozen" if self._state == "rejected" else ""}
+
 
 def access(run: Run, role: Role = Role.STEER) -> RunAccess:
     return RunAccess(cast(RunLink, run), role)
+
+
+@pytest.mark.parametrize("state", ["done", "accepted", "sent"])
+def test_a_call_returns_its_last_answer(state: str) -> None:
+    run = Run(Path(), state=state)
+    assert asyncio.run(access(run).call("world/place_ball", {"x_m": 2.0}, 3.0))["state"] == state
+    assert run.asked == [{"name": "world/place_ball", "x_m": 2.0, "timeout_s": 3.0}]
+
+
+@pytest.mark.parametrize(
+    ("state", "said"), [("rejected", "rejected: the ball is frozen"), ("failed", "failed"), ("expired", "expired")]
+)
+def test_a_call_that_is_not_carried_out_is_an_error(state: str, said: str) -> None:
+    with pytest.raises(RefusedError, match=f"^world/place_ball: {said}$"):
+        asyncio.run(access(Run(Path(), state=state)).call("world/place_ball", {"x_m": 2.0}))
 
 
 def test_settings_are_kept_for_later_runs_of_this_machine(tmp_path: Path) -> None:

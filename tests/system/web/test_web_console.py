@@ -134,6 +134,7 @@ def test_settings_change_live_and_say_why_not(garden: Garden) -> None:
     page.get_by_text("mower", exact=True).click()
     radius = page.get_by_label("a/mower.radius_m")
     expect(radius).to_have_value("2.0")
+    expect(page.get_by_text("float, more than 0.0, at most 5.0, ")).to_be_visible()
     radius.fill("50")
     radius.press("Enter")
     expect(page.locator("[data-name='mistake a/mower.radius_m']")).to_contain_text("less than or equal to 5")
