@@ -19,76 +19,14 @@ _NAME = re.compile(r"[a-z][a-z0-9]*(_[a-z0-9]+)*")
 _UMLAUTS = str.maketrans({"ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
 _HUMP = re.compile(r"(?<=[a-z0-9])(?=[A-Z])")
 
-_RESERVED = frozenset(
-    [
-        "abstract",
-        "alignas",
-        "alignof",
-        "auto",
-        "bool",
-        "boolean",
-        "byte",
-        "catch",
-        "char",
-        "const",
-        "constexpr",
-        "decltype",
-        "default",
-        "delete",
-        "do",
-        "double",
-        "enum",
-        "explicit",
-        "export",
-        "extends",
-        "extern",
-        "final",
-        "float",
-        "friend",
-        "goto",
-        "implements",
-        "inline",
-        "instanceof",
-        "int",
-        "interface",
-        "long",
-        "mutable",
-        "namespace",
-        "native",
-        "new",
-        "noexcept",
-        "nullptr",
-        "operator",
-        "package",
-        "private",
-        "protected",
-        "public",
-        "register",
-        "short",
-        "signed",
-        "sizeof",
-        "static",
-        "strictfp",
-        "struct",
-        "super",
-        "switch",
-        "synchronized",
-        "template",
-        "this",
-        "throw",
-        "throws",
-        "transient",
-        "typedef",
-        "typeid",
-        "typename",
-        "union",
-        "unsigned",
-        "using",
-        "virtual",
-        "void",
-        "volatile",
-    ]
-)
+_WORDS = """
+abstract alignas alignof auto bool boolean byte catch char const constexpr decltype default delete do double enum
+explicit export extends extern final float friend goto implements inline instanceof int interface long mutable
+namespace native new noexcept nullptr operator package private protected public register short signed sizeof
+static strictfp struct super switch synchronized template this throw throws transient typedef typeid typename
+union unsigned using virtual void volatile
+"""
+_RESERVED = frozenset(_WORDS.split())
 """Words of C++ and Java that cannot name a package of message types there."""
 
 
