@@ -188,5 +188,5 @@ def parsed(adapter: TypeAdapter[R], line: bytes) -> R:
         return adapter.validate_json(line)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, first["loc"]))
-        raise RequestError(f"not a request: {f'{place}: ' if place else ''}{first['msg']}") from error
+        place, said = ".".join(map(str, first["loc"])), first["msg"].removeprefix("Value error, ")
+        raise RequestError(f"not a request: {f'{place}: ' if place else ''}{said}") from error

@@ -11,6 +11,8 @@ import yaml
 
 from fwk.model.errors import Problems
 
+_SHOWN_MAX = 60
+"""Number of characters that a message shows of a value."""
 _HALF = re.compile("[\ud800-\udfff]")
 VALUES_MAX = 100_000
 """Largest number of values of a file with its aliases expanded; more is a mistake or an attack."""
@@ -111,7 +113,8 @@ def read_value(text: str, place: str, problems: Problems) -> Node | None:
     scratch = Problems()
     node = _parse(text, place, scratch)
     if scratch:
-        problems.add(place, "", f"{text!r} is not a YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
+        said = text if len(text) <= _SHOWN_MAX else f"{text[:_SHOWN_MAX]}..."
+        problems.add(place, "", f"{said!r} is not a YAML value; write a number, true, false, text, [a, b] or {{a: 1}}")
         return None
     return _replaced(node, place) if node else Node(None, place)
 

@@ -126,6 +126,7 @@ def test_a_restarted_process_gets_the_changes_to_the_plan(settings: RunSettings)
         (["speed=2"], "'speed=2' is not NAME.SETTING=VALUE"),
         (["a/turner.gain"], "'a/turner.gain' is not a PATH=VALUE"),
         (["a/turner.gain=[1"], "'[1' is not a YAML value"),
+        (["a/turner.gain=[1, " + "1" * 100], f"'[1, {'1' * 56}...' is not a YAML value"),
         (["a/turner.gain=1", "b/turner.names=[x, 1]"], "b/turner: 'names.1' is 1; it should be a valid string"),
     ],
 )
