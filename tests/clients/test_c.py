@@ -1,5 +1,6 @@
 """A C program built from the project's .lcm files alone reads the bus."""
 
+import re
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -29,12 +30,16 @@ def ball(tmp_path_factory: pytest.TempPathFactory) -> Callable[[], str]:
     def build() -> str:
         if not (folder / "ball").exists():
             types = map(str, sorted((ROOT / "lcmtypes").glob("*.lcm")))
-            subprocess.run([program("lcm-gen"), "-c", "--c-cpath", folder, "--c-hpath", folder, *types], check=True)
-            types_c = folder / "types.c"  # one unit: the headers of the system are read once, not sixty times
-            types_c.write_text("".join(f'#include "{file.name}"\n' for file in sorted(folder.glob("*.c"))))
-            sources = [str(ROOT / "tools/clients/ball.c"), str(types_c)]
-            paths = [f"-I{folder}", f"-I{WHEEL}/include", f"-L{WHEEL}/lib", f"-Wl,-rpath,{WHEEL}/lib"]
-            subprocess.run(["cc", "-Wall", "-Werror", *paths, "-o", folder / "ball", *sources, "-llcm"], check=True)
+            made, build = folder / "types", folder / "build"
+            made.mkdir()
+            build.mkdir()
+            subprocess.run([program("lcm-gen"), "-c", "--c-cpath", made, "--c-hpath", made, *types], check=True)
+            types_c = build / "types.c"  # one unit: the headers of the system are read once, not sixty times
+            types_c.write_text("".join(f'#include "{file.name}"\n' for file in sorted(made.glob("*.c"))))
+            (folder / "tools").symlink_to(ROOT / "tools")
+            (line,) = re.findall(r"^//   cc (.*)$", (ROOT / "tools/clients/ball.c").read_text(), re.MULTILINE)
+            paths = f"-I{made} -I{WHEEL}/include -L{WHEEL}/lib -Wl,-rpath,{WHEEL}/lib"
+            subprocess.run(f"cc -Wall -Werror {paths} {line}", shell=True, cwd=folder, check=True)
         return str(folder / "ball")
 
     return build

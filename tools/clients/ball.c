@@ -2,10 +2,10 @@
 //
 //   mkdir -p build
 //   lcm-gen -c --c-cpath build --c-hpath build lcmtypes/*.lcm
-//   cc -Ibuild $(pkg-config --cflags lcm) -o ball tools/clients/ball.c build/*.c $(pkg-config --libs lcm)
+//   cc -Ibuild -o ball tools/clients/ball.c build/*.c -llcm
 //   ./ball cyan1
 //
-// Without an installed liblcm, the one in Python's lcm package does: -I$P/include -L$P/lib -Wl,-rpath,$P/lib -llcm,
+// Without an installed liblcm, the one in Python's lcm package does: add -I$P/include -L$P/lib -Wl,-rpath,$P/lib,
 // where P is the folder that "python -c 'import lcm; print(lcm.__path__[0] + \"/..\")'" prints.
 
 #include <inttypes.h>
