@@ -40,12 +40,15 @@ _BOUNCE = 0.5  # share of the speed that a wall leaves
 _LEAST = 1e-6  # probability that every model keeps
 _KICK_SPEED_SD = 0.06  # relative error of a kick's speed
 _KICK_DIRECTION_SD = 0.03  # rad
+_TURNS_M_S2 = SLIDING_M_S2 * ROLLING_SHARE / (1.0 - ROLLING_SHARE)
+"""A ball that was hit t seconds ago and slides at v m/s begins to roll when v is t times this."""
+_ROLLS_BELOW_M_S2, _SLIDES_ABOVE_M_S2 = 0.7 * _TURNS_M_S2, 1.4 * _TURNS_M_S2  # carpets differ by a third
 _KICK_TIME_SD_S = 0.02  # the kick lies somewhere in the tick before its report
 _FREE_1_S = np.array(
     (
-        (0.0, 0.02, 0.0, 0.01, 0.01),
-        (0.3, 0.0, 0.0, 0.01, 0.01),
-        (0.0, 1.5, 0.0, 0.01, 0.01),
+        (0.0, 0.02, 0.0, 0.003, 0.003),
+        (0.3, 0.0, 0.0, 0.003, 0.003),
+        (0.0, 1.5, 0.0, 0.003, 0.003),
         (0.5, 6.0, 2.0, 0.0, 0.5),
         (0.0, 0.0, 0.0, 0.0, 0.0),
     )
@@ -79,6 +82,7 @@ class BallFilter:
         self._p[Mode.RESTS, 2:, 2:] = np.eye(2) * 1e-4
         self._weights = _FIRST.copy()
         self._rolls_below_m_s = 0.0  # after a known kick the ball slides until it is slower
+        self._free_s = math.nan  # time since a robot or a wall was near
 
     def copy(self) -> "BallFilter":
         """Returns the same mixture; neither follows what happens to the other."""
@@ -112,6 +116,7 @@ class BallFilter:
             rolling_m_s2: deceleration of the rolling ball.
             contact: a robot, a post or a wall is near the ball.
         """
+        self._free_s = 0.0 if contact else self._free_s + duration_s
         self._mix(self._moves(duration_s, contact))
         x, p = self._x, self._p
         velocities_m_s = x[:, 2:]
@@ -175,12 +180,18 @@ class BallFilter:
     def _moves(self, duration_s: float, contact: bool) -> Floats:
         """Returns the probabilities (old, new) of passing from model to model.
 
-        A fast ball does not rest, and after a known kick the ball slides until it is slow enough to roll.
+        A fast ball does not rest. After a kick the ball slides until it has lost so much of its speed that it rolls:
+        below a known speed if the kick is known, otherwise by the time since a robot could have hit it.
         """
         slow = math.hypot(*self._x[Mode.ROLLS, 2:]) < _SLOW_M_S
         slides: bool | None = None
+        sliding_m_s = math.hypot(*self._x[Mode.SLIDES, 2:])
         if self._rolls_below_m_s:
-            slides = math.hypot(*self._x[Mode.SLIDES, 2:]) > self._rolls_below_m_s
+            slides = sliding_m_s > self._rolls_below_m_s
+        elif sliding_m_s > _SLIDES_ABOVE_M_S2 * self._free_s:
+            slides = True
+        elif sliding_m_s < _ROLLS_BELOW_M_S2 * self._free_s:
+            slides = False
         return _passes(duration_s, contact, slow, slides)
 
     def _mix(self, moves: Floats) -> None:

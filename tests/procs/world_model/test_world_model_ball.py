@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from procs.model.ball import SLIDING_M_S2
+from procs.model.ball import BALL, SLIDING_M_S2
 from procs.model.frames import rotation
-from procs.world_model.ball_filter import BallFilter
+from procs.simulation.physics.rolling import RollingFriction
+from procs.world_model.ball_filter import BallFilter, Mode
 from procs.world_model.ball_track import Sighting
 from procs.world_model.ball_tracker import BallTracker
 from procs.world_model.seen import Seen
@@ -99,6 +100,46 @@ def test_kicked_ball_has_the_right_velocity_after_150_ms() -> None:
             tracker.see(sighting)
         speeds.append(tracker.track.state[2:] - state[2:])
     assert np.median(np.hypot(*np.array(speeds).T)) < 0.8, "10 % of 8 m/s"
+
+
+def hit(velocity_m_s: tuple[float, float], rest: int, frames: int) -> Iterator[Floats]:
+    """Returns true states (4) of a ball that rests, then is hit, slides and at last rolls, as in the simulation."""
+    friction, position = RollingFriction(BALL), np.zeros(2)
+    velocity = (0.0, 0.0)
+    for frame in range(frames):
+        velocity = friction.advance(*(velocity_m_s if frame == rest else velocity), PERIOD_S)
+        position = position + np.array(velocity) * PERIOD_S
+        yield np.concatenate((position, velocity))
+
+
+def test_ball_that_an_opponent_hit_is_known_to_slide() -> None:
+    """Nothing announces the kick; the time since a robot was near tells until when the ball slides."""
+    errors, weights = [], []
+    for seed in range(6):
+        eyes = [Eye(f"r{i}", at, 10 * seed + i) for i, at in enumerate([(-2.0, 1.0), (2.0, -2.0), (1.0, 3.0)])]
+        tracker = BallTracker()
+        for frame, state in enumerate(hit((9.0, 2.7), 20, 40)):
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=frame <= 20)
+            for number, eye in enumerate(eyes):
+                sighting = eye.look(state[:2], own=number == 0) if (frame + number) % 2 else None
+                if sighting is not None:
+                    tracker.see(sighting)
+            if frame > 26:
+                errors.append(tracker.track.state - state)
+                weights.append(tracker.track.weights[Mode.SLIDES])
+    assert rms(np.array(errors)[:, 2:]) < 0.2
+    assert np.mean(weights) > 0.8
+
+
+def test_free_ball_that_is_not_seen_is_hardly_expected_to_be_hit() -> None:
+    tracker, eye = BallTracker(), Eye("a", (0, 0), 3, recognised=1.0)
+    for frame, state in enumerate(rolling((-2.0, 1.0), (1.5, 0.3), 66)):
+        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+        sighting = eye.look(state[:2], own=True)
+        if sighting is not None and frame < 60:
+            tracker.see(sighting)
+    claimed_m_s = math.sqrt(np.trace(tracker.track.covariance[2:, 2:]))
+    assert np.hypot(*(tracker.track.state - state)[2:]) < 2 * claimed_m_s < 0.9
 
 
 def test_own_kick_is_believed_before_any_sighting() -> None:
