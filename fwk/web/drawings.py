@@ -34,7 +34,7 @@ from fwk.web.view import View
 
 _DRAWING_AGE_S = 0.04
 _IMAGE_AGE_S = 0.15
-_LAG_PERIOD_MS = 300
+_LAG_PERIOD_MS = 400
 """Time from drawing to drawing while a run needs all processors."""
 _NO_STORE = {"cache-control": "no-store"}
 

@@ -122,6 +122,11 @@ class Frame:
         if self._transport:
             self._transport.go(tick)
 
+    @property
+    def lags(self) -> bool:
+        """Whether the run needs all processors."""
+        return self._lags
+
     def on_status(self, take: Callable[[dict[str, Any]], None]) -> None:
         """Calls a function with each new state of the run."""
         self._on_status.append(take)
@@ -193,6 +198,7 @@ class Frame:
         self._banner.set_visibility(False)
         self.every(_REFRESH_S, self._refresh)
         ui.add_body_html(_TELL_HIDDEN)
+        ui.add_body_html(f"<script type='module'>{(STATIC / 'rows.js').read_text()}</script>")
         if isinstance(self.link, RecordedLink):
             with ui.element("div").classes("fwk-transport w-full"):
                 self._transport = Transport(self.link.tick, self.link.last_tick, self._show_tick)

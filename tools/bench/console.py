@@ -1,10 +1,10 @@
 """Measures how much the web console slows a run down: python -m tools.bench.console [--pairs 10] [--seconds 3].
 
-One run at the highest speed, and a console with two pages open in a headless Chromium. In each pair of windows console
-and browser work in one window and are stopped (SIGSTOP) in the other, in turns first and second, so that both halves
-of a pair see the same match and the same machine. The pairs are measured twice: with the browser as a program like any
-other on the same machine, and with a browser that uses idle processor time alone, which is close to a browser on
-another machine.
+One run at the highest speed, and a console with two pages open. In each pair of windows console and browser work in one
+window and are stopped (SIGSTOP) in the other, in turns first and second, so that both halves of a pair see the same
+match and the same machine. The pairs are measured three times: with no page open; with pages open elsewhere, for which
+`tools.bench.distant_browser` stands, a client that takes all that a browser takes and shows nothing; and with the pages
+in a headless Chromium on this machine. The processor time of the client is part of each table.
 """
 
 import os
@@ -13,8 +13,8 @@ import shutil
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
@@ -39,7 +39,12 @@ _BUS_PORT = 18_800
 _RUN = "bench-console"
 _PATIENCE_S = 180.0
 _SETTLE_S = 5.0
-_LOWEST = 19
+_OPEN, _DRAWING = "open", "drawing"
+"""Words that the distant browser prints for each page and for each drawing."""
+
+
+Drawings = Callable[[], int]
+"""Returns how many drawings the open pages have got so far."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +94,7 @@ class Processes:
     console: int
     """The process that serves."""
     browser: list[int]
+    """The processes that have the pages open."""
 
     def signal(self, number: signal.Signals) -> None:
         """Signals console and browser."""
@@ -104,30 +110,38 @@ def main(
     speed: Annotated[str, typer.Option(help="Logical seconds per wall second, or max")] = "max",
     pages: Annotated[str, typer.Option(help="Pages of the console that are open")] = "/view,/",
 ) -> None:
-    """Prints the ratios; exit code 1 if the CPU time of a tick grows by more than 5 %."""
+    """Prints the ratios; exit code 1 if the CPU time of a tick grows by more than 5 %, or, with no page open here, wall
+    time.
+    """
     continue_in_background()  # in a session of its own, whose niceness the terminal does not inherit
     with (
         TemporaryDirectory(prefix="bench-") as home,
         _run(home, launch, speed) as run,
         _console(home) as (console, url),
-        _browser(url, pages.split(",")) as opened,
     ):
-        sleep_s(_SETTLE_S)
-        processes = Processes(run, console, accounting.descendants(os.getpid()))
-        others = {run, *accounting.descendants(run), console, *accounting.descendants(console)}
-        processes = Processes(run, console, [pid for pid in processes.browser if pid not in others])
+        paths = pages.split(",")
+        urls = [f"{url}{path}?run={_RUN}" for path in paths]
+        clients: dict[str, Callable[[], AbstractContextManager[Drawings]]] = {
+            "no page": lambda: nullcontext(lambda: 0),
+            "browser elsewhere": lambda: _distant_browser(home, urls),
+            "browser on this machine": lambda: _browser(urls),
+        }
         worst = 0.0
-        for place in ("on this machine", "elsewhere"):
-            if place == "elsewhere":
-                _make_idle(processes.browser)
-            began = _drawings(opened[0])
-            made = [_pair(processes, number, seconds) for number in range(pairs)]
-            worst = max(worst, _report(place, made, _drawings(opened[0]) - began).cpu)
+        for place, client in clients.items():
+            before = {os.getpid(), *accounting.descendants(os.getpid())}
+            with client() as drawings:
+                sleep_s(_SETTLE_S)
+                opened = [pid for pid in accounting.descendants(os.getpid()) if pid not in before]
+                processes = Processes(run, console, opened)
+                began = drawings()
+                made = [_pair(processes, number, seconds) for number in range(pairs)]
+                found = _report(place, made, drawings() - began)
+                worst = max(worst, found.cpu, 0.0 if place == "browser on this machine" else found.wall)
     raise typer.Exit(int(worst > MOST))
 
 
 def _report(place: str, made: list[tuple[Window, Window]], drawings: int) -> Ratios:
-    print(f"browser {place}:")
+    print(f"{place}:")
     for beside, alone in made:
         print(
             f"  run: CPU {beside.cpu_per_tick_us:6.0f} us a tick with, {alone.cpu_per_tick_us:6.0f} without; "
@@ -137,16 +151,11 @@ def _report(place: str, made: list[tuple[Window, Window]], drawings: int) -> Rat
     wall_us = sum(beside.wall_us for beside, _ in made)
     shares = (
         f"{name} {sum(getattr(beside, field) for beside, _ in made) / wall_us:.0%}"
-        for name, field in (("run", "cpu_us"), ("console", "console_us"), ("browser", "browser_us"))
+        for name, field in (("run", "cpu_us"), ("console", "console_us"), ("pages", "browser_us"))
     )
     print(f"  processor time, of one processor: {', '.join(shares)}; {drawings * 1e6 / wall_us:.1f} drawings a second")
     print(f"  ratio of CPU {found.cpu:.3f}, of wall time {found.wall:.3f} ({len(made)} pairs)")
     return found
-
-
-def _drawings(page: Page) -> int:
-    canvas = page.locator("canvas")
-    return int(canvas.get_attribute("data-frames") or 0) if canvas.count() else 0
 
 
 def _pair(processes: Processes, number: int, seconds: float) -> tuple[Window, Window]:
@@ -177,16 +186,6 @@ def _window(processes: Processes, seconds: float) -> Window:
     return Window(ticks, wall_us, *cpu_us)
 
 
-def _make_idle(pids: list[int]) -> None:
-    """Leaves to processes, and to the session of this program and theirs, only processor time that is idle."""
-    with suppress(OSError):
-        Path("/proc/self/autogroup").write_text(str(_LOWEST))
-    for pid in pids:
-        for thread in Path(f"/proc/{pid}/task").glob("*"):
-            with suppress(OSError):
-                os.sched_setscheduler(int(thread.name), os.SCHED_IDLE, os.sched_param(0))
-
-
 def _tick() -> int:
     with Client(supervisor_address(_BUS_PORT)) as run:
         return int(run.ask("speed")["tick"])
@@ -206,7 +205,8 @@ def _run(home: str, launch: str, speed: str) -> Iterator[int]:
                     break
             except ControlError:
                 sleep_s(0.1)
-        yield process.pid
+        with Client(supervisor_address(_BUS_PORT)) as run:
+            yield int(run.ask("run")["pid"])
 
 
 @contextmanager
@@ -218,8 +218,9 @@ def _console(home: str) -> Iterator[tuple[int, str]]:
             if process.poll() is not None or now_us() > end_us:
                 raise RunFailedError(f"the console did not start: {output.read_text(errors='replace')}")
             sleep_s(0.1)
-        (serving,) = accounting.descendants(process.pid)
-        yield serving, found[0]
+        while not (serving := accounting.descendants(process.pid)):
+            sleep_s(0.1)
+        yield serving[0], found[0]
 
 
 @contextmanager
@@ -242,21 +243,46 @@ def _program(home: str, words: list[str]) -> Iterator[tuple[subprocess.Popen[byt
 
 
 @contextmanager
-def _browser(url: str, paths: list[str]) -> Iterator[list[Page]]:
+def _distant_browser(home: str, urls: list[str]) -> Iterator[Drawings]:
+    """Opens the pages in a client that shows nothing."""
+    output = Path(home) / "distant.txt"
+    with open(output, "wb") as file:
+        words = [sys.executable, "-m", "tools.bench.distant_browser", *urls]
+        process = subprocess.Popen(words, cwd=REPOSITORY, stdout=file, start_new_session=True)
+    try:
+        end_us = now_us() + _PATIENCE_S * 1e6
+        while output.read_text().count(_OPEN) < len(urls) and now_us() < end_us and process.poll() is None:
+            sleep_s(0.1)
+        yield lambda: output.read_text().count(_DRAWING)
+        if process.poll() is not None:
+            raise RunFailedError(f"the distant browser has ended with code {process.returncode}")
+    finally:
+        process.kill()
+        process.wait()
+
+
+@contextmanager
+def _browser(urls: list[str]) -> Iterator[Drawings]:
+    """Opens the pages in Chromium."""
     program = shutil.which(CHROMIUM)
     if program is None:
         raise RunFailedError(f"needs {CHROMIUM}: apt install {CHROMIUM}")
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         opened = []
-        for path in paths:
+        for url in urls:
             page = browser.new_page(viewport={"width": 1280, "height": 800})
             page.set_default_timeout(1000 * _PATIENCE_S)
-            page.goto(f"{url}{path}?run={_RUN}")
+            page.goto(url)
             page.wait_for_function("document.querySelector('[data-name=clock]').innerText.startsWith('tick')")
             opened.append(page)
-        yield opened
+        yield lambda: sum(map(_drawings, opened))
         browser.close()
+
+
+def _drawings(page: Page) -> int:
+    canvas = page.locator("canvas")
+    return int(canvas.get_attribute("data-frames") or 0) if canvas.count() else 0
 
 
 if __name__ == "__main__":

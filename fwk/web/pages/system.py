@@ -43,6 +43,8 @@ _STATE_CELL = '<q-td :props="props"><span :class="`s-${props.value}`">{{ props.v
 _USAGE_S = 2.0
 _FIGURES_US = 2 * US_PER_S
 """Figures are shown anew so often, states at once: a browser needs long to draw a hundred rows."""
+_LAG_FACTOR = 4
+"""Figures are shown so many times more rarely while the run needs all processors."""
 
 
 def build(frame: Frame) -> None:
@@ -73,8 +75,9 @@ def build(frame: Frame) -> None:
 
     def show(status: dict[str, Any]) -> None:
         nonlocal shown_us
+        least_us = _FIGURES_US * (_LAG_FACTOR if frame.lags else 1)
         rows = [row_of(each, usage) for each in status["components"]]
-        if states_of(rows) != states_of(table.rows) or monotonic_us() > shown_us + _FIGURES_US:
+        if states_of(rows) != states_of(table.rows) or monotonic_us() > shown_us + least_us:
             table.rows, shown_us = rows, monotonic_us()
         figures.set_text(
             f"{len(rows)} components   {status['ticks_per_s']:.1f} ticks/s   late {status['late']}   "

@@ -61,7 +61,7 @@ def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
 def test_details_of_a_component_set_its_log_level(garden: Garden) -> None:
     page = garden.open()
     page.get_by_label("filter").fill("a/mower")
-    page.get_by_text("a/mower", exact=True).click()
+    row(page, "a/mower").press("Enter")
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(f"fwk debug a/mower --run {garden.name}")
     expect(dialog).to_contain_text("iterations, p50")
@@ -96,7 +96,7 @@ def test_blackboard_shows_live_fields_and_sends_forms(garden: Garden) -> None:
     page.get_by_role("button", name="send").click()
     expect(page.get_by_text("a/visit: done")).to_be_visible()
     page.get_by_label("filter").fill("wish")
-    page.get_by_text("garden/wish", exact=True).click()
+    row(page, "garden/wish").press("Enter")
     page.get_by_label("text (string)").fill("rain")
     page.get_by_role("button", name="send").click()
     expect(page.get_by_text("garden/wish: sent")).to_be_visible()
