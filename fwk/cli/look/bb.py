@@ -117,7 +117,8 @@ def field_of(value: Any, path: str) -> Any:
             raise LookupError(f"no item '{name}' in '{path}'; it has {len(value)}")
         else:
             known = hint(name, list(value)) if isinstance(value, dict) else "it is a value without fields"
-            raise LookupError(f"no field '{name}' in '{path}'; {known}")
+            where = f" in '{path}'" if path != name else ""
+            raise LookupError(f"no field '{name}'{where}; {known}")
     return value
 
 

@@ -264,6 +264,7 @@ class Travel:
 
     def _stop(self) -> None:
         """Starts tracing, with a stop at the first line of the running iteration."""
+        print(f"fwk: tick {self.tick}", flush=True)
         debugger = self._pdb
         debugger.reset()
         debugger.botframe = sys._getframe(2)  # no frame below the component's is stepped into

@@ -50,7 +50,7 @@ def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
         ("until self.note.value.iterations == 25", 26),
         ("back until self.clock.tick % 10 == 0", 20),
     ):
-        stopped.ask(command)
+        assert f"fwk: tick {tick}\r\n" in stopped.ask(command), command
         assert where(stopped) == (tick, tick - 1), command
     assert stopped.ask("p self.digest()") == heard
     stopped.ask("n")
