@@ -4,7 +4,9 @@ import os
 import stat
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from types import FrameType
 from typing import Any
 
 from fwk.recording.replay.descriptors import is_device, is_harmless
@@ -38,6 +40,9 @@ _FOLDER = {"os.remove": 1, "os.rmdir": 1}  # place of the descriptor of the fold
 _TEMPORARY = ("tempfile.mkstemp", "tempfile.mkdtemp")
 _LOOKUPS = ("ctypes.util", "platform")
 """Modules of Python that start programs to examine the machine, for libraries that are being imported."""
+_PROMPTS = ("cmd", "_pydevd_bundle.pydevd_vars")
+_TYPED = ("onecmd", "evaluate_expression")
+"""Modules of debuggers, and their functions that carry out what a user types; `cmd` is that of pdb."""
 
 
 class Attempts:
@@ -96,10 +101,16 @@ class Attempts:
         return "__pycache__" in path.parts or any(map(path.is_relative_to, (self._cache, *self._temporary)))
 
 
+def typed_in_debugger() -> bool:
+    """Returns whether a user's own words at the prompt of a debugger do this."""
+    return any(frame.f_globals.get("__name__") in _PROMPTS and frame.f_code.co_name in _TYPED for frame in _callers())
+
+
 def _asks_about_the_machine() -> bool:
-    frame = sys._getframe()
-    while frame.f_back is not None:
-        frame = frame.f_back
-        if frame.f_globals.get("__name__") in _LOOKUPS:
-            return True
-    return False
+    return any(frame.f_globals.get("__name__") in _LOOKUPS for frame in _callers())
+
+
+def _callers() -> Iterator[FrameType]:
+    frame: FrameType | None = sys._getframe(1)
+    while frame := frame and frame.f_back:
+        yield frame

@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any, NoReturn
 
-from fwk.recording.replay.attempts import LCM_EVENT, Attempts
+from fwk.recording.replay.attempts import LCM_EVENT, Attempts, typed_in_debugger
 from fwk.recording.replay.descriptors import Descriptors
 
 _ATTEMPTS_MAX = 10
@@ -81,7 +81,7 @@ class Guard:
             return
         own = threading.get_ident() == self._thread
         component = self._watched if own else self._threads.get(threading.current_thread(), self._watched)
-        if not component or not (tried := self._events.described(event, arguments)):
+        if not component or not (tried := self._events.described(event, arguments)) or typed_in_debugger():
             return
         self.refused[component] = tried
         if own:

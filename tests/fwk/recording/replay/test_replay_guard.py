@@ -1,7 +1,9 @@
 """A replay reaches nothing outside: no device, no program, no connection, no file that is written."""
 
 import ctypes
+import io
 import os
+import pdb
 import shutil
 import socket
 import sqlite3
@@ -166,6 +168,14 @@ def test_guard_lets_files_be_read_and_temporary_ones_be_written(tmp_path: Path) 
         sqlite3.connect(":memory:").close()
     with pytest.raises(FileNotFoundError):
         (tmp_path / "missing").read_bytes()
+
+
+def test_guard_lets_users_write_files_at_a_debuggers_prompt(tmp_path: Path) -> None:
+    typed = f"open({str(tmp_path / 'dump')!r}, 'w').close()\ncontinue\n"
+    debugger = pdb.Pdb(stdin=io.StringIO(typed), stdout=io.StringIO(), nosigint=True, readrc=False)
+    with Guard().watching("r/wheels"):
+        debugger.runcall(lambda: None)
+    assert (tmp_path / "dump").exists()
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
