@@ -22,6 +22,7 @@ help:  ## Lists what can be made
 # The stamp is newer than pyproject.toml, so a changed dependency is installed by the next make.
 $(READY): pyproject.toml fwk/packaging/build_backend.py
 	@test -n "$(PYTHON)" || { echo "fwk needs Python 3.11 or newer; install it or say: make PYTHON=/path/to/python3"; exit 2; }
+	@echo "installing fwk and the libraries that it needs into .venv; the first time this takes some minutes"
 	test -x $(BIN)/python || $(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --quiet --disable-pip-version-check --editable '.[dev]'
 	@touch $@
