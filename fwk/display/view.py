@@ -8,7 +8,7 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.display.cpu import CpuMeter
 from fwk.display.figures import LoopTime, loop_times, slowest
 from fwk.display.floods import LineGroup, LineGroups
-from fwk.display.plan_overview import fewer_processes
+from fwk.display.plan_overview import counted, fewer_processes
 from fwk.display.scoreboard import Drawing, Scoreboard
 from fwk.lcm import envelope, messages
 from fwk.model.plan import Plan
@@ -107,7 +107,8 @@ class View:
         hosts, cores = len(self.plan.hosts), len(os.sched_getaffinity(0))
         if hosts <= cores:
             return "slower than asked; 'fwk top' shows where the time goes"
-        return f"slower than asked; {hosts} processes share {cores} cores: start it with {fewer_processes(self.plan)}"
+        shared = f"{hosts} processes share {counted(cores, 'core')}"
+        return f"slower than asked; {shared}: start it with {fewer_processes(self.plan)}"
 
     @property
     def loop_times(self) -> dict[str, LoopTime]:

@@ -137,6 +137,7 @@ def test_a_run_that_waits_names_the_component(monkeypatch: pytest.MonkeyPatch) -
     ("cores", "busy_us", "cause"),
     [
         (2, 1000, "3 processes share 2 cores: start it with --hosting robot"),
+        (1, 1000, "3 processes share 1 core: start it with --hosting robot"),
         (4, 1000, "'fwk top' shows where the time goes"),
         (2, 70_000, "cyan1/camera takes 70 ms, but a tick has only 50 ms"),
     ],
