@@ -115,7 +115,10 @@ class _Choosing:
         try:
             self._with_place(index, self._import)
         except ReachesOutsideError as error:
-            return f"{self._components[index].module} cannot be imported in a replay: {error}"
+            module = self._components[index].module
+            return (
+                f"{module} cannot be imported in a replay: {error}; with 'reaches_outside = False' its init() may do so"
+            )
         found: str = self._with_place(index, lambda component: unrepeatable(component, component.config))
         return found
 
