@@ -30,7 +30,7 @@ from fwk.display.summary import introduction, summary
 from fwk.launcher.machine import MachineError, advice, check_machine
 from fwk.launcher.run import DebuggerMissingError, PortsInUseError, ProfilerMissingError, RunOptions, run
 from fwk.lcm.event_log import LogError
-from fwk.lcm.log_file import check_compression
+from fwk.lcm.log_file import LogError, check_compression
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -228,7 +228,7 @@ def _ending() -> Iterator[None]:
     imported()
     try:
         yield
-    except (*NOT_BEGUN, PlanError, RunDirError) as error:
+    except (*NOT_BEGUN, PlanError, RunDirError, LogError) as error:
         typer.echo(error, err=True)
         raise typer.Exit(BAD_INPUT) from error
     except KeyboardInterrupt as interrupt:
