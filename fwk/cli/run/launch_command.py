@@ -29,7 +29,6 @@ from fwk.display.keys import restore, terminal_settings
 from fwk.display.summary import introduction, summary
 from fwk.launcher.machine import MachineError, advice, check_machine
 from fwk.launcher.run import DebuggerMissingError, PortsInUseError, ProfilerMissingError, RunOptions, run
-from fwk.lcm.event_log import LogError
 from fwk.lcm.log_file import LogError, check_compression
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
