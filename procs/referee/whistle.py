@@ -154,8 +154,10 @@ class Whistle:
         self.calls.append(Call(self.state, team_number(robot), robot=robot, card=card))
 
     def _misplaced(self, sight: Sight) -> list[str]:
+        """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""
         keeper = sight.goalkeeper(self.team.other)
-        return misplaced(self.restart, sight.robots, self.ends, self.rules.field, keeper)
+        restart = self.restart._replace(spot=sight.ball)
+        return misplaced(restart, sight.robots, self.ends, self.rules.field, keeper)
 
     def _follow(self, duration_s: float, sight: Sight) -> None:
         """Follows a game that is led by hand: set pieces become play."""

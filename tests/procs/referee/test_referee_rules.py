@@ -173,6 +173,16 @@ def test_set_piece_waits_for_robots_that_are_misplaced() -> None:
     assert not referee.stopped
 
 
+def test_distances_are_those_to_a_ball_beside_the_spot() -> None:
+    referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
+    beside, near = Point(0.5, 0.0), {"cyan2": Point(-0.5, 0.0), "magenta2": Point(3.2, 0.0)}
+    for _ in range(40):
+        referee.step(TICK_S, Sight(beside, robots=near))
+    assert referee.stopped, "2.7 m from the ball, 3.2 m from the spot"
+    referee.step(TICK_S, Sight(beside, robots=near | {"magenta2": Point(3.6, 0.0)}))
+    assert not referee.stopped
+
+
 def test_set_piece_does_not_wait_forever() -> None:
     referee = Whistle(Rules(kick_off_stoppage_s=1.0, positions_s=2.0))
     stopped = []
