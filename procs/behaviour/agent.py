@@ -5,7 +5,7 @@ from typing import Literal
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, Reads, Writes, channel
 from lcmtypes.robot import kicker_state_t
-from lcmtypes.soccer import game_state_t, role_t, skill_command_t, world_model_t
+from lcmtypes.soccer import game_state_t, pass_agreement_t, role_t, skill_command_t, world_model_t
 from procs.behaviour import greedy, roles
 from procs.behaviour.game import Game, frame_of, game_of
 from procs.behaviour.order import Order
@@ -61,8 +61,10 @@ class Agent(Component):
         game = game_of(self.game_state.value, self._team, frame)
         if role.role == roles.ABSENT and self._robot not in game.sent_off:
             role.role = roles.DEFENDER
-        view = view_of(self.world_model.value, self._robot, role.role, frame).without(game.sent_off)
+        model, said = self.world_model.value, self._tactics.passing.said
+        view = view_of(model, self._robot, role.role, frame, agreement=said).without(game.sent_off)
         role.role, order = self._decide(view, game)
+        self._tell_pass(role.agreement)
         role.intention = order.intention or order.skill
         self.role.write()
         self._command(order)
@@ -78,6 +80,11 @@ class Agent(Component):
         job = roles.assign(view, field).get(self._robot, idle)
         order = self._tactics.decide(view, game, job, held, self.clock.period_s)
         return roles.PASSER if self._tactics.barred else job.role, order
+
+    def _tell_pass(self, told: pass_agreement_t) -> None:
+        said = self._tactics.passing.said
+        told.receiver, told.passer = said.receiver, said.passer
+        told.x_m, told.y_m = self._frame.point(*said.place)
 
     def _command(self, order: Order) -> None:
         place, heading_rad = self._frame.point(*order.place), self._frame.heading_rad(order.heading_rad)

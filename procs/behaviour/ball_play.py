@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 from procs.behaviour import aim
 from procs.behaviour.order import Order
+from procs.behaviour.passing import Passing
 from procs.behaviour.roles import ABSENT, GOALKEEPER
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
@@ -47,14 +48,14 @@ _COMMITTED_S = 1.6  # a kick once begun is carried out in this time, unless its 
 class BallPlay:
     """Decides for one robot, in the ticks in which it has the ball; keeps a decision until the ball is gone."""
 
-    def __init__(self, field: Field) -> None:
+    def __init__(self, field: Field, passing: Passing) -> None:
         self.field = field
+        self._passing = passing
         self._held_s = 0.0
         self._held_from: Point | None = None
         self._free_s = 0.0
         self._kick: Order | None = None
         self._kick_s = 0.0
-        self._receiver = ""
         self._dribble_rad = math.nan
         self._room_at: Point | None = None
 
@@ -72,7 +73,7 @@ class BallPlay:
         """Returns the order in free play."""
         kept = self._keep(view) if self._kick_s < _COMMITTED_S else None
         order = kept or self._choose(view)
-        kicks = order is not None and order.skill in ("shoot", "pass")
+        kicks = order is not None and order.skill in ("shoot", "pass", "push")
         if kicks and not kept:
             self._kick_s = 0.0
         self._kick = order if kicks else None
@@ -92,6 +93,10 @@ class BallPlay:
         if self._kick is None or self._kick_s > _COMMITTED_S:
             self._kick, self._kick_s = self._shot(view, room_m=0.0) or self._clear(view), 0.0
         return self._kick
+
+    def best_pass(self, view: View) -> Order | None:
+        """Returns the pass that the robot would play if it had to play one now."""
+        return self._pass_on(view, _BACK_M)
 
     def relieve(self, view: View) -> Order:
         """Returns the order of a goalkeeper with the ball."""
@@ -121,8 +126,8 @@ class BallPlay:
         if kick is None or kick.intention == "clear":
             return kick
         if kick.intention == "pass":
-            mates = [mate for mate in view.mates if mate.name == self._receiver]
-            return self._pass(view, mates, math.inf, 0.0, self._receiver)
+            mates = [mate for mate in view.mates if mate.name == kick.receiver]
+            return self._pass(view, mates, math.inf, 0.0, kick.receiver)
         way_rad = aim.lane_rad(view.ball.place, kick.place, view.opponents)
         return kick if kick.intention == "try" or way_rad > 0.0 else None
 
@@ -225,17 +230,18 @@ class BallPlay:
         places = [ahead(start, goal_rad + turn_rad, _PUSH_M) for turn_rad in (0.0, 0.5, -0.5, 1.0, -1.0)]
         inside = [place for place in places if self.field.in_field(*place, -0.5)] or places[:1]
         best = max(inside, key=lambda place: min(0.6, aim.lane_rad(start, place, _others(view), _SLOW_BALL_M_S)))
-        return Order("pass", best, bearing_rad(start, best), "push", _PUSH_M_S)
+        return Order("push", best, bearing_rad(start, best), "push", _PUSH_M_S)
 
     def _pass_on(self, view: View, back_m: float, lane_rad: float = aim.LANE_RAD, kept: str = "") -> Order | None:
         return self._pass(view, field_players(view), back_m, lane_rad, kept)
 
     def _pass(self, view: View, mates: Sequence[Robot], back_m: float, lane_rad: float, kept: str) -> Order | None:
-        best = aim.best_pass(view.own, mates, view.opponents, back_m, kept)
+        asked = [mate for mate in mates if self._passing.may_ask(mate)]
+        best = aim.best_pass(view.own, asked, view.opponents, back_m, kept or self._passing.said.receiver)
         if best is None or best.free_rad < lane_rad:
             return None
-        self._receiver = best.receiver
-        return Order("pass", best.place, bearing_rad(view.own.place, best.place), "pass")
+        heading_rad = bearing_rad(view.own.place, best.place)
+        return Order("pass", best.place, heading_rad, "pass", receiver=best.receiver)
 
 
 def _presses(rival: Robot, place: Point) -> bool:

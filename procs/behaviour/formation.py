@@ -20,6 +20,8 @@ _APART_M = 1.0
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _SHOOTER_X_M, _SHOOTER_Y_M = 7.0, 2.5  # a mate there can shoot
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
+_SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
+"""From so near a mate with the ball shoots; the others keep that distance from the way to the goal's middle."""
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
 
@@ -45,6 +47,31 @@ def places(ball: Point, ours: bool, flank: float, field: Field) -> list[Point]:
         sweeper = Point(min(ball.x_m + 1.0, _SHOOTER_X_M), clamp(ball.y_m - flank * 3.5, -aside_m, aside_m))
     spare = Point(clamp(ball.x_m - 3.0, -8.0, 2.0), clamp(ball.y_m - flank * 2.0, -6.0, 6.0))
     return [supporter, stopper, sweeper, spare]
+
+
+def beside_shot(own: Point, place: Point, ball: Point, field: Field) -> Point:
+    """Returns the place, or one on the robot's own side of the way from the ball to the opponents' goal.
+
+    A robot that stands in that way, or would cross it, takes the shot from the mate with the ball.
+    """
+    goal = field.goal_centre(1.0)
+    way_rad, way_m = bearing_rad(ball, goal), math.dist(ball, goal)
+    cos, sin = math.cos(way_rad), math.sin(way_rad)
+
+    def seen(point: Point) -> tuple[float, float]:
+        """Returns distances along the way and to its left."""
+        x_m, y_m = point.x_m - ball.x_m, point.y_m - ball.y_m
+        return x_m * cos + y_m * sin, y_m * cos - x_m * sin
+
+    own_along_m, own_left_m = seen(own)
+    along_m, left_m = seen(place)
+    side = math.copysign(1.0, own_left_m)
+    ahead_of_ball = max(own_along_m, along_m) > 0.0 and min(own_along_m, along_m) < way_m
+    if way_m > _SHOT_M or not ahead_of_ball or left_m * side >= _BESIDE_SHOT_M:
+        return place
+    along_m = clamp(along_m, 0.0, way_m)
+    left_m = side * _BESIDE_SHOT_M
+    return Point(ball.x_m + along_m * cos - left_m * sin, ball.y_m + along_m * sin + left_m * cos)
 
 
 def taker_place(spot: Point, way_rad: float) -> Point:

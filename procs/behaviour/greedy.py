@@ -27,7 +27,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     if game.paused or not view.localized:
         return DEFENDER, Order("stop", intention="pause" if game.paused else "lost")
     if number == _KEEPER:
-        return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_goal")
+        return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
     if holds_ball:

@@ -14,3 +14,5 @@ class Order(NamedTuple):
     intention: str = ""
     speed_m_s: float = 0.0
     """Speed of a passed ball at its target; 0.0 leaves the speed to the skill."""
+    receiver: str = ""
+    """Mate for whom a pass is meant."""

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from procs.behaviour import ballistics
 from procs.behaviour.formation import places
+from procs.behaviour.passing import taken
 from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Field, Point
 from procs.model.robot import number_of
@@ -18,6 +19,7 @@ ABSENT = "absent"
 """Is off the field, or on its way there."""
 
 _HAS_BALL_M = 0.45
+_ROLLS_M_S = 0.6  # the nearest robot takes a slower ball, whatever was agreed
 _STAY_S = 0.6  # an attacker keeps its role unless another is so much faster at the ball
 _MIDDLE_M = 1.5  # a ball no further from the middle leaves the supporter on its flank
 _STAY_M = 1.0  # a robot keeps its place in the formation unless a change saves this much distance
@@ -34,8 +36,9 @@ class Job(NamedTuple):
 def assign(view: View, field: Field) -> dict[str, Job]:
     """Jobs of the own robot, if it is localized, and of its mates, by name.
 
-    The lowest number keeps the goal unless it is alone; of the others the one that meets the ball first attacks. The
-    rest fill the formation so that they drive little. The order of the mates does not matter.
+    The lowest number keeps the goal unless it is alone; of the others the receiver of a pass on its way attacks, else
+    the robot that meets the ball first. The rest fill the formation so that they drive little. The order of the mates
+    does not matter.
     """
     present = [robot for robot in (*view.mates, view.own) if robot is not view.own or view.localized]
     team = sorted((robot for robot in present if robot.role != ABSENT), key=lambda robot: robot.name)
@@ -49,7 +52,9 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     course = ballistics.Course(view.ball)
     times_s = {robot.name: _time_to_ball_s(robot, view.ball, course) for robot in team}
     free = [robot for robot in team if robot.role != PASSER] or team
-    attacker = min(free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name))
+    attacker = receiver(team, view) or min(
+        free, key=lambda robot: (times_s[robot.name] - _STAY_S * (robot.role == ATTACKER), robot.name)
+    )
     jobs[attacker.name] = Job(ATTACKER, view.ball.place)
     team.remove(attacker)
     theirs_s = min((course.meet(other.place, other.velocity_m_s).time_s for other in view.opponents), default=math.inf)
@@ -58,6 +63,21 @@ def assign(view: View, field: Field) -> dict[str, Job]:
     posts = [Job(*post) for post in zip(roles, places(view.ball.place, ours, _flank(view, team), field), strict=True)]
     jobs.update(_fill(team, posts))
     return jobs
+
+
+def receiver(team: Sequence[Robot], view: View) -> Robot | None:
+    """Returns the robot of the team for which an agreed pass is on its way; None without one.
+
+    The passer says that it has passed, so that noise of the ball's velocity is no pass.
+    """
+    if view.ball.speed_m_s < _ROLLS_M_S or taken(view):
+        return None
+    passers = {robot.name: robot for robot in (view.own, *view.mates) if robot.role == PASSER}
+    for robot in team:
+        passer = passers.get(robot.agreement.passer)
+        if passer and passer.agreement.receiver == robot.name:
+            return robot
+    return None
 
 
 def _time_to_ball_s(robot: Robot, ball: Ball, course: ballistics.Course) -> float:

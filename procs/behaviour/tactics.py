@@ -2,24 +2,23 @@
 
 import math
 
-from procs.behaviour import aim, ballistics, formation
+from procs.behaviour import aim, ballistics, formation, set_pieces
 from procs.behaviour.ball_play import BallPlay, field_players
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
+from procs.behaviour.passing import Passing
 from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, SUPPORTER, Job
+from procs.behaviour.skills.keeping import BEFORE_LINE_M
 from procs.behaviour.view import Robot, View
 from procs.model.field import Field, Point
-from procs.model.geometry import bearing_rad, clamp, wrap_rad
+from procs.model.geometry import bearing_rad, clamp
 from procs.referee.restarts import State
 
 _AREA_M = 1.2  # a marking robot would stand in the penalty area with an opponent so near to it
 _MARK_M = 3.0  # a defender leaves its place for an opponent this near
 _HELD_M = 0.5  # an opponent this near to the ball has it
-_PASS_M = (1.5, 9.0)  # distances of a pass
-_TURNED_RAD = 0.35
 _FAST_BALL_M_S = 1.2
 _KICK_OFF_RAD = 1.2  # nearly sideways: all mates are in the own half
-_LAID_OFF = (State.FREE_KICK, State.THROW_IN, State.GOAL_KICK)
 _BARRED_S = 4.0  # by then another robot has touched the ball of a set piece, or the game was interrupted
 _TOUCHED_M = 0.4
 _BENCH_M = 8.0  # from the halfway line
@@ -28,6 +27,10 @@ _PASSED_M_S = 1.5
 _SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when the robot turns
 _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has been taken
 _NEAR_M = 1.0
+_BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
+KEEPER_OUT_M = 2.3
+"""The goalkeeper comes so far before its line."""
+_WITH_BALL = ("dribble", "aim")
 
 
 class Tactics:
@@ -36,11 +39,15 @@ class Tactics:
     def __init__(self, field: Field) -> None:
         self.field = field
         self._last = Order("stop")
-        self._play = BallPlay(field)
+        self.passing = Passing()
+        """Agreement on a pass, for the messages to the team."""
+        self._play = BallPlay(field, self.passing)
         self._laid: Point | None = None  # place of the ball of the set piece at hand
         self._taking = False  # the ball in the mouth is that of the own set piece
         self._penalty = False  # that set piece is a penalty
         self._receiver = ""  # of the own set piece
+        self._planned: tuple[str, Point] | None = None
+        self._planned_for = -1
         self._barred_s = 0.0
         self._passed_s = 0.0
         self._held_s = math.inf  # since the ball was caught
@@ -52,21 +59,36 @@ class Tactics:
 
     def decide(self, view: View, game: Game, job: Job, holds_ball: bool, duration_s: float) -> Order:
         """Returns the order for this tick, `duration_s` after the last."""
+        self.passing.watch(view, holds_ball, duration_s)
+        if holds_ball and not self._held_s and game.free_play:
+            self._ask_early(view)
         self._held_s = self._held_s + duration_s if holds_ball else 0.0
         holds_ball = self._held_s >= _SETTLED_S
         self._play.watch(view, holds_ball, duration_s)
         if game.stopped:
-            self._laid = view.ball.place
+            self._laid = view.ball.place if view.ball.known else None
+        game = self._as_laid(game)
         self._barred_s = self._still_barred_s(view, game, holds_ball) - duration_s
         passed = self._last.intention == "pass" and not holds_ball and view.ball.speed_m_s > _PASSED_M_S
         self._passed_s = _PASSED_S if passed else max(0.0, self._passed_s - duration_s)
         if not game.free_play:
-            self._taking = game.whose is Whose.OURS and job.role == ATTACKER
+            self._taking = game.whose is Whose.OURS and job.role == ATTACKER and not self.passing.said.passer
             self._penalty = game.state is State.PENALTY
         elif not holds_ball:
             self._taking, self._receiver = False, ""
-        self._last = self._order(view, game, job, holds_ball)
+        before, self._last = self._last, self._order(view, game, job, holds_ball)
+        stops = game.stopped and not self._taking
+        lost = not holds_ball and before.skill in _WITH_BALL
+        if stops or lost or self._last.skill in ("shoot", "push"):
+            self.passing.announce("")
         return self._last
+
+    def _as_laid(self, game: Game) -> Game:
+        """Returns the game with the set piece where its ball lies: a robot may have stood on the spot."""
+        laid = self._laid
+        if game.free_play or laid is None or not _BESIDE_M[0] < math.dist(laid, game.spot) < _BESIDE_M[1]:
+            return game
+        return game._replace(spot=laid)
 
     def _still_barred_s(self, view: View, game: Game, holds_ball: bool) -> float:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
@@ -102,29 +124,32 @@ class Tactics:
 
     def _keep(self, view: View, game: Game, holds_ball: bool) -> Order:
         if game.free_play and holds_ball:
-            return self._play.relieve(view)
+            return self._agreed(self._play.relieve(view))
         if game.free_play and view.ball.known and keeper_takes(view, self.field):
             return self._go_for_ball(view)
-        return Order("keep_goal", intention="keep goal")
+        furthest_m = KEEPER_OUT_M if game.free_play else BEFORE_LINE_M
+        place = Point(furthest_m - self.field.half_length_m, 0.0)
+        return Order("keep_goal", place, intention="keep goal")
 
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
-        lays_off = game.whose is Whose.OURS and game.state in _LAID_OFF
         if job.role != ATTACKER:
-            receives = lays_off and job.role == SUPPORTER
-            wanted = formation.layoff_place(game, self.field) if receives else job.place
-            place = formation.helper_place(wanted, game, self.field)
+            place = self._helper_place(view, game, job)
             return self._stand(view, formation.next_step(view.own.place, place, game), "take position")
         if game.whose is not Whose.OURS:
             place = formation.first_opponent_place(game, self.field)
             return self._stand(view, formation.next_step(view.own.place, place, game), "keep distance")
+        if self.passing.said.passer:  # the ball is on its way, but not yet in play
+            return self._go_for_ball(view)
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
         mates = field_players(view)
         if not game.stopped:  # the taker has turned to its receiver
             mates = [mate for mate in mates if mate.name == self._receiver] or mates
-        near = [mate for mate in mates if mate.role == SUPPORTER] if lays_off else []
+        planned = self._plan(view, game)
+        near = [mate for mate in mates if mate.role == SUPPORTER] if planned else []
         best = aim.best_pass(taker, near or mates, view.opponents, math.inf, self._receiver)
         target = best.place if best else self.field.goal_centre(1.0)
         self._receiver = best.receiver if best else ""
+        self.passing.announce(self._receiver, planned[1] if planned and near else target)
         way_rad = bearing_rad(game.spot, target)
         if game.state is State.KICK_OFF:  # from the own half
             way_rad = clamp(way_rad, -_KICK_OFF_RAD, _KICK_OFF_RAD)
@@ -134,12 +159,50 @@ class Tactics:
             return self._play_ball(view)
         return Order("get_ball", game.spot, way_rad, "take set piece")
 
+    def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
+        """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
+        if game.number != self._planned_for or (game.stopped and self._blocked(view, game)):
+            self._planned_for, self._planned = game.number, set_pieces.choose(game, view.opponents, self.field)
+        return self._planned
+
+    def _blocked(self, view: View, game: Game) -> bool:
+        return self._planned is None or aim.lane_rad(game.spot, self._planned[1], view.opponents) < 0.0
+
+    def _helper_place(self, view: View, game: Game, job: Job) -> Point:
+        """Returns the place of a robot that does not take the set piece; the receiver's is told by the taker."""
+        place = formation.helper_place(job.place, game, self.field)
+        if game.whose is not Whose.OURS or job.role != SUPPORTER:
+            return place
+        told = [mate.agreement.place for mate in view.mates if mate.name == self.passing.said.passer]
+        if told:
+            return formation.helper_place(told[0], game, self.field)
+        planned = set_pieces.choose(game, (), self.field)
+        return planned[1] if planned else place
+
     def _play_ball(self, view: View) -> Order:
         if self._taking and self._penalty:
             return self._play.take_penalty(view)
         if self._taking and view.mates:
-            return self._play.take_set_piece(view, self._receiver)
-        return self._play.decide(view)
+            return self._agreed(self._play.take_set_piece(view, self._receiver))
+        if self.passing.late:
+            self.passing.drop()
+        order = self._play.decide(view)
+        if order.skill == "dribble":
+            self._ask_early(view)
+        return self._agreed(order)
+
+    def _ask_early(self, view: View) -> None:
+        """Announces the pass that may follow, so that it need not wait for an answer."""
+        likely = self._play.best_pass(view)
+        self.passing.announce(*(likely.receiver, likely.place) if likely else ("",))
+
+    def _agreed(self, order: Order) -> Order:
+        """Returns the order; a pass to which the receiver has not agreed yet is aimed, but not played."""
+        if order.skill != "pass":
+            return order
+        self.passing.announce(order.receiver, order.place)
+        ready = self.passing.accepted or self.passing.late
+        return order if ready else order._replace(skill="aim", intention="announce pass")
 
     def _go_for_ball(self, view: View) -> Order:
         ball = view.ball
@@ -154,13 +217,16 @@ class Tactics:
         return Order("get_ball", ball.place, goal_rad, "get ball")
 
     def _help(self, view: View, game: Game, job: Job) -> Order:
-        if _gets_pass(view):
+        if self.passing.said.passer:
             return self._stand(view, view.own.place, "await pass")
         if job.role == DEFENDER:
             runner = _free_opponent(view, self.field)
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
-        return self._stand(view, formation.allowed(job.place, game, self.field), job.role)
+        place = formation.allowed(job.place, game, self.field)
+        if any(math.dist(mate.place, view.ball.place) < _HELD_M for mate in field_players(view)):
+            place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
+        return self._stand(view, place, job.role)
 
     def _stand(self, view: View, place: Point, intention: str) -> Order:
         return Order("goto", place, bearing_rad(place, view.ball.place), intention)
@@ -185,20 +251,6 @@ def leave_field(view: View, field: Field) -> Order:
     own = view.own.place
     place = Point(clamp(own.x_m, -_BENCH_M, _BENCH_M), math.copysign(field.half_width_m + field.border_m / 2, own.y_m))
     return Order("goto", place, view.own.heading_rad, "leave the field")
-
-
-def _gets_pass(view: View) -> bool:
-    """Returns whether the own robot waits for a pass: the mate with the ball turns to it, or would best pass to it."""
-    own, ball = view.own.place, view.ball.place
-    mates = field_players(view)
-    for carrier in mates:
-        if math.dist(carrier.place, ball) < _HELD_M and _PASS_M[0] < math.dist(own, ball) < _PASS_M[1]:
-            if abs(wrap_rad(bearing_rad(carrier.place, own) - carrier.heading_rad)) < _TURNED_RAD:
-                return True
-            others = [view.own, *(mate for mate in mates if mate is not carrier)]
-            best = aim.best_pass(carrier, others, view.opponents)
-            return best is not None and best.receiver == view.own.name and best.free_rad >= aim.LANE_RAD
-    return False
 
 
 def _nearest_defender(view: View, runner: Robot, limit_m: float) -> bool:

@@ -8,7 +8,7 @@ import math
 from collections.abc import Container
 from typing import NamedTuple
 
-from lcmtypes.soccer import ball_estimate_t, robot_estimate_t, world_model_t
+from lcmtypes.soccer import ball_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
 from procs.model.field import Point
 from procs.model.geometry import plausible, wrap_rad
 
@@ -28,6 +28,20 @@ class Frame(NamedTuple):
         return heading_rad if self.sign > 0 else wrap_rad(heading_rad + math.pi)
 
 
+class Agreement(NamedTuple):
+    """What a robot says to its team about a pass."""
+
+    receiver: str = ""
+    """Mate to which it will pass, or has just passed."""
+    place: Point = Point(0.0, 0.0)
+    """Place of that pass."""
+    passer: str = ""
+    """Mate whose announced pass it accepts."""
+
+
+_SILENT = Agreement()
+
+
 class Robot(NamedTuple):
     """A robot as the own robot knows it; heading and role only for team mates and itself."""
 
@@ -36,6 +50,7 @@ class Robot(NamedTuple):
     heading_rad: float = 0.0
     velocity_m_s: Point = Point(0.0, 0.0)
     role: str = ""
+    agreement: Agreement = _SILENT
 
 
 class Ball(NamedTuple):
@@ -65,23 +80,34 @@ class View(NamedTuple):
         return self._replace(mates=tuple(mate for mate in self.mates if mate.name not in robots))
 
 
-def view_of(model: world_model_t, name: str, role: str, frame: Frame, mate_timeout_s: float = 2.0) -> View:
-    """Turns the world model into the attack frame.
+def view_of(
+    model: world_model_t,
+    name: str,
+    role: str,
+    frame: Frame,
+    mate_timeout_s: float = 2.0,
+    agreement: Agreement = _SILENT,
+) -> View:
+    """Turns the world model into the attack frame; `role` and `agreement` are the robot's own words.
 
     Mates that were silent for the time-out are left out, and so are robots with implausible values.
     """
     here = plausible(model.x_m, model.y_m, model.heading_rad, model.vx_m_s, model.vy_m_s)
-    own = Robot(name, Point(0.0, 0.0), role=role)
+    own = Robot(name, Point(0.0, 0.0), role=role, agreement=agreement)
     if here:
         place, velocity_m_s = frame.point(model.x_m, model.y_m), frame.point(model.vx_m_s, model.vy_m_s)
-        own = Robot(name, place, frame.heading_rad(model.heading_rad), velocity_m_s, role)
-    mates = zip(model.mates, model.mate_roles, strict=True)
+        own = Robot(name, place, frame.heading_rad(model.heading_rad), velocity_m_s, role, agreement)
+    mates = zip(model.mates, model.mate_roles, model.mate_agreements, strict=True)
     return View(
         here and model.localized,
         own,
         _ball(model.ball, frame),
-        tuple(_robot(mate, said, frame) for mate, said in mates if mate.age_s <= mate_timeout_s and _sane(mate)),
-        tuple(_robot(other, "", frame) for other in model.opponents if _sane(other)),
+        tuple(
+            _robot(mate, said, agreed, frame)
+            for mate, said, agreed in mates
+            if mate.age_s <= mate_timeout_s and _sane(mate)
+        ),
+        tuple(_robot(other, "", None, frame) for other in model.opponents if _sane(other)),
     )
 
 
@@ -95,11 +121,18 @@ def _ball(ball: ball_estimate_t, frame: Frame) -> Ball:
     return Ball(ball.known, frame.point(ball.x_m, ball.y_m), frame.point(ball.vx_m_s, ball.vy_m_s))
 
 
-def _robot(estimate: robot_estimate_t, role: str, frame: Frame) -> Robot:
+def _agreement(said: pass_agreement_t, frame: Frame) -> Agreement:
+    if not (said.receiver or said.passer) or not plausible(said.x_m, said.y_m):
+        return _SILENT
+    return Agreement(said.receiver, frame.point(said.x_m, said.y_m), said.passer)
+
+
+def _robot(estimate: robot_estimate_t, role: str, said: pass_agreement_t | None, frame: Frame) -> Robot:
     return Robot(
         estimate.name,
         frame.point(estimate.x_m, estimate.y_m),
         frame.heading_rad(estimate.heading_rad),
         frame.point(estimate.vx_m_s, estimate.vy_m_s),
         role,
+        _agreement(said, frame) if said else _SILENT,
     )

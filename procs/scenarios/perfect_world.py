@@ -56,8 +56,11 @@ class PerfectWorldModel(Component):
         model.opponents = [_estimate(each) for each in others if team_of(each.name) != team_of(robot)]
         for opponent in model.opponents:
             opponent.name = ""
-        roles = {name: role.value.role for name, role in self.role.items()}
-        model.mate_roles = [roles.get(mate.name, ABSENT) for mate in model.mates]
+        said = {name: role.value for name, role in self.role.items()}
+        silent = role_t()
+        silent.role = ABSENT
+        model.mate_roles = [said.get(mate.name, silent).role for mate in model.mates]
+        model.mate_agreements = [said.get(mate.name, silent).agreement for mate in model.mates]
         self.world_model.value = model
         self.world_model.write()
 

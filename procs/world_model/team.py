@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from lcmtypes.soccer import pass_agreement_t
 from procs.model.frames import Floats
 
 _LEAST_M = 0.02  # deviation of a position whose sender claims less
@@ -35,6 +36,8 @@ class Mate:
     """On the mate's back."""
     holds_ball: bool = False
     """The ball was in its mouth at `told_s`."""
+    agreement: pass_agreement_t = field(default_factory=pass_agreement_t)
+    """What it said about a pass."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""

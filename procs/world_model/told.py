@@ -28,6 +28,7 @@ def mate_of(message: team_message_t, now_s: float) -> Mate | None:
         covariance_m2=np.array(((xx_m2, xy_m2), (yx_m2, yy_m2))) if proper else np.zeros((2, 2)),
         number=message.number,
         holds_ball=bool(message.ball_held),
+        agreement=message.agreement,
     )
 
 

@@ -27,6 +27,7 @@ def fill_world_model(
     message.ball = _ball(ball)
     message.mates = [_mate(mate, now_s) for mate in mates]
     message.mate_roles = [mate.role for mate in mates]
+    message.mate_agreements = [mate.agreement for mate in mates]
     message.opponents = [_opponent(opponents, int(track)) for track in opponents.sure]
 
 

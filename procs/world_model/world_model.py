@@ -266,7 +266,8 @@ class WorldModel(Component):
         player = self.config.players.get(self._robot)
         message = self.team_message.value
         message.robot, message.number = self._robot, player.number if player else 0
-        message.role, message.intention = self.role.value.role, self.role.value.intention
+        role = self.role.value
+        message.role, message.intention, message.agreement = role.role, role.intention, role.agreement
         message.ball_held = self.kicker_state.value.ball_held
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
         self._untold_ball = self._untold_obstacles = Seen.NOTHING

@@ -1,20 +1,24 @@
 """All skills by the names that agents use, and the machine that runs one at a time."""
 
 from procs.behaviour.skills.getting import GetBall, Intercept
-from procs.behaviour.skills.keeping import KeepGoal
+from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark, Stop
-from procs.behaviour.skills.playing import Dribble, Pass, Shoot
-from procs.behaviour.skills.skill import Scene, Skill, Status, Step
+from procs.behaviour.skills.playing import Aim, Dribble, Pass, Push, Shoot
+from procs.behaviour.skills.skill import Scene, Status, Step
+from procs.behaviour.skills.states import StateMachine
 
-SKILLS: dict[str, type[Skill]] = {
+SKILLS: dict[str, type[StateMachine]] = {
     "stop": Stop,
     "goto": Goto,
     "get_ball": GetBall,
     "dribble": Dribble,
+    "aim": Aim,
     "shoot": Shoot,
     "pass": Pass,
+    "push": Push,
     "intercept": Intercept,
     "keep_goal": KeepGoal,
+    "keep_line": KeepLine,
     "mark": Mark,
 }
 
@@ -28,7 +32,7 @@ class Machine:
 
     def __init__(self) -> None:
         self._name = ""
-        self._skill: Skill = Stop()
+        self._skill: StateMachine = Stop()
         self._ended: Step | None = None
 
     def begin(self, name: str) -> None:

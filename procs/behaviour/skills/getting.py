@@ -1,12 +1,13 @@
 """Skills that win the ball: get_ball drives to it, intercept waits on its way."""
 
 import math
-from abc import abstractmethod
 
 from procs.behaviour import ballistics
-from procs.behaviour.interception import Interception
-from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
+from procs.behaviour.interception import Interception, Stand
+from procs.behaviour.skills.skill import Drive, Scene, Status, Step
+from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.model.ball import BALL
+from procs.model.field import Point
 from procs.model.geometry import ahead, bearing_rad, wrap_rad
 from procs.model.robot import ROBOT
 
@@ -30,42 +31,74 @@ _ON_LINE_M = 0.3
 _SURE_S = 0.1  # the light barrier must see the ball so long
 
 
-class _Capture(Skill):
+class _Capture(StateMachine):
     """Ends when the ball has been in the mouth for a moment."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._held_s = 0.0
         self._plan = Interception()
+        self._stand: Stand | None = None
 
-    def step(self, scene: Scene) -> Step:
-        scene = scene._replace(view=scene.view._replace(ball=self._plan.smoothed(scene.view.ball, scene.duration_s)))
+    def _watch(self, scene: Scene) -> Scene:
         self._held_s = self._held_s + scene.duration_s if scene.holds_ball else 0.0
-        if self._held_s >= _SURE_S:
-            return Step(dribble=True, status=Status.FINAL)
-        if scene.holds_ball:  # the ball follows the robot, which stops before it has pulled the ball back
-            return Step(Drive(scene.view.own.place, scene.view.own.heading_rad), dribble=True)
-        if not scene.view.ball.known:
-            return failed("the ball is unknown")
-        return Step(self._approach(scene), dribble=self._near(scene))
+        return scene._replace(view=scene.view._replace(ball=self._plan.smoothed(scene.view.ball, scene.duration_s)))
 
-    def _near(self, scene: Scene) -> bool:
-        return math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M
+    def _in_mouth(self, scene: Scene) -> bool:
+        return scene.holds_ball
 
-    def _wait(self, scene: Scene) -> Drive | None:
-        """Returns the drive to the first place in the way of the ball; None if there is none in time."""
-        own, ball = scene.view.own, scene.view.ball
-        stand = self._plan.stand(ball, own, scene.duration_s)
-        if stand is None:
-            return None
-        excess_m_s = ball.speed_m_s - _KEPT_M_S
-        if excess_m_s > 0.0 and stand.time_s < _GIVING_S and math.dist(stand.place, own.place) < _ON_LINE_M:
-            way_rad = wrap_rad(stand.heading_rad + math.pi)
-            return Drive(ahead(stand.place, way_rad, _GIVING_M), stand.heading_rad, min(excess_m_s, _GIVING_M_S))
-        return Drive(stand.place, stand.heading_rad, scene.speed_m_s)
+    def _slipped(self, scene: Scene) -> bool:
+        return not scene.holds_ball
 
-    @abstractmethod
-    def _approach(self, scene: Scene) -> Drive:
-        """Returns the drive towards the ball."""
+    def _sure(self, _scene: Scene) -> bool:
+        return self._held_s >= _SURE_S
+
+    def _ball_unknown(self, scene: Scene) -> bool:
+        return not scene.view.ball.known
+
+    def _ball_comes(self, scene: Scene) -> bool:
+        """Whether there is a place in the way of the ball in time; the robot waits at the first one."""
+        self._stand = self._plan.stand(scene.view.ball, scene.view.own, scene.duration_s)
+        return self._stand is not None
+
+    def _fast_ball_arrives(self, scene: Scene) -> bool:
+        assert self._stand
+        near = math.dist(self._stand.place, scene.view.own.place) < _ON_LINE_M
+        return scene.view.ball.speed_m_s > _KEPT_M_S and self._stand.time_s < _GIVING_S and near
+
+    def _settle(self, scene: Scene) -> Step:
+        """The ball follows the robot, which stops before it has pulled the ball back."""
+        return Step(Drive(scene.view.own.place, scene.view.own.heading_rad), dribble=True)
+
+    def _keep_ball(self, _scene: Scene) -> Step:
+        return Step(dribble=True)
+
+    def _wait(self, scene: Scene) -> Step:
+        assert self._stand
+        return _approach(scene, Drive(self._stand.place, self._stand.heading_rad, scene.speed_m_s))
+
+    def _give(self, scene: Scene) -> Step:
+        assert self._stand
+        way_rad = wrap_rad(self._stand.heading_rad + math.pi)
+        speed_m_s = min(scene.view.ball.speed_m_s - _KEPT_M_S, _GIVING_M_S)
+        return _approach(scene, Drive(ahead(self._stand.place, way_rad, _GIVING_M), self._stand.heading_rad, speed_m_s))
+
+    def _drive_to(self, scene: Scene) -> Step:
+        return _approach(scene, drive_to(scene))
+
+    _DRIVE = State("drive to it", _drive_to)
+    _MEET = State(
+        "meet it",
+        inside=(State("wait", _wait), State("give", _give)),
+        choice=(Exit(_fast_ball_arrives, "give"), Exit(otherwise, "wait")),
+    )
+    _EXITS = (Exit(_in_mouth, "settle"), Exit(_ball_unknown, "the ball is unknown"))
+    _ENDS = (
+        State("settle", _settle, (Exit(_sure, "caught"), Exit(_slipped, "approach"))),
+        State("caught", _keep_ball, status=Status.FINAL),
+        State("the ball is unknown", status=Status.FAILED),
+    )
+    _FOUND = (Exit(_ball_comes, "meet it"), Exit(otherwise, "drive to it"))
 
 
 class GetBall(_Capture):
@@ -74,28 +107,75 @@ class GetBall(_Capture):
     A set piece's ball it takes from behind, so that it can play at once.
     """
 
-    def _approach(self, scene: Scene) -> Drive:
-        own, ball = scene.view.own.place, scene.view.ball
-        meeting = ballistics.meet(ball, own, scene.view.own.velocity_m_s).place
-        if any(math.dist(other.place, ball.place) < _HELD_M for other in scene.view.opponents):
-            goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
-            return Drive(ahead(meeting, goal_rad, _PUSH_M), wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S)
-        way_rad = bearing_rad(own, meeting)
-        off_rad = abs(wrap_rad(way_rad - scene.heading_rad))
-        if scene.set_piece and off_rad > _ALIGNED_RAD:
-            return Drive(ahead(meeting, scene.heading_rad, -_STAGING_M), scene.heading_rad, avoid_ball=True)
-        facing_rad = bearing_rad(own, ball.place)
-        turned = abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) < _FACING_RAD
-        if scene.set_piece and not turned:
-            return Drive(ahead(ball.place, facing_rad, -_WAITING_M), facing_rad)
-        return self._wait(scene) or drive_to(scene)
+    def _opponent_has_it(self, scene: Scene) -> bool:
+        return any(math.dist(other.place, scene.view.ball.place) < _HELD_M for other in scene.view.opponents)
+
+    def _set_piece_from_beside(self, scene: Scene) -> bool:
+        way_rad = bearing_rad(scene.view.own.place, _meeting(scene))
+        return scene.set_piece and abs(wrap_rad(way_rad - scene.heading_rad)) > _ALIGNED_RAD
+
+    def _set_piece_not_faced(self, scene: Scene) -> bool:
+        facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
+        return scene.set_piece and abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) >= _FACING_RAD
+
+    def _contest(self, scene: Scene) -> Step:
+        meeting = _meeting(scene)
+        goal_rad = bearing_rad(meeting, scene.field.goal_centre(-1.0))
+        place = ahead(meeting, goal_rad, _PUSH_M)
+        return _approach(scene, Drive(place, wrap_rad(goal_rad + math.pi), scene.speed_m_s, _ENTRY_M_S))
+
+    def _go_behind(self, scene: Scene) -> Step:
+        place = ahead(_meeting(scene), scene.heading_rad, -_STAGING_M)
+        return _approach(scene, Drive(place, scene.heading_rad, avoid_ball=True))
+
+    def _face(self, scene: Scene) -> Step:
+        facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
+        return _approach(scene, Drive(ahead(scene.view.ball.place, facing_rad, -_WAITING_M), facing_rad))
+
+    STATES = (
+        State(
+            "approach",
+            exits=_Capture._EXITS,
+            inside=(
+                _Capture._DRIVE,
+                _Capture._MEET,
+                State("contest", _contest),
+                State("go behind it", _go_behind),
+                State("face it", _face),
+            ),
+            choice=(
+                Exit(_opponent_has_it, "contest"),
+                Exit(_set_piece_from_beside, "go behind it"),
+                Exit(_set_piece_not_faced, "face it"),
+                *_Capture._FOUND,
+            ),
+        ),
+        *_Capture._ENDS,
+    )
 
 
 class Intercept(_Capture):
     """Waits on the way of a rolling ball, facing it, and gives before a fast one; drives to a ball that outruns it."""
 
-    def _approach(self, scene: Scene) -> Drive:
-        return self._wait(scene) or drive_to(scene)
+    STATES = (
+        State(
+            "approach",
+            exits=_Capture._EXITS,
+            inside=(_Capture._DRIVE, _Capture._MEET),
+            choice=_Capture._FOUND,
+        ),
+        *_Capture._ENDS,
+    )
+
+
+def _meeting(scene: Scene) -> Point:
+    own = scene.view.own
+    return ballistics.meet(scene.view.ball, own.place, own.velocity_m_s).place
+
+
+def _approach(scene: Scene, drive: Drive) -> Step:
+    """Returns the step of a drive towards the ball; near it the handling is on."""
+    return Step(drive, dribble=math.dist(scene.view.own.place, scene.view.ball.place) < _HANDLING_ON_M)
 
 
 def drive_to(scene: Scene) -> Drive:

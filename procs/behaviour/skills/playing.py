@@ -4,7 +4,8 @@ import math
 from abc import abstractmethod
 
 from procs.behaviour import ballistics
-from procs.behaviour.skills.skill import Drive, Scene, Skill, Status, Step, failed
+from procs.behaviour.skills.skill import Drive, Scene, Status, Step
+from procs.behaviour.skills.states import Exit, State, StateMachine, otherwise
 from procs.behaviour.view import Robot
 from procs.model.ball import BALL
 from procs.model.field import Point
@@ -19,40 +20,87 @@ _THERE_M = 0.3
 _FACE_M = 2.0  # a dribbling robot so near to its place turns to the heading that it is to have there ...
 _SIDEWAYS_RAD = 1.2  # ... unless it would pull the ball back
 _PULLS_RAD = 1.1  # a drive further off the mouth's direction would pull the ball, which the rules allow for 0.3 m
+_AIMED_RAD = 0.1
 _SHOT_M_S = 11.0
 _ARRIVAL_M_S = 2.7
 
 
-class _WithBall(Skill):
+class _WithBall(StateMachine):
     """Fails when the ball is lost."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._missing_s = 0.0
 
-    def step(self, scene: Scene) -> Step:
+    def _watch(self, scene: Scene) -> Scene:
         self._missing_s = 0.0 if scene.holds_ball else self._missing_s + scene.duration_s
-        if self._missing_s > _LOST_S:
-            return failed("lost the ball")
-        return self._play(scene)
+        return scene
 
-    @abstractmethod
-    def _play(self, scene: Scene) -> Step:
-        """Returns the next step with the ball."""
+    def _lost(self, _scene: Scene) -> bool:
+        return self._missing_s > _LOST_S
+
+    _LOST_EXIT = Exit(_lost, "lost the ball")
+    _LOST = State("lost the ball", status=Status.FAILED)
 
 
 class Dribble(_WithBall):
     """Turns to the place, drives there with the ball, mouth forward, and turns to the heading before it is there."""
 
-    def _play(self, scene: Scene) -> Step:
+    def _there(self, scene: Scene) -> bool:
+        return math.dist(scene.view.own.place, scene.place) < _THERE_M
+
+    def _would_pull_the_ball(self, scene: Scene) -> bool:
+        way_rad = bearing_rad(scene.view.own.place, scene.place)
+        return abs(wrap_rad(way_rad - scene.view.own.heading_rad)) > _PULLS_RAD
+
+    def _turn(self, scene: Scene) -> Step:
+        return self._carry(scene, scene.view.own.place)
+
+    def _drive(self, scene: Scene) -> Step:
+        return self._carry(scene, scene.place)
+
+    def _carry(self, scene: Scene, target: Point) -> Step:
         own = scene.view.own.place
         distance_m = math.dist(own, scene.place)
         way_rad = bearing_rad(own, scene.place)
         sideways = distance_m < _FACE_M and abs(wrap_rad(way_rad - scene.heading_rad)) < _SIDEWAYS_RAD
         heading_rad = scene.heading_rad if sideways or distance_m < 2 * _THERE_M else way_rad
         speed_m_s = min(scene.speed_m_s or _DRIBBLE_M_S, _DRIBBLE_M_S)
-        status = Status.FINAL if distance_m < _THERE_M else Status.RUNNING
-        pulls = abs(wrap_rad(way_rad - scene.view.own.heading_rad)) > _PULLS_RAD
-        return Step(Drive(own if pulls else scene.place, heading_rad, speed_m_s), dribble=True, status=status)
+        return Step(Drive(target, heading_rad, speed_m_s), dribble=True)
+
+    STATES = (
+        State(
+            "carry",
+            exits=(_WithBall._LOST_EXIT, Exit(_there, "there")),
+            inside=(State("drive", _drive), State("turn", _turn)),
+            choice=(Exit(_would_pull_the_ball, "turn"), Exit(otherwise, "drive")),
+        ),
+        State("there", _drive, status=Status.FINAL),
+        _WithBall._LOST,
+    )
+
+
+class Aim(_WithBall):
+    """Turns with the ball to the place and waits there, ready to kick."""
+
+    lasting = True
+
+    def _turn(self, scene: Scene) -> Step:
+        own = scene.view.own
+        return Step(Drive(own.place, bearing_rad(own.place, scene.place), avoid_robots=False), dribble=True)
+
+    def _aimed(self, scene: Scene) -> bool:
+        own = scene.view.own
+        return abs(wrap_rad(bearing_rad(own.place, scene.place) - own.heading_rad)) < _AIMED_RAD
+
+    def _off(self, scene: Scene) -> bool:
+        return not self._aimed(scene)
+
+    STATES = (
+        State("turn", _turn, (_WithBall._LOST_EXIT, Exit(_aimed, "wait"))),
+        State("wait", _turn, (_WithBall._LOST_EXIT, Exit(_off, "turn")), status=Status.FINAL),
+        _WithBall._LOST,
+    )
 
 
 class _Kick(_WithBall):
@@ -70,17 +118,10 @@ class _Kick(_WithBall):
     def __init__(self) -> None:
         super().__init__()
         self._running_s = 0.0
-        self._asked = False
         self._heading_rad = math.nan
+        self._wanted_rad = self._kick_m_s = 0.0
         self._off_rad = math.nan
-
-    def step(self, scene: Scene) -> Step:
-        if self._asked and scene.kicked is None:
-            return Step(dribble=True)
-        if self._asked and scene.kicked:
-            return Step(status=Status.FINAL)
-        self._asked = False
-        return super().step(scene)
+        self._on_target = self._asked_for = False
 
     @abstractmethod
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
@@ -90,28 +131,43 @@ class _Kick(_WithBall):
     def _tolerance_rad(self, distance_m: float) -> float:
         """Returns the largest error of the heading at that distance."""
 
-    def _play(self, scene: Scene) -> Step:
-        own = scene.view.own
+    def _watch(self, scene: Scene) -> Scene:
+        """Computes the aim of this tick, unless the kick was asked for and was not refused."""
+        if self.state in ("kick", "wait for the kicker") and scene.kicked is not False:
+            return scene
+        scene, own, self._asked_for = super()._watch(scene), scene.view.own, False
         distance_m = math.dist(own.place, scene.place)
         speed_m_s = self._speed_m_s(scene, distance_m)
         self._running_s += scene.duration_s
-        if self._running_s > self._TIMEOUT_S:
-            return failed("could not aim in time")
         known = not math.isnan(self._heading_rad)
         turn_rad_s = wrap_rad(own.heading_rad - self._heading_rad) / scene.duration_s if known else 0.0
         self._heading_rad = own.heading_rad
         slowed_rad_s = math.copysign(max(0.0, abs(turn_rad_s) - self._SLOWING_RAD_S), turn_rad_s)
-        wanted_rad, kick_m_s = self._aim(scene, speed_m_s, _mouth_velocity_m_s(own, slowed_rad_s))
-        off_rad = wrap_rad(wanted_rad - own.heading_rad - (turn_rad_s + slowed_rad_s) / 2 * self._LEAD_S)
+        mouth_m_s = _mouth_velocity_m_s(own, slowed_rad_s)
+        self._wanted_rad, self._kick_m_s = self._aim(scene, speed_m_s, mouth_m_s)
+        off_rad = wrap_rad(self._wanted_rad - own.heading_rad - (turn_rad_s + slowed_rad_s) / 2 * self._LEAD_S)
         patience = 1.0 + 0.5 * self._running_s  # a poor kick is better than none
         tolerance_rad = self._tolerance_rad(distance_m) * patience
         improves = 2 * abs(off_rad) > abs(self._off_rad - off_rad) and abs(off_rad) < abs(self._off_rad)
         self._off_rad = off_rad
-        aimed = abs(off_rad) < tolerance_rad * (self._EXACT if improves else 1.0)
-        if aimed and scene.charged and scene.holds_ball:
-            self._asked = True
-            return Step(self._turn(scene, wanted_rad), dribble=True, kick_m_s=kick_m_s)
-        return Step(self._turn(scene, wanted_rad), dribble=True)
+        self._on_target = abs(off_rad) < tolerance_rad * (self._EXACT if improves else 1.0)
+        return scene
+
+    def _too_late(self, _scene: Scene) -> bool:
+        return self._running_s > self._TIMEOUT_S
+
+    def _ready(self, scene: Scene) -> bool:
+        return self._on_target and scene.charged and scene.holds_ball
+
+    def _kicked(self, scene: Scene) -> bool:
+        return bool(scene.kicked)
+
+    def _refused(self, scene: Scene) -> bool:
+        return scene.kicked is False
+
+    def _asked(self, _scene: Scene) -> bool:
+        """Whether a tick has passed since the kick was asked for."""
+        return self._asked_for
 
     def _aim(self, scene: Scene, speed_m_s: float, mouth_m_s: Point) -> tuple[float, float]:
         """Returns the heading at which a kick sends the ball to the place with `speed_m_s`, and the kick's speed.
@@ -126,8 +182,32 @@ class _Kick(_WithBall):
             heading_rad = math.atan2(missing.y_m, missing.x_m)
         return heading_rad, max(_LEAST_KICK_M_S, math.hypot(*missing))
 
-    def _turn(self, scene: Scene, heading_rad: float) -> Drive:
-        return Drive(scene.view.own.place, heading_rad, avoid_robots=False)
+    def _turn(self, scene: Scene) -> Step:
+        return Step(Drive(scene.view.own.place, self._wanted_rad, avoid_robots=False), dribble=True)
+
+    def _kick(self, scene: Scene) -> Step:
+        self._asked_for = True
+        return self._turn(scene)._replace(kick_m_s=self._kick_m_s)
+
+    def _hold(self, _scene: Scene) -> Step:
+        return Step(dribble=True)
+
+    def _end(self, _scene: Scene) -> Step:
+        return Step()
+
+    _ANSWERED = (Exit(_kicked, "kicked"), Exit(_refused, "turn"))
+    STATES = (
+        State(
+            "turn",
+            _turn,
+            (_WithBall._LOST_EXIT, Exit(_too_late, "could not aim in time"), Exit(_ready, "kick")),
+        ),
+        State("kick", _kick, (Exit(_asked, "wait for the kicker"),)),
+        State("wait for the kicker", _hold, _ANSWERED),
+        State("kicked", _end, status=Status.FINAL),
+        State("could not aim in time", status=Status.FAILED),
+        _WithBall._LOST,
+    )
 
 
 class Shoot(_Kick):
@@ -149,6 +229,10 @@ class Pass(_Kick):
 
     def _tolerance_rad(self, _distance_m: float) -> float:
         return 0.05
+
+
+class Push(Pass):
+    """Sets the ball free, slowly, for the robot that kicks it."""
 
 
 def _mouth_velocity_m_s(own: Robot, turn_rad_s: float) -> Point:

@@ -59,11 +59,6 @@ class Step(NamedTuple):
     reason: str = ""
 
 
-def failed(reason: str) -> Step:
-    """Returns the step of a failed skill: the robot stops, for a reason."""
-    return Step(status=Status.FAILED, reason=reason)
-
-
 class Skill(ABC):
     """One skill from its start to its end; a fresh object for every new command of another kind."""
 

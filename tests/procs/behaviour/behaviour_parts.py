@@ -1,7 +1,7 @@
 """Short descriptions of matches for tests of the behaviour."""
 
 from procs.behaviour.roles import Job
-from procs.behaviour.view import Ball, Robot, View
+from procs.behaviour.view import Agreement, Ball, Robot, View
 from procs.model.field import Field, Point
 
 FIELD = Field()
@@ -9,6 +9,11 @@ FIELD = Field()
 
 def robot(name: str, x_m: float, y_m: float, heading_rad: float = 0.0, role: str = "") -> Robot:
     return Robot(name, Point(x_m, y_m), heading_rad, role=role)
+
+
+def agreed(mate: Robot, passer: str = "cyan2") -> Robot:
+    """Returns the mate as a robot that accepts the pass of another."""
+    return mate._replace(agreement=Agreement(passer=passer))
 
 
 def ball(x_m: float, y_m: float, vx_m_s: float = 0.0, vy_m_s: float = 0.0) -> Ball:

@@ -14,6 +14,7 @@ from lcmtypes.soccer import (
     drive_target_t,
     game_state_t,
     navigator_state_t,
+    pass_agreement_t,
     robot_estimate_t,
     skill_status_t,
 )
@@ -322,6 +323,7 @@ def senseless(value: float, message: Any) -> Any:
             setattr(message, name, [senseless(value, robot_estimate_t()) for _ in range(3)])
     if hasattr(message, "mates"):
         message.mate_roles = ["attacker"] * 3
+        message.mate_agreements = [senseless(value, pass_agreement_t()) for _ in range(3)]
         message.localized = True
     return message
 

@@ -34,7 +34,7 @@ def test_robot_with_the_ball_shoots_or_drives_to_the_goal(x_m: float, skill: str
 
 def test_first_robot_keeps_the_goal() -> None:
     role, order = decide(view(robot("cyan1", -10.0, 0.0), ball(0.0, 0.0)), PLAY, False, FIELD)
-    assert (role, order.skill) == ("goalkeeper", "keep_goal")
+    assert (role, order.skill) == ("goalkeeper", "keep_line")
 
 
 @pytest.mark.parametrize("name", ["cyan2", "cyan3", "cyan5"])

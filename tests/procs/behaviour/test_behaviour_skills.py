@@ -7,9 +7,9 @@ import pytest
 from procs.behaviour import ballistics
 from procs.behaviour.skills.book import Machine
 from procs.behaviour.skills.getting import GetBall, Intercept
-from procs.behaviour.skills.keeping import KeepGoal
+from procs.behaviour.skills.keeping import KeepGoal, KeepLine
 from procs.behaviour.skills.moving import Goto, Mark
-from procs.behaviour.skills.playing import Dribble, Pass, Shoot
+from procs.behaviour.skills.playing import Aim, Dribble, Pass, Shoot
 from procs.behaviour.skills.skill import Drive, Scene, Status, Step
 from procs.behaviour.view import Ball, View
 from procs.model.ball import BALL
@@ -120,6 +120,16 @@ def test_dribble_drives_mouth_first_and_fails_without_the_ball() -> None:
     assert lost[-1] is Status.FAILED
 
 
+def test_aim_turns_to_the_place_and_waits_there_without_a_kick() -> None:
+    skill = Aim()
+    turning = skill.step(scene(view(OWN, ball(0.33, 0.0)), 0.0, 5.0, holds_ball=True))
+    assert drive(turning).heading_rad == pytest.approx(math.pi / 2)
+    assert turning.status is Status.RUNNING
+    turned = scene(view(robot("cyan2", 0.0, 0.0, 1.55), ball(0.0, 0.33)), 0.0, 5.0, holds_ball=True)
+    steps = [skill.step(turned) for _ in range(20)]
+    assert {(step.kick_m_s, step.dribble, step.status) for step in steps} == {(0.0, True, Status.FINAL)}
+
+
 def test_shoot_turns_first_and_kicks_when_aimed() -> None:
     skill = Shoot()
     aside = scene(view(OWN._replace(heading_rad=0.5), ball(0.3, 0.1)), holds_ball=True)
@@ -191,12 +201,46 @@ def test_aiming_without_end_fails() -> None:
 @pytest.mark.parametrize(("vy_m_s", "crossing_m"), [(0.0, 0.5), (-1.0, -1.05), (-4.0, None)])
 def test_keeper_goes_where_the_shot_will_cross_its_line(vy_m_s: float, crossing_m: float | None) -> None:
     keeper = robot("cyan1", -10.5, 0.0)
-    place = drive(KeepGoal().step(scene(view(keeper, ball(-5.0, 0.5, -3.0, vy_m_s))))).place
+    place = drive(KeepLine().step(scene(view(keeper, ball(-5.0, 0.5, -3.0, vy_m_s))))).place
     assert -11.0 < place.x_m < -10.3
     if crossing_m is not None:
         assert place.y_m == pytest.approx(crossing_m)
     else:
         assert place.y_m > -0.2  # goes wide
+
+
+@pytest.mark.parametrize(
+    ("shot", "state"),
+    [
+        (ball(-4.0, 0.0, -5.0, 0.6), "meet"),
+        (ball(-6.0, 0.5, -6.5, -1.56), "dive"),
+        (ball(-9.0, 0.5, -9.0, 0.9), "block"),
+        (ball(-5.0, 0.5, -4.0, -4.0), "let it go"),
+        (ball(-5.0, 0.5, 1.0, 0.0), "come out"),
+        (Ball(known=False), "wait in the middle"),
+    ],
+)
+def test_keeper_dives_for_shots_that_it_cannot_stop_at_in_time(shot: Ball, state: str) -> None:
+    skill, keeper = KeepGoal(), robot("cyan1", -10.4, 0.0)
+    place = drive(skill.step(scene(view(keeper, shot), -8.7, 0.0)))
+    assert skill.state.split("/")[-1] == state
+    assert (place.end_speed_m_s > 2.0) == (state == "dive")
+    if state == "dive":
+        crossing_m = shot.place.y_m + shot.velocity_m_s.y_m * (shot.place.x_m - place.place.x_m) / 6.5
+        assert place.place.y_m < crossing_m - 0.2, "past the ball's way, at full speed"
+
+
+def test_keeper_comes_out_further_the_nearer_the_ball_is() -> None:
+    keeper = robot("cyan1", -10.4, 0.0)
+
+    def out_m(ball_x_m: float, furthest_x_m: float) -> float:
+        step = KeepGoal().step(scene(view(keeper, ball(ball_x_m, 0.0)), furthest_x_m, 0.0))
+        return drive(step).place.x_m + 11.0
+
+    assert out_m(0.0, -8.7) == pytest.approx(0.45)
+    assert 0.5 < out_m(-5.5, -8.7) < out_m(-6.5, -8.7) < 2.3
+    assert out_m(-8.5, -8.7) == pytest.approx(2.3)
+    assert out_m(-8.5, -10.55) == pytest.approx(0.45), "no further than it is told"
 
 
 def test_keeper_covers_the_ball_side_between_the_posts() -> None:

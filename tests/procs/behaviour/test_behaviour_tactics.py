@@ -13,7 +13,7 @@ from procs.behaviour.view import Ball, Robot, View
 from procs.model.field import Point
 from procs.model.geometry import bearing_rad, wrap_rad
 from procs.referee.restarts import State
-from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
+from tests.procs.behaviour.behaviour_parts import FIELD, agreed, ball, job, robot, view
 
 PLAY = Game(State.PLAY, stopped=False)
 KEEPER = robot("", 10.5, 0.0)
@@ -78,9 +78,9 @@ def test_robot_in_its_own_half_does_not_shoot() -> None:
 
 
 def test_robot_under_pressure_passes_to_a_free_mate_ahead() -> None:
-    mate = robot("cyan3", 3.0, 3.0, role=SUPPORTER)
+    mate = agreed(robot("cyan3", 3.0, 3.0, role=SUPPORTER))
     pressed = with_ball(-2.0, 0.0, robot("", -1.2, -0.2), mates=(mate,))
-    assert decide(pressed, holds_ball=True).skill == "pass"
+    assert decide(pressed, holds_ball=True, ticks=2).skill == "pass"
     assert decide(with_ball(-2.0, 0.0, mates=(mate,)), holds_ball=True).skill == "dribble"
 
 
@@ -117,10 +117,10 @@ def test_kick_off_taker_stays_in_its_half_before_a_back_pass() -> None:
 
 def test_set_piece_is_played_to_a_mate() -> None:
     game = Game(State.THROW_IN, stopped=False, whose=Whose.OURS, spot=Point(0.0, 6.9))
-    mates = (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    mates = (agreed(robot("cyan3", 0.0, 3.0, role=SUPPORTER)),)
     seen = view(robot("cyan2", 0.0, 6.9, -math.pi / 2), ball(0.0, 6.6), mates)
     assert decide(seen, game).skill == "get_ball"
-    order = decide(seen, game, holds_ball=True)
+    order = decide(seen, game, holds_ball=True, ticks=2)
     assert (order.skill, order.place) == ("pass", (0.0, 3.0))
 
 
@@ -149,7 +149,7 @@ def test_receiver_of_a_set_piece_sees_ball_and_goal(spot: Point, most_rad: float
 
 def test_set_piece_goes_to_the_receiver_behind_the_ball() -> None:
     game, tactics = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 0.0)), Tactics(FIELD)
-    receiver, ahead = robot("cyan3", 0.0, -1.2, role=SUPPORTER), robot("cyan4", 6.0, 2.0, role=DEFENDER)
+    receiver, ahead = agreed(robot("cyan3", 0.0, -1.2, role=SUPPORTER)), robot("cyan4", 6.0, 2.0, role=DEFENDER)
     seen = view(robot("cyan2", 2.6, 0.3, math.pi), ball(2.0, 0.0), (receiver, ahead))
     waiting = tactics.decide(seen, game, job(ATTACKER), False, 0.05)
     assert waiting.place.x_m > 2.0, "the taker stands on the other side of the ball"
@@ -159,14 +159,11 @@ def test_set_piece_goes_to_the_receiver_behind_the_ball() -> None:
 
 
 def test_rival_that_comes_fast_presses_from_further_away() -> None:
-    mates = (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    mates = (agreed(robot("cyan3", 0.0, 3.0, role=SUPPORTER)),)
     rival = robot("", 0.0, -0.5)
     standing = decide(with_ball(-2.0, 0.0, rival, mates=mates), holds_ball=True)
-    coming = rival._replace(velocity_m_s=Point(-2.5, 0.5))
-    assert (standing.skill, decide(with_ball(-2.0, 0.0, coming, mates=mates), holds_ball=True).skill) == (
-        "dribble",
-        "pass",
-    )
+    coming = with_ball(-2.0, 0.0, rival._replace(velocity_m_s=Point(-2.5, 0.5)), mates=mates)
+    assert (standing.skill, decide(coming, holds_ball=True, ticks=2).skill) == ("dribble", "pass")
 
 
 @pytest.mark.parametrize("stopped", [True, False])
@@ -176,6 +173,17 @@ def test_robots_keep_away_at_the_other_teams_set_piece(stopped: bool) -> None:
         order = decide(view(robot("cyan2", -3.0, 0.0), ball(-3.0, 1.0)), game, role)
         assert order.skill == "goto"
         assert math.dist(order.place, game.spot) >= 3.0
+
+
+@pytest.mark.parametrize(
+    ("laid", "distant"), [(Point(-3.5, 1.0), True), (Point(-3.1, 1.0), False), (Point(3.0, 1.0), False)]
+)
+def test_distance_is_kept_to_a_ball_laid_beside_its_spot(laid: Point, distant: bool) -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(-3.0, 1.0))
+    order = decide(view(robot("cyan2", -6.5, 1.0), ball(*laid)), game, SUPPORTER)
+    goal_side = decide(view(robot("cyan2", -6.5, 1.0), ball(*game.spot)), game, SUPPORTER)
+    assert (math.dist(order.place, laid) >= 3.2) == (distant or laid.x_m > 0.0)
+    assert (order.place != goal_side.place) == distant
 
 
 def test_keeper_keeps_goal_and_fetches_a_slow_ball_before_it() -> None:
@@ -224,35 +232,32 @@ def test_formation_is_taken_while_no_ball_is_seen() -> None:
     assert (order.skill, order.place) == ("goto", (-3.0, 1.0))
 
 
+@pytest.mark.parametrize(
+    ("place", "kept"), [((8.0, 2.5), True), ((8.0, -2.5), False), ((8.0, 0.2), False), ((2.0, -2.5), True)]
+)
+def test_mates_of_a_robot_that_may_shoot_leave_its_way_free(place: tuple[float, float], kept: bool) -> None:
+    own, shooter = robot("cyan3", min(7.0, place[0]), 1.0), robot("cyan2", 4.67, 0.0)
+    seen = view(own, ball(5.0, 0.0), (shooter,))
+    order = Tactics(FIELD).decide(seen, PLAY, job(SUPPORTER, *place), False, 0.05)
+    assert (order.place == place) == kept
+    assert kept or order.place.y_m >= 1.2
+    free = seen._replace(mates=(shooter._replace(place=Point(2.0, 0.0)),))
+    assert Tactics(FIELD).decide(free, PLAY, job(SUPPORTER, *place), False, 0.05).place == place
+
+
 def test_pass_once_begun_follows_its_receiver() -> None:
     tactics, pressing = Tactics(FIELD), robot("", -1.2, -0.2)
-    near, other = robot("cyan3", 3.0, 3.0, role=SUPPORTER), robot("cyan4", 3.0, 2.0, role=SUPPORTER)
+    near, other = agreed(robot("cyan3", 3.0, 3.0, role=SUPPORTER)), robot("cyan4", 3.0, 2.0, role=SUPPORTER)
     tactics.decide(with_ball(-2.0, 0.0, pressing, mates=(near,)), PLAY, job(ATTACKER), True, 0.05)
     moved = near._replace(place=Point(2.5, 3.5))
     order = tactics.decide(with_ball(-2.0, 0.0, pressing, mates=(moved, other)), PLAY, job(ATTACKER), True, 0.05)
     assert (order.skill, order.place) == ("pass", moved.place)
 
 
-def test_robot_waits_for_the_pass_of_a_mate_that_turned_to_it() -> None:
-    seen = view(robot("cyan3", 3.0, 0.0), ball(0.33, 0.0), (robot("cyan2", 0.0, 0.0, 0.0),))
-    order = decide(seen, role=SUPPORTER)
-    assert (order.place, order.intention) == ((3.0, 0.0), "await pass")
-    turned_away = seen._replace(mates=(robot("cyan2", 0.0, 0.0, math.pi / 2), robot("cyan4", 0.5, 4.0)))
-    assert decide(turned_away, role=SUPPORTER).intention == SUPPORTER
-
-
-def test_robot_waits_where_a_mate_would_best_pass_to() -> None:
-    own, passer, other = robot("cyan3", 4.0, 0.0), robot("cyan2", 0.0, 0.0, math.pi / 2), robot("cyan4", -3.0, 4.0)
-    seen = view(own, ball(0.33, 0.0), (passer, other))
-    assert decide(seen, role=SUPPORTER).intention == "await pass"
-    blocked = seen._replace(opponents=(robot("", 2.0, 0.0),))
-    assert decide(blocked, role=SUPPORTER).intention == SUPPORTER
-
-
 def test_ball_that_gets_no_further_is_released() -> None:
     before_robot = with_ball(-2.0, 0.0, robot("", -1.2, 0.0))
     assert decide(before_robot, holds_ball=True).skill == "dribble"
-    assert decide(before_robot, holds_ball=True, ticks=14).intention == "push"
+    assert decide(before_robot, holds_ball=True, ticks=14).skill == "push"
 
 
 def test_ball_at_the_end_line_is_not_shot_at_the_post() -> None:

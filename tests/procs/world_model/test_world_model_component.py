@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from fwk.testing import Bench
-from lcmtypes.soccer import obstacle_t, team_message_t
+from lcmtypes.soccer import obstacle_t, pass_agreement_t, team_message_t
 from procs.model.frames import rotation
 from procs.simulation.radio import Radio
 from procs.world_model.seen import Seen
@@ -53,7 +53,9 @@ class Robot:
         port("pose").put(x_m=x_m, y_m=y_m, heading_rad=heading_rad, covariance=covariance, localized=self.localized)
         port("odometry").put()
         port("kicker_state").put(ball_held=held)
-        port("role").put(role=self.role, intention="testing")
+        said = pass_agreement_t()
+        said.receiver, said.x_m, said.y_m = f"for {self.name}", 1.5, -2.0
+        port("role").put(role=self.role, intention="testing", agreement=said)
         if ball_m is None:
             port("ball_percept").put(visible=False)
         else:
@@ -154,6 +156,8 @@ def test_opponents_contain_neither_mates_nor_oneself() -> None:
         world = robot.world
         assert [mate.name for mate in world.mates] == [mate.name for mate in mates]
         assert world.mate_roles == [mate.role for mate in mates]
+        told_passes = [(said.receiver, said.x_m, said.y_m) for said in world.mate_agreements]
+        assert told_passes == [(f"for {mate.name}", 1.5, -2.0) for mate in mates]
         for told, mate in zip(world.mates, mates, strict=True):
             assert (told.x_m, told.y_m) == pytest.approx(mate.pose[:2].tolist(), abs=0.08)
         places = np.array([(one.x_m, one.y_m) for one in world.opponents])

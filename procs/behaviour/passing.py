@@ -1,0 +1,81 @@
+"""Passes agreed between two robots through the messages of the team: announced, accepted, or dropped after a time-out.
+
+The robot with the ball announces to which mate it would pass, before it passes. That mate accepts, stands still and
+looks at the ball. A pass to a mate that has not accepted in time is dropped, and the passer does not ask that mate for
+a while. Both keep to the pass until the ball has arrived.
+"""
+
+import math
+
+from procs.behaviour.view import Agreement, Robot, View
+from procs.model.field import Point
+
+ANSWER_S = 0.5
+"""An announced pass that is not accepted for longer is dropped: the way to the mate and back takes 0.2 s to 0.4 s."""
+_REFUSED_S = 1.5  # for so long the mate is not asked again
+_FLIGHT_S = 2.5  # a pass has arrived by then, or got lost
+_TAKEN_M = 0.42  # a robot this near to the ball has it
+
+_NOWHERE = Point(0.0, 0.0)
+
+
+class Passing:
+    """What one robot says about a pass; call `watch` once a tick, and `announce` while the robot has the ball."""
+
+    def __init__(self) -> None:
+        self.said = Agreement()
+        """What the team is told in this tick."""
+        self.accepted = False
+        """Whether the mate to which a pass is announced waits for it."""
+        self._asked_s = 0.0
+        self._flight_s = math.inf
+        self._refused_s: dict[str, float] = {}
+
+    @property
+    def late(self) -> bool:
+        """Whether the mate to which a pass is announced has not answered in time."""
+        return bool(self.said.receiver) and not self.accepted and self._asked_s > ANSWER_S
+
+    def may_ask(self, mate: Robot) -> bool:
+        """Returns whether a pass may be announced to a mate: it has not lately left one without an answer."""
+        return mate.name not in self._refused_s
+
+    def watch(self, view: View, holds_ball: bool, duration_s: float) -> None:
+        """Takes the words of the mates, `duration_s` after the last."""
+        left_s = {mate: time_s - duration_s for mate, time_s in self._refused_s.items()}
+        self._refused_s = {mate: time_s for mate, time_s in left_s.items() if time_s > 0.0}
+        self._flight_s = 0.0 if holds_ball else self._flight_s + duration_s
+        lost = taken(view)
+        own = view.own.name
+        if not holds_ball and (lost or self._flight_s > _FLIGHT_S or _arrived(view, self.said.receiver)):
+            self.announce("")
+        self._asked_s += duration_s
+        self.accepted = any(mate.name == self.said.receiver and mate.agreement.passer == own for mate in view.mates)
+        self.said = self.said._replace(passer="" if holds_ball or lost else _announcer(view))
+
+    def announce(self, receiver: str, place: Point = _NOWHERE) -> None:
+        """Announces a pass to a mate at its place; an empty name takes the announcement back."""
+        if receiver != self.said.receiver:
+            self._asked_s, self.accepted = 0.0, False
+        self.said = self.said._replace(receiver=receiver, place=place)
+
+    def drop(self) -> None:
+        """Takes the announcement back, and leaves the mate alone for a while."""
+        self._refused_s[self.said.receiver] = _REFUSED_S
+        self.announce("")
+
+
+def _announcer(view: View) -> str:
+    """Returns the mate that announces a pass to the own robot, of several the nearest to the ball."""
+    asking = [mate for mate in view.mates if mate.agreement.receiver == view.own.name]
+    nearest = min(asking, key=lambda mate: (math.dist(mate.place, view.ball.place), mate.name), default=None)
+    return nearest.name if nearest else ""
+
+
+def _arrived(view: View, receiver: str) -> bool:
+    return any(mate.name == receiver and math.dist(mate.place, view.ball.place) < _TAKEN_M for mate in view.mates)
+
+
+def taken(view: View) -> bool:
+    """Returns whether an opponent has the ball."""
+    return any(math.dist(other.place, view.ball.place) < _TAKEN_M for other in view.opponents)

@@ -1,0 +1,113 @@
+"""Book of the own set pieces: where the receiver waits, in at least two variants for each; attack frame.
+
+The taker chooses: variants take turns from one set piece to the next, and one whose way is blocked is passed over. It
+announces the receiver's place with the pass; until the receiver has heard of it, it waits at the place that is next in
+turn.
+"""
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from procs.behaviour import aim, formation
+from procs.behaviour.game import Game
+from procs.behaviour.view import Robot
+from procs.model.field import Field, Point
+from procs.model.geometry import clamp
+from procs.referee.restarts import State
+
+_INSIDE_M = 0.8  # receivers wait so far inside the touch lines
+_FREE_M = 1.5  # and so far from rivals
+
+
+class Variant(NamedTuple):
+    """One way to take a set piece."""
+
+    name: str
+    place: Callable[[Game, Field], Point]
+    """Place of the receiver, which `formation.helper_place` brings within the rules."""
+
+
+def lay_off(game: Game, field: Field) -> Point:
+    """Back and beside the way to the goal, so that the receiver can shoot or pass without a turn."""
+    return formation.layoff_place(game, field)
+
+
+def square(game: Game, field: Field) -> Point:
+    """Level with the ball, on the side of the middle."""
+    return _inside(Point(game.spot.x_m, game.spot.y_m - _away(game) * 3.2), field)
+
+
+def ahead_on_the_wing(game: Game, field: Field) -> Point:
+    """Ahead along the touch line."""
+    return _inside(Point(game.spot.x_m + 3.5, game.spot.y_m), field)
+
+
+def long_to_the_wing(game: Game, field: Field) -> Point:
+    """Far ahead, on the other side of the field."""
+    return _inside(Point(game.spot.x_m + 5.5, -_away(game) * 3.0), field)
+
+
+def back(_game: Game, _field: Field) -> Point:
+    """Behind the centre mark, a little to the left."""
+    return Point(-2.2, 1.0)
+
+
+def wide(_game: Game, _field: Field) -> Point:
+    """Beside the centre mark, on the right wing of the own half."""
+    return Point(-0.7, -4.5)
+
+
+def cut_back(game: Game, field: Field) -> Point:
+    """Before the penalty area, on the corner's side of the goal."""
+    return Point(field.half_length_m - 3.6, _away(game) * 2.2)
+
+
+def short(game: Game, field: Field) -> Point:
+    """Near the corner, back along the touch line."""
+    return _inside(Point(game.spot.x_m - 3.0, game.spot.y_m), field)
+
+
+BOOK: Mapping[State, Sequence[Variant]] = {
+    state: tuple(Variant(place.__name__.replace("_", " "), place) for place in places)
+    for state, places in {
+        State.KICK_OFF: (back, wide),
+        State.FREE_KICK: (lay_off, square),
+        State.THROW_IN: (lay_off, ahead_on_the_wing),
+        State.GOAL_KICK: (lay_off, long_to_the_wing),
+        State.CORNER_KICK: (cut_back, short),
+    }.items()
+}
+"""Variants of each set piece but the penalty, which is shot."""
+
+
+def choose(game: Game, rivals: Sequence[Robot], field: Field) -> tuple[str, Point] | None:
+    """Returns the variant of the own set piece and the receiver's place; None for a set piece without a receiver.
+
+    It is the first in turn whose way is free; if all are blocked, the one with the most room.
+    """
+    variants = BOOK.get(game.state)
+    if not variants:
+        return None
+    turn = game.number % len(variants)
+    found = [(each.name, receiver_place(each, game, field)) for each in (*variants[turn:], *variants[:turn])]
+    return max(found, key=lambda each: min(aim.LANE_RAD, _room_rad(game.spot, each[1], rivals)))
+
+
+def receiver_place(variant: Variant, game: Game, field: Field) -> Point:
+    """Returns the receiver's place within the rules."""
+    return formation.helper_place(variant.place(game, field), game, field)
+
+
+def _room_rad(spot: Point, place: Point, rivals: Sequence[Robot]) -> float:
+    crowded = any(math.dist(place, rival.place) < _FREE_M for rival in rivals)
+    return -math.pi if crowded else aim.lane_rad(spot, place, rivals)
+
+
+def _away(game: Game) -> float:
+    return math.copysign(1.0, game.spot.y_m)
+
+
+def _inside(place: Point, field: Field) -> Point:
+    x_m, y_m = field.half_length_m - _INSIDE_M, field.half_width_m - _INSIDE_M
+    return Point(clamp(place.x_m, -x_m, x_m), clamp(place.y_m, -y_m, y_m))

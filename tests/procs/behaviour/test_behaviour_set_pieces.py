@@ -1,0 +1,93 @@
+"""Book of set pieces: variants keep the rules, take turns, and avoid rivals; taker and receiver agree on a place."""
+
+import math
+
+import pytest
+
+from procs.behaviour import set_pieces
+from procs.behaviour.game import Game, Whose
+from procs.behaviour.roles import ATTACKER, SUPPORTER
+from procs.behaviour.set_pieces import BOOK
+from procs.behaviour.tactics import Tactics
+from procs.behaviour.view import Agreement
+from procs.model.field import Point
+from procs.model.geometry import between
+from procs.referee.ends import Team
+from procs.referee.positions import misplaced
+from procs.referee.restarts import Restart, State
+from tests.procs.behaviour.behaviour_parts import FIELD, ball, job, robot, view
+
+SPOTS = {
+    State.KICK_OFF: [Point(0.0, 0.0)],
+    State.FREE_KICK: [Point(7.4, -1.0), Point(-6.0, 5.0), Point(0.0, 0.3)],
+    State.THROW_IN: [Point(2.0, 6.9), Point(-9.0, -6.9), Point(10.0, 6.9)],
+    State.GOAL_KICK: [Point(-7.4, 3.5), Point(-7.4, -3.5)],
+    State.CORNER_KICK: [Point(10.8, 6.8), Point(10.8, -6.8)],
+}
+GAMES = [
+    Game(state, stopped=True, whose=Whose.OURS, spot=spot, number=number)
+    for state, spots in SPOTS.items()
+    for spot in spots
+    for number in (3, 4)
+]
+
+
+def name_of(game: Game) -> str:
+    return f"{game.state.name.lower()} {game.spot.x_m:g} {game.spot.y_m:g} {game.number}"
+
+
+def test_every_set_piece_but_the_penalty_has_two_variants() -> None:
+    assert set(BOOK) == {*State} - {State.FROZEN, State.PLAY, State.DROP_BALL, State.PENALTY, State.HALF_TIME}
+    assert all(len({variant.name for variant in variants}) >= 2 for variants in BOOK.values())
+
+
+@pytest.mark.parametrize("game", GAMES, ids=name_of)
+def test_receiver_waits_within_the_rules_and_the_reach_of_a_pass(game: Game) -> None:
+    chosen = set_pieces.choose(game, (), FIELD)
+    assert chosen is not None
+    name, place = chosen
+    assert name == BOOK[game.state][game.number % 2].name
+    assert FIELD.in_field(*place)
+    assert not any(FIELD.in_penalty_area(*place, side) for side in (-1.0, 1.0))
+    assert 2.0 <= math.dist(place, game.spot) <= 9.0
+    restart = Restart(game.state, Team.CYAN, game.spot)
+    assert misplaced(restart, {"cyan2": game.spot, "cyan3": place}) == []
+
+
+@pytest.mark.parametrize("game", GAMES, ids=name_of)
+def test_variant_whose_way_is_blocked_is_passed_over(game: Game) -> None:
+    places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[game.state]]
+    blocker = robot("", *between(game.spot, places[game.number % 2], 0.6))
+    chosen = set_pieces.choose(game, (blocker,), FIELD)
+    assert chosen is not None
+    assert chosen[0] == BOOK[game.state][(game.number + 1) % 2].name
+
+
+@pytest.mark.parametrize("state", BOOK)
+def test_receiver_goes_where_the_taker_says(state: State) -> None:
+    game = Game(state, stopped=True, whose=Whose.OURS, spot=SPOTS[state][0], number=4)
+    taker_tactics, receiver_tactics = Tactics(FIELD), Tactics(FIELD)
+    supporter = robot("cyan3", game.spot.x_m - 3.0, game.spot.y_m * 0.5, role=SUPPORTER)
+    places = [set_pieces.receiver_place(variant, game, FIELD) for variant in BOOK[state]]
+    rival = robot("", *between(game.spot, places[0], 0.6))
+    taker = robot("cyan2", *game.spot, role=ATTACKER)
+    taker_tactics.decide(view(taker, ball(*game.spot), (supporter,), (rival,)), game, job(ATTACKER), False, 0.05)
+    said = taker_tactics.passing.said
+    assert (said.receiver, said.place) == ("cyan3", places[1])
+    asks = taker._replace(agreement=Agreement("cyan3", said.place))
+    for mate, place in ((taker, places[0]), (asks, places[1])):
+        seen = view(supporter, ball(*game.spot), (mate,), (rival,))
+        order = receiver_tactics.decide(seen, game, job(SUPPORTER), False, 0.05)
+        assert math.dist(order.place, place) < 0.01 or math.dist(order.place, supporter.place) <= 1.6, "on its way"
+    assert receiver_tactics.passing.said.passer == "cyan2"
+
+
+def test_plan_of_a_set_piece_is_kept_once_it_may_be_taken() -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(0.0, 0.0), number=4)
+    tactics, supporter = Tactics(FIELD), robot("cyan3", -2.0, 1.5, role=SUPPORTER)
+    seen = view(robot("cyan2", 0.7, 0.0, math.pi), ball(0.0, 0.0), (supporter,))
+    tactics.decide(seen, game, job(ATTACKER), False, 0.05)
+    before = tactics.passing.said.place
+    rival = robot("", *between(game.spot, before, 0.6))
+    tactics.decide(seen._replace(opponents=(rival,)), game._replace(stopped=False), job(ATTACKER), False, 0.05)
+    assert tactics.passing.said.place == before
