@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
+from procs.model.field import Field
+from procs.simulation.physics.reports import field_message
 from procs.view.canvas import Picture
 from procs.view.ground import GRASS, WHITE
 from procs.view.palette import TEAM_COLOURS
@@ -98,6 +100,16 @@ def test_picture_of_the_newest_messages() -> None:
     _, columns = np.nonzero((plain != believed).any(axis=2))
     assert columns.mean() / plain.shape[1] == pytest.approx((12.0 + 5.0) / 24.0, abs=0.002)
     assert np.ptp(columns) < 40
+
+
+def test_picture_shows_the_field_of_the_simulation() -> None:
+    small = Field(length_m=18.0, width_m=12.0, border_m=1.5)
+    messages = {"world/ground_truth": truth(("cyan1", 0.0, 0.0, 0.0)), "world/field": field_message(small)}
+    drawn, usual = picture(messages.get), picture({"world/ground_truth": messages["world/ground_truth"]}.get)
+    assert drawn is not None
+    assert usual is not None
+    assert drawn.shape[0] == TopView(drawn.shape[1], small).height_px
+    assert drawn.shape[0] != usual.shape[0]
 
 
 def test_before_the_first_world_message_there_is_no_picture() -> None:

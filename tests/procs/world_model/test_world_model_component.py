@@ -395,6 +395,24 @@ def test_mates_sight_counts_from_its_exposure() -> None:
     assert robot.world.ball.x_m == pytest.approx(true_x_m, abs=0.15)
 
 
+def test_opponent_that_a_mate_saw_has_driven_on_since() -> None:
+    """A mate saw an opponent at 3 m/s 0.1 s before its message: without the age it is 0.3 m behind."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    for _ in range(20):
+        now_us = robot.bench.time_us + round(PERIOD_S * 1e6)
+        message, opponent = team_message_t(), obstacle_t()
+        message.robot, message.localized = "cyan2", True
+        message.header.time_us, message.obstacles_capture_us = now_us, max(1, now_us - 100_000)
+        opponent.x_m, opponent.y_m = -4.0 + 3.0 * message.obstacles_capture_us / 1e6, 3.0
+        opponent.covariance_m2 = [[1e-4, 0.0], [0.0, 1e-4]]
+        message.obstacles = [opponent]
+        robot.sense(None, [])
+        robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+    (known,) = robot.world.opponents
+    assert known.x_m == pytest.approx(-4.0 + 3.0 * robot.bench.time_us / 1e6, abs=0.1)
+
+
 def test_mates_covariance_is_the_one_that_it_states() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     deviations_m = []
