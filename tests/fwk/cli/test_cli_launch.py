@@ -185,3 +185,10 @@ def _read(screen: int) -> str:
         return os.read(screen, 65536).decode(errors="replace")
     except OSError:  # the other side of the terminal is closed
         return ""
+
+
+def test_compression_without_its_library_is_refused(folder: Path) -> None:
+    write_files(folder, {"zstandard.py": "raise ImportError\n"})  # the folders of a plan come first
+    ended = launch(folder, CARDS, "--ticks", "1", "--record-compress")
+    assert (ended.returncode, "Traceback" in ended.stdout) == (2, False)
+    assert "compressed recordings need another library: pip install 'fwk[compress]'" in ended.stdout
