@@ -11,11 +11,13 @@ import rerun as rr
 
 from fwk.clock import US_PER_S
 from fwk.lcm.envelope import STAMP
+from fwk.lcm.log_file import LogError
 from fwk.lcm.messages import current_name, type_name
 from fwk.lcm.stamped_log import StampedLog
 from fwk.lcm.type_registry import decoded
 from fwk.log_tools.live_frames import LiveFrames
 from fwk.log_tools.rerun_stream import RerunStream
+from fwk.model.errors import hint
 from fwk.recording.ticks import tick_of
 from fwk.recording.versions import RECORD
 from fwk.web.extensions import ExtensionError, Extensions
@@ -103,7 +105,7 @@ class RerunFeed:
         """Shows a recording, or a log of lcm-logger.
 
         Raises:
-            LogError: the log cannot be read.
+            LogError: the log cannot be read, or a pattern of channels matches none in it.
         """
         reader = StampedLog(log)
         for number, event in enumerate(reader):
@@ -112,6 +114,9 @@ class RerunFeed:
             if not number and event.channel != "fwk/plan":
                 self._zero_us = event.time_us
             self._take(event)
+        for pattern in self._patterns:
+            if not any(fnmatchcase(channel, pattern) for channel in self._shown):
+                raise LogError(f"{log}: no channel matches '{pattern}'; {hint(pattern, sorted(self._shown))}")
 
     def follow(self, messages: Iterable[Message]) -> None:
         """Shows the messages of a live run."""

@@ -139,6 +139,10 @@ def test_bad_input_of_the_command_is_named(tmp_path: Path) -> None:
     log = recording(tmp_path / "log", ticks=1)
     missing = CliRunner().invoke(app, ["view", "--from", str(log), "--save", str(tmp_path / "a.rrd"), "--view", "nix"])
     assert (missing.exit_code, "nix: cannot be imported" in missing.stderr) == (2, True)
+    words = ["view", "--from", str(log), "--save", str(tmp_path / "b.rrd"), "--channels", "cyan1/odometri"]
+    nothing = CliRunner().invoke(app, words)
+    assert nothing.exit_code == 2
+    assert "no channel matches 'cyan1/odometri'; did you mean 'cyan1/odometry'?" in nothing.stderr
 
 
 def free_ports() -> int:
