@@ -54,10 +54,10 @@ class Component:
     provides: ClassVar[type[Aspect] | tuple[type[Aspect], ...]] = ()
     """Aspects that other components get from this component."""
     reaches_outside: ClassVar[bool | None] = None
-    """Whether the component drives a device, talks to other programs or writes files.
+    """Whether the component drives a device or talks to other programs.
 
-    True: a replay does not run it. None: a replay runs it until it opens a device, a connection, a program, or a file
-    to be written. False: a replay runs it, and it may open them.
+    True: a replay does not run it. None: a replay runs it until it opens a device, a connection or a program. False: a
+    replay runs it, and it may open them. Ordinary files are written again, unless this is True.
     """
     name: str
     """Full name: `cyan1/omni_ball`."""

@@ -11,7 +11,7 @@ from functools import cache
 from importlib import import_module
 from typing import Any, NoReturn
 
-from fwk.recording.replay.attempts import LCM_EVENT, Attempts, typed_in_debugger
+from fwk.recording.replay.attempts import LCM_EVENT, attempt, typed_in_debugger
 from fwk.recording.replay.descriptors import Descriptors
 
 _ATTEMPTS_MAX = 10
@@ -40,7 +40,6 @@ class Guard:
         self._elsewhere = False  # a watched component started a thread
         self._installed = False
         self._descriptors = Descriptors()
-        self._events = Attempts()
 
     @contextmanager
     def watching(self, component: str) -> Iterator[None]:
@@ -81,7 +80,7 @@ class Guard:
             return
         own = threading.get_ident() == self._thread
         component = self._watched if own else self._threads.get(threading.current_thread(), self._watched)
-        if not component or not (tried := self._events.described(event, arguments)) or typed_in_debugger():
+        if not component or not (tried := attempt(event, arguments)) or typed_in_debugger():
             return
         self.refused[component] = tried
         if own:

@@ -1,15 +1,12 @@
-"""A replay reaches nothing outside: no device, no program, no connection, no file that is written."""
+"""A replay reaches nothing outside: no device, no program, no connection."""
 
 import ctypes
 import io
 import os
 import pdb
-import shutil
 import socket
-import sqlite3
 import struct
 import subprocess
-import tempfile
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -129,53 +126,36 @@ def test_guard_refuses_access_to_the_outside(attempt: Callable[[], object], reas
 @pytest.mark.parametrize(
     ("attempt", "reason"),
     [
-        (lambda: Path("board").open("a").close(), "writes board"),
-        (lambda: os.open("kept", os.O_RDWR), "writes kept"),
-        (lambda: Path("board").write_text("1"), "writes board"),
-        (lambda: Path("kept").unlink(), "removes kept"),
-        (lambda: Path("kept").rename("board"), "renames kept"),
-        (lambda: Path("board").symlink_to("kept"), "makes board"),
-        (lambda: os.truncate("kept", 0), "writes kept"),
-        (lambda: sqlite3.connect("board"), "writes board"),
-        (lambda: shutil.copy("kept", "board"), "writes board"),
         (lambda: lcm.LCM("udpm://239.255.76.67:7667?ttl=0").publish("WHEELS", b"1"), "network"),
         (lambda: opened.append(socket.socket(socket.AF_INET, socket.SOCK_DGRAM).detach()), "socket of the network"),
     ],
-    ids=["append", "os", "write", "remove", "rename", "link", "truncate", "database", "copy", "lcm", "kept_socket"],
+    ids=["lcm", "kept_socket"],
 )
-def test_guard_refuses_writing_files_and_sockets_in_c(
-    attempt: Callable[[], object], reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("kept").write_text("untouched")
+def test_guard_refuses_sockets_that_c_will_use(attempt: Callable[[], object], reason: str) -> None:
     guard = Guard()
     with pytest.raises(ReachesOutsideError, match=reason), guard.watching("r/wheels"):
         attempt()
     for descriptor in opened:
         os.close(descriptor)
-    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("kept", "untouched")]
 
 
-def test_guard_lets_files_be_read_and_temporary_ones_be_written(tmp_path: Path) -> None:
-    (tmp_path / "notes").write_text("a")
+def test_guard_lets_files_be_read_and_written(tmp_path: Path) -> None:
     guard = Guard()
     with guard.watching("r/wheels"):
+        (tmp_path / "notes").write_text("a")
         assert (tmp_path / "notes").read_text() == "a"
-        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as file:
-            file.write(b"a")
-            (Path(folder) / "notes").write_text("a")
-            assert (Path(folder) / "notes").read_text() == "a"
-        sqlite3.connect(":memory:").close()
     with pytest.raises(FileNotFoundError):
         (tmp_path / "missing").read_bytes()
 
 
-def test_guard_lets_users_write_files_at_a_debuggers_prompt(tmp_path: Path) -> None:
-    typed = f"open({str(tmp_path / 'dump')!r}, 'w').close()\ncontinue\n"
-    debugger = pdb.Pdb(stdin=io.StringIO(typed), stdout=io.StringIO(), nosigint=True, readrc=False)
+def test_guard_lets_users_do_what_they_type_in_a_debugger() -> None:
+    typed = (
+        f"import os; os.close(os.open({DEVICE!r}, os.O_RDWR | os.O_NOCTTY))\nimport os; os.kill(os.getpid(), 0)\nc\n"
+    )
+    said = io.StringIO()
     with Guard().watching("r/wheels"):
-        debugger.runcall(lambda: None)
-    assert (tmp_path / "dump").exists()
+        pdb.Pdb(stdin=io.StringIO(typed), stdout=said, nosigint=True, readrc=False).runcall(lambda: None)
+    assert "***" not in said.getvalue()
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
