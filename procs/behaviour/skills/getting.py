@@ -111,12 +111,16 @@ class GetBall(_Capture):
         return any(math.dist(other.place, scene.view.ball.place) < _HELD_M for other in scene.view.opponents)
 
     def _set_piece_from_beside(self, scene: Scene) -> bool:
+        if not scene.set_piece:
+            return False
         way_rad = bearing_rad(scene.view.own.place, _meeting(scene))
-        return scene.set_piece and abs(wrap_rad(way_rad - scene.heading_rad)) > _ALIGNED_RAD
+        return abs(wrap_rad(way_rad - scene.heading_rad)) > _ALIGNED_RAD
 
     def _set_piece_not_faced(self, scene: Scene) -> bool:
+        if not scene.set_piece:
+            return False
         facing_rad = bearing_rad(scene.view.own.place, scene.view.ball.place)
-        return scene.set_piece and abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) >= _FACING_RAD
+        return abs(wrap_rad(facing_rad - scene.view.own.heading_rad)) >= _FACING_RAD
 
     def _contest(self, scene: Scene) -> Step:
         meeting = _meeting(scene)
