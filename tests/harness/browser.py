@@ -61,7 +61,7 @@ class Chromium:
 
     def __init__(self, program: str) -> None:
         self._playwright: Playwright = sync_playwright().start()
-        self._browser: Browser = self._playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        self.browser: Browser = self._playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
         expect.set_options(timeout=_WAIT_MS)
         self._looks: dict[tuple[int, int, str], BrowserContext] = {}
         self.outside: list[str] = []
@@ -86,7 +86,7 @@ class Chromium:
         return page
 
     def _new_context(self, width_px: int, height_px: int, scheme: str) -> BrowserContext:
-        return self._browser.new_context(
+        return self.browser.new_context(
             viewport={"width": width_px, "height": height_px},
             color_scheme="dark" if scheme == "dark" else "light",
             ignore_https_errors=True,
@@ -99,7 +99,7 @@ class Chromium:
 
     def close_pages(self) -> None:
         """Closes all pages."""
-        for context in self._browser.contexts:
+        for context in self.browser.contexts:
             if context not in self._looks.values():
                 context.close()
                 continue
@@ -108,7 +108,7 @@ class Chromium:
 
     def close(self) -> None:
         """Ends the browser."""
-        self._browser.close()
+        self.browser.close()
         self._playwright.stop()
 
     def __enter__(self) -> Self:

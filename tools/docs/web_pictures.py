@@ -9,7 +9,7 @@ import socket
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from playwright.sync_api import Page, sync_playwright
+from playwright.sync_api import Browser, Page, sync_playwright
 
 from fwk.clock import monotonic_us, sleep_s
 
@@ -33,37 +33,34 @@ def main() -> None:
     parser.add_argument("run", help="name of the run")
     parser.add_argument("--out", type=Path, default=Path(__file__).parents[2] / "docs", help="folder of the pictures")
     arguments = parser.parse_args()
-    for path in take(arguments.url.rstrip("/"), arguments.run, arguments.out):
-        print(path)
-
-
-def take(url: str, run: str, out: Path, pictures: dict[str, str] = PICTURES) -> list[Path]:
-    """Writes a picture of each page and returns their paths.
-
-    Raises:
-        FileNotFoundError: no Chromium is installed.
-    """
     program = shutil.which(PROGRAM)
     if program is None:
-        raise FileNotFoundError(f"needs {PROGRAM}: apt install {PROGRAM}")
+        raise SystemExit(f"needs {PROGRAM}: apt install {PROGRAM}")
+    url = arguments.url.rstrip("/")
     wait_for(url)
-    made = []
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=program, args=["--no-sandbox"])
-        for name, path in pictures.items():
-            phone = name.endswith("-phone")
-            context = browser.new_context(
-                viewport={"width": 390, "height": 760} if phone else {"width": 1280, "height": 800},
-                color_scheme="dark" if phone else "light",
-            )
-            page = context.new_page()
-            page.set_default_timeout(_WAIT_MS)
-            page.goto(f"{url}{path}{'&' if '?' in path else '?'}run={run}")
-            _settle(page)
-            made.append(out / f"{name}.png")
-            page.screenshot(path=made[-1])
-            context.close()
+        for path in take(browser, url, arguments.run, arguments.out):
+            print(path)
         browser.close()
+
+
+def take(browser: Browser, url: str, run: str, out: Path, settled_ms: float = _SETTLED_MS) -> list[Path]:
+    """Writes a picture of each page, so long after its first figures, and returns their paths."""
+    made = []
+    for name, path in PICTURES.items():
+        phone = name.endswith("-phone")
+        context = browser.new_context(
+            viewport={"width": 390, "height": 760} if phone else {"width": 1280, "height": 800},
+            color_scheme="dark" if phone else "light",
+        )
+        page = context.new_page()
+        page.set_default_timeout(_WAIT_MS)
+        page.goto(f"{url}{path}{'&' if '?' in path else '?'}run={run}")
+        _settle(page, settled_ms)
+        made.append(out / f"{name}.png")
+        page.screenshot(path=made[-1])
+        context.close()
     return made
 
 
@@ -81,12 +78,12 @@ def wait_for(url: str) -> None:
             sleep_s(0.1)
 
 
-def _settle(page: Page) -> None:
+def _settle(page: Page, settled_ms: float) -> None:
     """Waits until the page shows the run."""
     page.wait_for_function("document.querySelector('[data-name=clock]').innerText.startsWith('tick')")
     if page.url.partition("?")[0].endswith("/view"):
         page.wait_for_function("document.querySelector('canvas')?.dataset.frames > 40")
-    page.wait_for_timeout(_SETTLED_MS)
+    page.wait_for_timeout(settled_ms)
 
 
 if __name__ == "__main__":

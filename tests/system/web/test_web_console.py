@@ -2,8 +2,6 @@
 
 import math
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import cv2
@@ -15,6 +13,7 @@ from fwk.control.client import Client
 from tests.harness.browser import Console
 from tests.harness.garden import ROWS, Garden, row
 from tests.programs.garden_system import CROWD
+from tools.docs.web_pictures import take
 
 pytestmark = pytest.mark.system
 
@@ -274,8 +273,9 @@ def test_a_phone_shows_every_page_without_overflow(garden: Garden) -> None:
 
 def test_nothing_that_a_component_prints_is_markup(garden: Garden) -> None:
     pages = ("/", "/log", "/board?run=garden&channel=a/place", "/settings?run=garden&component=a/mower", "/view")
+    page = garden.open()
     for path in pages:
-        page = garden.open(path)
+        page.goto(f"{garden.console.url}{path.replace('run=garden', f'run={garden.name}')}")
         expect(page.locator("[data-name=state]")).to_have_text("running")
         if path != "/":
             expect(page.get_by_text("<script>document.title").first).to_be_visible()
@@ -304,10 +304,9 @@ def test_plots_draw_any_numeric_fields_together(garden: Garden) -> None:
 
 
 def test_pictures_of_the_documentation_can_be_taken(garden: Garden, tmp_path: Path) -> None:
-    program = [sys.executable, "-m", "tools.docs.web_pictures", garden.console.url, garden.name, "--out", str(tmp_path)]
-    made = subprocess.run(program, capture_output=True, text=True, timeout=120, check=False)
-    assert made.returncode == 0, made.stderr
-    found = {path.stem: cv2.imread(str(path)) for path in tmp_path.iterdir()}
+    made = take(garden.browser.browser, garden.console.url, garden.name, tmp_path, settled_ms=0.0)
+    assert sorted(made) == sorted(tmp_path.iterdir())
+    found = {path.stem: cv2.imread(str(path)) for path in made}
     sizes = {name: picture.shape[:2] for name, picture in found.items() if picture is not None}
     assert sizes["web-view"] == (800, 1280)
     assert sizes["web-phone"] == (760, 390)
