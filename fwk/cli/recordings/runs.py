@@ -125,7 +125,7 @@ def _duration(run: RunDir, record: RunRecord) -> str:
 
 def _waiting() -> dict[str, list[str]]:
     """Returns the components that each run of this machine waits for, by run directory."""
-    return {run["run_dir"]: run["waits_for"] for run in client.states() if run["answers"]}
+    return {run["run_dir"]: run["waits_for"] for run in client.states() if {"run_dir", "waits_for"} <= run.keys()}
 
 
 def _result(run: RunDir, record: RunRecord, waits_for: list[str]) -> str:

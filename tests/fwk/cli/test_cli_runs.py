@@ -151,8 +151,8 @@ def test_a_result_of_several_lines_is_shown_in_one_row(home: Path) -> None:
 
 def test_the_list_names_what_a_run_waits_for(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = make_run_dir("match", home)
-    row = {"run_dir": str(made), "waits_for": ["a/b"], "answers": True}
-    monkeypatch.setattr(client, "states", lambda: [row, {"bus_port": 7, "answers": False}])
+    row = {"run_dir": str(made), "waits_for": ["a/b"]}
+    monkeypatch.setattr(client, "states", lambda: [row, {"answers": True, "name": "false"}])
     assert "waits for a/b" in said("list")
     assert json.loads(said("list", "--json"))[0]["waits_for"] == ["a/b"]
 
