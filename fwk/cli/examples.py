@@ -31,7 +31,7 @@ EXAMPLES = {
     "fwk status": ("fwk status", "fwk status 'cyan1/*' --run red", "fwk status cyan1/world_model"),
     "fwk top": ("fwk top", "fwk top --once --since start"),
     "fwk start": ("fwk start cyan1/world_model",),
-    "fwk stop": ("fwk stop 'cyan2/*'", "fwk stop --all --run red"),
+    "fwk stop": ("fwk stop 'cyan2/*'", "fwk stop cyan1/camera --force", "fwk stop --all --run red"),
     "fwk restart": ("fwk restart cyan1/world_model",),
     "fwk reload": ("fwk reload 'cyan1/*'",),
     "fwk load": ("fwk load cyan1/omni_ball",),

@@ -65,6 +65,7 @@ def stop(
         list[str] | None, typer.Argument(metavar="NAME...", help="components, or patterns such as 'cyan1/*'")
     ] = None,
     whole: Annotated[bool, typer.Option("--all", help="end the whole run, as Ctrl-C in its terminal does")] = False,
+    force: Annotated[bool, typer.Option("--force", help="also stop the components that need them")] = False,
     chosen: RunChoice = None,
     timeout_s: Timeout = WAIT_S,
     as_json: Json = False,
@@ -72,7 +73,7 @@ def stop(
     """Stops components between two ticks: they finalize and leave the loop. With --all, ends the run.
 
     The last messages of stopped components stay visible to readers. Stopped components do not start again by
-    themselves.
+    themselves. Components that need them go on without --force.
     Exit code 0: done; 1: a component failed, or the time-out passed; 2: refused.
     """
     if bool(names) == whole:
@@ -80,7 +81,7 @@ def stop(
     if whole:
         _end_run(chosen, timeout_s, as_json)
     else:
-        _steer("stop", names or [], chosen, timeout_s, as_json)
+        _steer("stop", names or [], chosen, timeout_s, as_json, force)
 
 
 def unload(

@@ -142,6 +142,9 @@ def test_a_vision_master_stays_while_it_has_users(run: Steered) -> None:
     run.fwk("load", "r/finder")
     assert {run.component(name)["state"] for name in ("r/camera", "r/finder")} == {"running"}
     assert "did you mean 'r/camera'?" in run.fwk("stop", "r/camra", code=2)
+    stopped = run.fwk("stop", "--force", "r/camera")
+    assert "r/camera stopped" in stopped
+    assert "r/finder stopped" in stopped
     run.end()
 
 
