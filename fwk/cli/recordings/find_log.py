@@ -11,7 +11,7 @@ from fwk.cli.arguments import note_incomplete
 from fwk.cli.recordings.user_folders import use_types_of_run
 from fwk.cli.run.run_directory import named
 from fwk.lcm.log_file import LogError
-from fwk.lcm.log_parts import is_later_part, is_log
+from fwk.lcm.log_parts import exists, is_later_part, is_log
 from fwk.lcm.typegen import TypeGenerationError
 from fwk.recording.missing_parts import MissingParts, missing_parts
 
@@ -58,7 +58,7 @@ def located(path: Path) -> tuple[Path, list[MissingParts]]:
         LogError: the directory contains no log, or several, or the file cannot be read.
     """
     path = named(path)
-    if str(path) == path.name and not os.path.lexists(path):
+    if str(path) == path.name and not (os.path.lexists(path) or exists(path)):
         raise LogError(f"{path}: cannot read: No such file or directory, and no run of this name; see 'fwk runs list'")
     log = _log_in(path) if os.path.isdir(path) else path  # not a directory: also text that cannot be a path
     missing = missing_parts(log)
