@@ -34,7 +34,7 @@ def find(number: int, histories: int) -> Found:
 def main() -> int:
     """Searches for all mutations; returns the exit code."""
     parser = argparse.ArgumentParser(description="Breaks the contract on purpose and shows that histories find it.")
-    parser.add_argument("--histories", type=int, default=300, help="most histories for a mutation; default 300")
+    parser.add_argument("--histories", type=int, default=1000, help="most histories for a mutation; default 1000")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1, help="default: one a processor")
     words = parser.parse_args()
     missed = 0

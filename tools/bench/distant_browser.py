@@ -10,6 +10,7 @@ import json
 import re
 import sys
 import urllib.request
+from contextlib import suppress
 from urllib.parse import urlencode, urlsplit
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -64,26 +65,32 @@ async def _listen(page: ClientConnection, client_id: str) -> None:
 
 
 async def _draw(path: str, host: str) -> None:
-    """Asks for one drawing after the other over one connection."""
+    """Asks for one drawing after the other; as in a browser, a closed connection is opened again."""
     name, _, port = host.partition(":")
-    reader, writer = await asyncio.open_connection(name, int(port))
-    have = ground = ""
+    have = ""
     while True:
-        loop = asyncio.get_running_loop()
-        began_s = loop.time()
-        request = f"GET {path}&have={have}&ground={ground} HTTP/1.1\r\nHost: {host}\r\n\r\n"
-        writer.write(request.encode())
-        head = (await reader.readuntil(b"\r\n\r\n")).decode().lower()
-        fields = dict(line.split(": ", 1) for line in head.split("\r\n")[1:] if ": " in line)
-        await reader.readexactly(int(fields.get("content-length", 0)))
-        have = fields.get("fwk-drawing", "")
-        ground = have.partition(".")[2]
-        if head.split()[1] not in ("200", "204"):
-            await asyncio.sleep(1.0)
-        else:
-            print("drawing", flush=True)
-        period_s = max(_PERIOD_S, float(fields.get("fwk-period-ms", 0)) / 1000)
-        await asyncio.sleep(max(0.0, began_s + period_s - loop.time()))
+        reader, writer = await asyncio.open_connection(name, int(port))
+        with suppress(asyncio.IncompleteReadError, ConnectionError):
+            while True:
+                have = await _drawn(reader, writer, path, host, have)
+        writer.close()
+
+
+async def _drawn(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, path: str, host: str, have: str) -> str:
+    """Asks for a drawing unless it is `have`, and waits until the next one is due; returns the name of the drawing."""
+    loop = asyncio.get_running_loop()
+    began_s = loop.time()
+    writer.write(f"GET {path}&have={have}&ground={have.partition('.')[2]} HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
+    head = (await reader.readuntil(b"\r\n\r\n")).decode().lower()
+    fields = dict(line.split(": ", 1) for line in head.split("\r\n")[1:] if ": " in line)
+    await reader.readexactly(int(fields.get("content-length", 0)))
+    if head.split()[1] not in ("200", "204"):
+        await asyncio.sleep(1.0)
+    else:
+        print("drawing", flush=True)
+    period_s = max(_PERIOD_S, float(fields.get("fwk-period-ms", 0)) / 1000)
+    await asyncio.sleep(max(0.0, began_s + period_s - loop.time()))
+    return fields.get("fwk-drawing", "")
 
 
 if __name__ == "__main__":
