@@ -38,7 +38,7 @@ class HelperProcesses:
         self.deleted = ""
         """File of the run that was deleted during the run; empty: none; known after the end."""
         self.unwritten = ""
-        """What could not be recorded, as text; empty: nothing; known after the end."""
+        """Losses of the recording, as text; empty: none; known after the end."""
         self.control, gateway_control = _pair()
         display_feed, display_end = _pair()
         parent = os.getpid()

@@ -21,7 +21,7 @@ _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _SHOOTER_X_M, _SHOOTER_Y_M = 7.0, 2.5  # a mate there can shoot
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
-"""From so near a mate with the ball shoots; the others keep that distance from the way to the goal's middle."""
+"""Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
 _HALFWAY_M = 0.5
 """At a kick-off a robot's middle stays that far in its own half."""
 

@@ -20,11 +20,11 @@ _NOWHERE = Point(0.0, 0.0)
 
 
 class Passing:
-    """What one robot says about a pass; call `watch` once a tick, and `announce` while the robot has the ball."""
+    """Agreement of one robot about a pass; call `watch` once a tick, and `announce` while the robot has the ball."""
 
     def __init__(self) -> None:
         self.said = Agreement()
-        """What the team is told in this tick."""
+        """Agreement that the team is told in this tick."""
         self.accepted = False
         """Whether the mate to which a pass is announced waits for it."""
         self._asked_s = 0.0

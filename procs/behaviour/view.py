@@ -29,7 +29,7 @@ class Frame(NamedTuple):
 
 
 class Agreement(NamedTuple):
-    """What a robot says to its team about a pass."""
+    """Agreement of a robot with its team about a pass."""
 
     receiver: str = ""
     """Mate to which it will pass, or has just passed."""

@@ -12,7 +12,7 @@ _STALE_US = 500_000
 
 
 class AverageBall(Component):
-    """As the fuser of Fawkes' world model in 2008: no weights, no motion, no delays; the velocity stays 0."""
+    """Averages as Fawkes' world model did in 2008: no weights, no motion, no delays; the velocity stays 0."""
 
     stage = "worldstate"
 

@@ -19,7 +19,7 @@ class WandererConfig(Config):
     """Settings of the trial."""
 
     carried_every_s: float = Setting(default=12.0, ge=0.0)
-    """From one kidnapping to the next; 0: none."""
+    """Time from one kidnapping to the next; 0: no robot is kidnapped."""
     speed_m_s: float = Setting(default=1.5, ge=0.0, le=3.0)
     """Speed of driving."""
     turn_rad_s: float = Setting(default=1.5, ge=0.0, le=4.0)

@@ -37,7 +37,7 @@ class Mate:
     holds_ball: bool = False
     """The ball was in its mouth at `told_s`."""
     agreement: pass_agreement_t = field(default_factory=pass_agreement_t)
-    """What it said about a pass."""
+    """Its agreement about a pass."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""

@@ -55,14 +55,14 @@ class KeepLine(StateMachine):
 
     def _cover(self, scene: Scene) -> Step:
         field, ball = scene.field, scene.view.ball
-        reach_m = field.goal_width_m / 2 - 0.15
+        reach_m = _reach_m(field)
         depth_m = max(ball.place.x_m + field.half_length_m, 0.3)
         cover_m = ball.place.y_m * BEFORE_LINE_M / depth_m
         y_m = clamp(cover_m + 0.08 * ball.place.y_m, -reach_m * 0.75, reach_m * 0.75)
         return self._stand(scene, Point(_line_x_m(field), y_m))
 
     def _block(self, scene: Scene) -> Step:
-        reach_m = scene.field.goal_width_m / 2 - 0.15
+        reach_m = _reach_m(scene.field)
         y_m = clamp(crossing_m(scene) or 0.0, -reach_m, reach_m)
         return self._stand(scene, Point(_line_x_m(scene.field), y_m))
 
@@ -208,6 +208,11 @@ def _dive_s(distance_m: float) -> float:
     if distance_m < speeding_m:
         return math.sqrt(2 * distance_m / _CHANGE_M_S2)
     return _SPEED_M_S / _CHANGE_M_S2 + (distance_m - speeding_m) / _SPEED_M_S
+
+
+def _reach_m(field: Field) -> float:
+    """Returns how far from the middle of the goal a keeper on its line stands at most."""
+    return field.goal_width_m / 2 - 0.15
 
 
 def _line_x_m(field: Field) -> float:

@@ -34,7 +34,7 @@ class State(NamedTuple):
     choice: tuple[Exit, ...] = ()
     """The state inside is chosen anew in every tick: the first whose condition holds."""
     status: Status = Status.RUNNING
-    """Of the steps of a leaf. A failed leaf needs no act: its name is the reason."""
+    """Status of the steps of a leaf. A failed leaf needs no act: its name is the reason."""
 
 
 def otherwise(_skill: Skill, _scene: Scene) -> bool:
