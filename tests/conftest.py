@@ -37,12 +37,14 @@ _PACKAGES = {
     "unshare": "util-linux",
 }
 """Program to Debian package, where the names differ."""
+_BROWSER_TESTS = Path(__file__).parent / "system/web"
+"""Folder of the tests that share a run and a browser: each worker that executes some of them would start both."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Puts files with slow tests first, so that the workers share short tests at the end."""
+    """Puts the tests that share a browser first, for one worker; then files with slow tests, short tests at the end."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: item.path not in slow)
+    items.sort(key=lambda item: (_BROWSER_TESTS not in item.path.parents, item.path not in slow))
 
 
 @pytest.fixture(autouse=True)
@@ -52,9 +54,9 @@ def _same_environment() -> Iterator[None]:
     yield
     changed = {name for name, _ in before.items() ^ os.environ.items()}
     left = changed - {"PYTEST_CURRENT_TEST", "LD_LIBRARY_PATH"}  # OpenCV extends its path when it is first imported
-    os.environ.update(before)
-    for name in left - before.keys():
-        del os.environ[name]
+    for name in left:
+        os.environ.pop(name, None)
+    os.environ.update({name: before[name] for name in changed & before.keys()})
     assert not left, f"the test changed variables of the environment: {', '.join(sorted(left))}"
 
 

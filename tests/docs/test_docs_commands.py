@@ -3,6 +3,7 @@
 import re
 import shlex
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ _SHELL = {"sh", "console", "bash", ""}
 _TARGET = re.compile(r"^([a-z-]+):", re.M)
 
 
+@cache
 def roots() -> dict[str, Any]:
     """Returns the two programs as click commands."""
     return {"fwk": typer.main.get_command(commands.app), "fwk-launch": typer.main.get_command(launch_command.app)}
@@ -64,6 +66,7 @@ def options(command: Any) -> set[str]:
     return {"--help", *(name for each in command.params for name in (*each.opts, *each.secondary_opts))}
 
 
+@cache
 def all_options(command: Any) -> set[str]:
     below = getattr(command, "commands", None) or {}
     return options(command).union(*(all_options(below[name]) for name in below))

@@ -38,7 +38,6 @@ class Guard:
         """Every thread besides that of the replay, with the component that started it; empty: none that is watched."""
         self._attempts: Counter[str] = Counter()  # of the component that is being executed
         self._elsewhere = False  # a watched component started a thread
-        self._installed = False
         self._descriptors = Descriptors()
 
     @contextmanager
@@ -48,20 +47,21 @@ class Guard:
         Raises:
             ReachesOutsideError: the component tried to reach something outside, here or earlier in a thread.
         """
-        if not self._installed:
-            self._installed = True
-            _let_lcm_be_heard()
-            sys.addaudithook(self._hear)
+        _install()
         self._check(component)
         self._descriptors.note()
         self._note_threads("")
         self._watched, self._thread = component, threading.get_ident()
         self._attempts.clear()
+        if self not in _hearing:
+            _hearing.append(self)
         try:
             yield
         finally:
             self._watched = ""
             self._note_threads(component)
+            if not self._elsewhere:
+                _hearing.remove(self)
         if opened := self._descriptors.opened():
             self.refused[component] = f"it opens {opened}"
         self._check(component)  # the component may have caught the refusal
@@ -75,9 +75,8 @@ class Guard:
             if self._threads.setdefault(thread, component):
                 self._elsewhere = True
 
-    def _hear(self, event: str, arguments: tuple[Any, ...]) -> None:
-        if not self._watched and not self._elsewhere:
-            return
+    def hear(self, event: str, arguments: tuple[Any, ...]) -> None:
+        """Refuses what an audit event announces, if a watched component or one of its threads raised it."""
         own = threading.get_ident() == self._thread
         component = self._watched if own else self._threads.get(threading.current_thread(), self._watched)
         if not component or not (tried := attempt(event, arguments)) or typed_in_debugger():
@@ -91,6 +90,22 @@ class Guard:
         raise SystemExit  # ends the thread without a traceback; the component is left out with its next iteration
 
 
+_hearing: list[Guard] = []
+"""Guards that watch a component now, or threads that one started."""
+
+
+@cache
+def _install() -> None:
+    """Hears audit events from now on; Python can remove no hook, so that all guards of the process share this one."""
+    _let_lcm_be_heard()
+    sys.addaudithook(_hear)
+
+
+def _hear(event: str, arguments: tuple[Any, ...]) -> None:
+    for guard in _hearing:
+        guard.hear(event, arguments)
+
+
 def _end_replay(component: str, tried: str) -> NoReturn:
     """Ends the process: code that catches everything and tries again cannot be left in another way."""
     sys.stdout.flush()
@@ -102,7 +117,6 @@ def _end_replay(component: str, tried: str) -> NoReturn:
     os._exit(2)
 
 
-@cache
 def _let_lcm_be_heard() -> None:
     """Lets the client of the LCM library, which opens and uses its sockets in C, raise an audit event."""
     with suppress(ImportError):

@@ -7,6 +7,7 @@ import pdb
 import socket
 import struct
 import subprocess
+import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -216,3 +217,12 @@ def test_replay_ends_if_a_component_never_stops_trying(capfd: pytest.CaptureFixt
         f"error: r/stubborn: it opens {DEVICE}, which would reach the real world, and tries again whenever the replay "
         "refuses that; declare 'reaches_outside' in its class, or replay other components with --only\n"
     )
+
+
+def test_replays_of_a_process_share_one_audit_hook(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    added: list[object] = []
+    recorded(tmp_path / "first.lcm", Wheels).replayed()
+    monkeypatch.setattr(sys, "addaudithook", added.append)
+    second = recorded(tmp_path / "second.lcm", Wheels).replayed()
+    assert list(second.left_out) == ["r/wheels"]
+    assert added == []
