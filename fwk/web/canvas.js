@@ -1,7 +1,48 @@
-// Shows the drawings of a view. Asks for a drawing only after the last drawing was shown; a hidden page asks for nothing.
+// Shows the drawings of a view. Asks for a drawing only after the last drawing has come; a hidden page asks for nothing.
+// Shapes glide from drawing to drawing, so that motion is smooth however rarely drawings come. A glide takes the time
+// between two drawings and ends at the last one exactly; no shape is ever ahead of the drawings.
 const TRAIL_MS = 2000;
 const LEAST_PX = 3.7;
 const RETRY_MS = 1000;
+const PICTURE_MS = 30; // least time from picture to picture of a glide
+const LONGEST_MS = 1500; // glide
+const SAME_M = 0.003; // difference between lengths that are equal before positions are rounded
+
+const angle = (from, to, turn) => to - from - turn * Math.round((to - from) / turn); // the short way
+const mean = (a, b, part) => a + part * (b - a);
+
+/** Returns by how much a line or polygon turns that keeps its lengths; 0 for others, whose points move straight. */
+function turned(from, to) {
+  const arms = [from, to].map(({ p }) => p.map(([x, y]) => [x - p[0][0], y - p[0][1]]));
+  const rigid = arms[0].every((arm, i) => Math.abs(Math.hypot(...arm) - Math.hypot(...arms[1][i])) < SAME_M);
+  return rigid ? angle(...arms.map(([, [x, y]]) => Math.atan2(y, x)), 2 * Math.PI) : 0;
+}
+
+/** Returns for each shape of a drawing the same shape of the drawing before, if there is one, and its turn. */
+export function paired(before, after) {
+  const grouped = (shapes) => Map.groupBy(shapes, (s) => [s.k, s.l, s.of, s.pick, s.trail].join("\n"));
+  const [old, made] = [grouped(before), grouped(after)];
+  return [...made].flatMap(([key, shapes]) => shapes.map((to, i) => {
+    const same = old.get(key);
+    const from = same?.length === shapes.length && same[i].p?.length === to.p?.length ? same[i] : null;
+    return { from, to, turn: from && to.p?.length > 1 ? turned(from, to) : 0 };
+  }));
+}
+
+/** Returns a shape on its way. */
+export function between({ from, to, turn }, part) {
+  if (!from || part >= 1) return to;
+  const made = { ...to };
+  for (const name of ["x", "y", "r", "a", "b"]) if (name in to) made[name] = mean(from[name], to[name], part);
+  if ("t" in to) made.t = from.t + part * angle(from.t, to.t, Math.PI);
+  if (turn) {
+    const start = [0, 1].map((i) => mean(from.p[0][i], to.p[0][i], part));
+    const [cos, sin] = [Math.cos(part * turn), Math.sin(part * turn)];
+    made.p = from.p.map(([px, py]) => [px - from.p[0][0], py - from.p[0][1]])
+      .map(([x, y]) => [start[0] + cos * x - sin * y, start[1] + sin * x + cos * y]);
+  } else if (to.p) made.p = to.p.map((point, i) => point.map((value, j) => mean(from.p[i][j], value, part)));
+  return made;
+}
 
 export default {
   template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
@@ -19,6 +60,10 @@ export default {
     this.frames = 0;
     this.have = ""; // name of the drawing that is shown
     this.ground = { name: "", shapes: [] };
+    this.shapes = []; // as they are shown
+    this.pairs = []; // of the glide
+    this.periods = []; // of the last drawings
+    [this.came, this.pictured, this.pictures] = [0, 0, 0];
     [this.due, this.pace] = [0, this.period];
     const on = (name, handle, options) => this.canvas.addEventListener(name, handle, options);
     on("wheel", (e) => { e.preventDefault(); this.zoom(e.deltaY < 0 ? 1.15 : 1 / 1.15, e.offsetX, e.offsetY); },
@@ -29,7 +74,7 @@ export default {
     new ResizeObserver(() => this.paint()).observe(this.canvas);
     this.ask();
   },
-  beforeUnmount() { this.open = false; },
+  beforeUnmount() { this.open = false; clearTimeout(this.next); cancelAnimationFrame(this.frame); },
   watch: { hidden() { this.paint(); } },
   methods: {
     async ask() {
@@ -44,7 +89,7 @@ export default {
       } catch (error) { this.pace = RETRY_MS; }
       setTimeout(this.ask, this.due + this.pace - performance.now());
     },
-    fitAgain() { this.scale = 0; this.trails.clear(); this.image = this.loaded = null; this.have = ""; },
+    fitAgain() { this.scale = 0; this.shapes = []; this.trails.clear(); this.image = this.loaded = null; this.have = ""; },
     async load(picture) {
       const url = `${this.images}&channel=${encodeURIComponent(picture.camera)}&frame=${picture.frame}`;
       if (url === this.loaded) return;
@@ -60,28 +105,48 @@ export default {
         if (drawing.picture) await this.load(drawing.picture);
         this.have = drawing.picture && !this.image ? "" : answer.headers.get("fwk-drawing");
         if (drawing.ground) this.ground = drawing.ground;
-        this.show(drawing);
+        this.show(drawing, answer.headers.get("fwk-glides") === "1");
       }
       this.frames += 1;
       this.canvas.dataset.frames = this.frames;
     },
-    show(drawing) {
-      this.drawing = drawing;
-      this.up = drawing.picture ? -1 : 1;
+    show(drawing, glides) {
       const now = performance.now();
-      for (const shape of drawing.shapes) if (shape.trail) {
+      const period = now - this.came;
+      if (period < LONGEST_MS) this.periods = [...this.periods, period].slice(-3);
+      this.came = now;
+      const known = glides && this.drawing && !drawing.picture ? this.shapes : [];
+      this.pairs = paired(known, drawing.shapes);
+      this.began = now;
+      this.glide = Math.max(this.period, ...this.periods);
+      for (const shape of this.shapes) if (shape.trail) {
         const trail = this.trails.get(shape.trail) || [];
         trail.push([now, shape.x, shape.y]);
         while (trail.length && trail[0][0] < now - TRAIL_MS) trail.shift();
         this.trails.set(shape.trail, trail);
       }
+      this.drawing = drawing;
+      this.up = drawing.picture ? -1 : 1;
       const layers = [...new Set([...this.ground.shapes, ...drawing.shapes].map((s) => s.l).filter(Boolean))].sort();
       if (layers.join("\n") !== this.layers) {
         this.layers = layers.join("\n");
         this.$emit("layers", layers);
       }
       if (drawing.headline !== this.headline) this.$emit("headline", (this.headline = drawing.headline));
+      this.advance();
+    },
+    /** Shows where the shapes are now, again and again until the glide has ended. */
+    advance() {
+      clearTimeout(this.next);
+      cancelAnimationFrame(this.frame);
+      const now = performance.now();
+      const part = this.pairs.some((each) => each.from) ? Math.min(1, (now - this.began) / this.glide) : 1;
+      if (part < 1) this.next = setTimeout(() => (this.frame = requestAnimationFrame(this.advance)), PICTURE_MS / 2);
+      if (part < 1 && now < this.pictured + PICTURE_MS) return;
+      this.pictured = now;
+      this.shapes = this.pairs.map((pair) => between(pair, part));
       this.paint();
+      this.canvas.dataset.pictures = ++this.pictures;
     },
     fit(width, height) {
       let box = this.drawing.bounds;
@@ -115,7 +180,7 @@ export default {
       if (this.drawing.picture && this.image)
         pen.drawImage(this.image, -0.5, -0.5, this.drawing.picture.width, this.drawing.picture.height);
       pen.lineCap = "round"; pen.lineJoin = "round";
-      const shown = this.drawing.shapes.filter((shape) => !this.hidden.includes(shape.l));
+      const shown = this.shapes.filter((shape) => !this.hidden.includes(shape.l));
       for (const shape of shown) if (shape.trail) this.paintTrail(pen, shape);
       for (const shape of shown) this.paintShape(pen, shape);
     },
@@ -140,6 +205,7 @@ export default {
       pen.strokeStyle = shape.fill || shape.stroke; pen.lineWidth = shape.r / 3; pen.globalAlpha = 0.35;
       pen.beginPath();
       for (const [, x, y] of trail) pen.lineTo(x, y);
+      pen.lineTo(shape.x, shape.y);
       pen.stroke(); pen.globalAlpha = 1;
     },
     paintShape(pen, shape) {
@@ -175,7 +241,7 @@ export default {
     },
     hit(x, y, what) {
       let best = null, least = Infinity;
-      for (const shape of this.drawing ? this.drawing.shapes : []) {
+      for (const shape of this.shapes) {
         if (shape.k !== "circle" || !shape[what] || this.hidden.includes(shape.l)) continue;
         const away = Math.hypot(shape.x - x, shape.y - y);
         if (away < Math.max(shape.r, 10 / this.scale) && away < least) { best = shape; least = away; }

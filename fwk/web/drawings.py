@@ -33,6 +33,7 @@ from fwk.web.scene import Drawing, Newest, Scene
 from fwk.web.view import View
 
 _DRAWING_AGE_S = 0.04
+_RECORDED_AGE_S = 1.0
 _IMAGE_AGE_S = 0.15
 _LAG_PERIOD_MS = 400
 """Time from drawing to drawing while a run needs all processors."""
@@ -54,15 +55,16 @@ def add_drawings(app: FastAPI, console: Console) -> None:
                 settings = await _settings(link, view.settings)
                 return await asyncio.to_thread(lambda: drawn(view, newest, settings).drawing())
 
-            if link.recorded:
-                return _answer(request, await draw())
+            if isinstance(link, RecordedLink):
+                key = ("drawing", link.run.path, link.tick, number, device)
+                return _answer(request, await console.shared.get(key, _RECORDED_AGE_S, draw))
             found = await console.shared.get(("drawing", link.name, number, device), _DRAWING_AGE_S, draw)
-            lags = await link.lags()
+            lags, paused = await link.lags(), (await link.clock())["paused"]
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
         except (LogError, MomentError) as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
-        return _answer(request, found, _LAG_PERIOD_MS if lags else 0)
+        return _answer(request, found, _LAG_PERIOD_MS if lags else 0, glides=not paused and not device)
 
     async def image(request: Request) -> Response:
         channel, frame = (request.query_params.get(key, "") for key in ("channel", "frame"))
@@ -139,9 +141,12 @@ def drawn(view: View, newest: dict[str, Any], settings: dict[tuple[str, str], An
     return scene
 
 
-def _answer(request: Request, found: Drawing, period_ms: int = 0) -> Response:
-    """Returns as much of a drawing as the browser does not have yet; `period_ms` asks it to wait for the next one."""
-    about = {**_NO_STORE, "fwk-drawing": found.name, "fwk-period-ms": str(period_ms)}
+def _answer(request: Request, found: Drawing, period_ms: int = 0, glides: bool = False) -> Response:
+    """Returns as much of a drawing as the browser does not have yet.
+
+    `period_ms` asks it to wait for the next one; with `glides` its shapes glide there from the drawing before.
+    """
+    about = {**_NO_STORE, "fwk-drawing": found.name, "fwk-period-ms": str(period_ms), "fwk-glides": str(int(glides))}
     if request.query_params.get("have") == found.name:
         return Response(None, 204, about)
     return Response(found.beyond(request.query_params.get("ground", "")), 200, about, "application/json")

@@ -88,7 +88,7 @@ class Scene:
         self.headline = ""
         """Line of text above the drawing."""
         self._picture: dict[str, Any] | None = None
-        self._layer = ""
+        self._layer = self._of = ""
         self._shapes: list[dict[str, Any]] = []
         self._ground: tuple[list[dict[str, Any]], bytes] = [], b"[]"
 
@@ -106,9 +106,15 @@ class Scene:
         """
         self._ground = _ground(draw, of)
 
-    def layer(self, name: str) -> None:
-        """Names the layer of the shapes that follow."""
-        self._layer = name
+    def layer(self, name: str, of: str = "") -> None:
+        """Names the layer of the shapes that follow.
+
+        Args:
+            name: the layer.
+            of: what the shapes show, such as a robot: in browsers they glide to the shapes of the same layer and thing
+                in the next drawing.
+        """
+        self._layer, self._of = name, of
 
     def circle(
         self,
@@ -164,6 +170,7 @@ class Scene:
         return _json({"shapes": shapes, **about, "picture": self._picture})
 
     def _add(self, kind: str, where: dict[str, Any], **look: Any) -> None:
+        look["of"] = self._of
         self._shapes.append({"k": kind, "l": self._layer, **_rounded(where), **{k: v for k, v in look.items() if v}})
 
 

@@ -24,7 +24,7 @@ _WELL = (RequestState.SENT, RequestState.ACCEPTED, RequestState.DONE)
 
 
 class View(ABC):
-    """A drawing of a run on a canvas, twenty times a second. A subclass sets `channels` and defines `draw`.
+    """A drawing of a run on a canvas, whose shapes move smoothly. A subclass sets `channels` and defines `draw`.
 
     The console offers a view for every run that has a channel for each pattern of `needs`.
     """

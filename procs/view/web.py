@@ -130,7 +130,7 @@ def _draw_ground(scene: Scene, field: Field) -> None:
 
 def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
     colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
-    scene.layer("truth")
+    scene.layer("truth", of=robot.name)
     radius_m = ROBOT.radius_m
     scene.circle(
         *(robot.x_m, robot.y_m, radius_m, colour, "#202226", 0.06),
@@ -144,7 +144,7 @@ def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
 
 
 def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
-    scene.layer("truth")
+    scene.layer("truth", of="ball")
     place = (truth.ball_x_m, truth.ball_y_m, BALL_RADIUS_M)
     scene.circle(*place, "#fac41e", "#82591a", 0.03, pick="ball", drag="ball", trail="ball")
 
@@ -155,7 +155,7 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
     model: world_model_t | None = newest(f"{robot.name}/world_model")
     pose: pose_t | None = newest(f"{robot.name}/pose")
     if model is not None:
-        scene.layer("beliefs")
+        scene.layer("beliefs", of=robot.name)
         if model.localized:
             scene.circle(model.x_m, model.y_m, 0.28, stroke=colour, width_m=0.03)
             scene.line([(robot.x_m, robot.y_m), (model.x_m, model.y_m)], colour, 0.03)
@@ -166,12 +166,12 @@ def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
             scene.ellipse(model.ball.x_m, model.ball.y_m, model.ball.covariance, colour)
     target = newest(f"{robot.name}/drive_target")
     if target is not None and not target.stop:
-        scene.layer("targets")
+        scene.layer("targets", of=robot.name)
         scene.line([(robot.x_m, robot.y_m), (target.x_m, target.y_m)], colour, 0.02, dashed=True)
     role, skill = newest(f"{robot.name}/role"), newest(f"{robot.name}/skill_status")
     words = " ".join(filter(None, (role.role if role else "", skill.skill if skill else "")))
     if words:
-        scene.layer("roles")
+        scene.layer("roles", of=robot.name)
         scene.text(robot.x_m, robot.y_m - 0.45, words, _WHITE, 0.2)
 
 

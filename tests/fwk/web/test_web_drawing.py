@@ -20,11 +20,12 @@ def shapes(scene: Scene) -> list[dict[str, Any]]:
 
 def test_shapes_carry_their_layer_and_what_people_do_with_them() -> None:
     scene = Scene()
-    scene.layer("truth")
+    scene.layer("truth", of="robot")
     scene.circle(1.00049, 2.0, 0.5, fill="red", pick="a/robot", drag="robot", trail="robot")
     (circle,) = shapes(scene)
     assert circle == {
         **{"k": "circle", "l": "truth", "x": 1.0, "y": 2.0, "r": 0.5, "fill": "red", "width": 0.02},
+        "of": "robot",
         **{"pick": "a/robot", "drag": "robot", "trail": "robot"},
     }
 

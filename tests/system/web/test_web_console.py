@@ -13,6 +13,7 @@ from fwk.control.client import Client
 from tests.harness.browser import Console
 from tests.harness.garden import ROWS, Garden, row
 from tests.programs.garden_system import CROWD
+from tests.system.web.glides import AFTER, BEFORE, CENTRE, GLIDES, HALF_WAY, WAIT_FOR_GLIDES
 from tools.docs.web_pictures import take
 
 pytestmark = pytest.mark.system
@@ -189,6 +190,7 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     colours = "c => { const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data; let n = 0; "
     colours += "for (let i = 0; i < d.length; i += 4) n += d[i] > 200 && d[i + 1] < 80; return n; }"
     assert canvas.evaluate(colours) > 200
+    page.evaluate(WAIT_FOR_GLIDES, 5)
     page.get_by_role("checkbox", name="mower").click()  # hides the layer
     page.wait_for_function(f"() => ({colours})(document.querySelector('canvas')) === 0")
     page.get_by_role("checkbox", name="mower").click()
@@ -198,6 +200,10 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     box = canvas.bounding_box()
     assert box
     scale = min(box["width"], box["height"]) / 10.0
+    page.wait_for_function(f"""() => {{
+        const [x, y] = ({CENTRE})(document.querySelector('canvas')).map((each) => each / {scale});
+        return Math.hypot(x - {place[0]}, y - {place[1]}) < 0.02;
+    }}""")  # exact while paused
     x_px = box["x"] + box["width"] / 2 + place[0] * scale
     y_px = box["y"] + box["height"] / 2 - place[1] * scale
     page.mouse.click(x_px, y_px)
@@ -217,6 +223,7 @@ def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
     page = garden.open("/view?run=garden")
     canvas = page.locator("canvas")
     expect(canvas).to_have_attribute("data-frames", re.compile(r"[1-9]"))
+    assert page.evaluate(GLIDES, [BEFORE, AFTER]) == HALF_WAY
     scale = float(canvas.get_attribute("data-scale") or 0)
 
     def wait_for_scale(wanted: float) -> None:
