@@ -54,10 +54,10 @@ class Component:
     provides: ClassVar[type[Aspect] | tuple[type[Aspect], ...]] = ()
     """Aspects that other components get from this component."""
     reaches_outside: ClassVar[bool | None] = None
-    """Whether the component drives a device or talks to other programs.
+    """Whether the component drives a device, talks to other programs or writes files.
 
-    True: a replay does not run it. None: a replay runs it until it opens a device, a connection or a program. False: a
-    replay runs it, and it may open them. Ordinary files are written again, unless this is True.
+    True: a replay does not run it. None: a replay runs it until it opens a device, a connection, a program or a file to
+    write. False: a replay runs it, and it may open them.
     """
     name: str
     """Full name: `cyan1/omni_ball`."""

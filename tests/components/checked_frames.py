@@ -18,6 +18,7 @@ def leave(name: str, number: int) -> None:
 
 class Camera(Component):
     stage = "sensor_acquire"
+    reaches_outside = False
     image: VisionMaster
     clock: Clock
     rng: np.random.Generator
@@ -42,6 +43,7 @@ class Finder(Component):
     """Reports which frame it saw and whether the frame was whole."""
 
     stage = "sensor_prepare"
+    reaches_outside = False
     image: Image = channel("r/image")
     pose: Writes[pose_t]
     clock: Clock

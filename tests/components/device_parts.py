@@ -17,6 +17,7 @@ class Driver(Component):
     """Moves the motors as the stick commands; without a stick they follow the clock."""
 
     stage = "think"
+    reaches_outside = False
     config: DriverConfig
     clock: Clock
     joy: Reads[joy_t] = channel("/JOYSTICK", history=3)

@@ -8,6 +8,7 @@ from lcmtypes.soccer import pose_t
 
 class Speaker(Component):
     stage = "think"
+    reaches_outside = False
     clock: Clock
     pose: Writes[pose_t]
 

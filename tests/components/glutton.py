@@ -40,6 +40,7 @@ class Glutton(Component):
     """Uses memory, or crashes."""
 
     stage = "think"
+    reaches_outside = False
     config: GluttonConfig
     imu: Reads[imu_t]
     pose: Writes[pose_t]

@@ -29,6 +29,7 @@ class Lifter(Component):
     """Lifts to the commanded heights, a few commands at a time; fails for heights below zero."""
 
     stage = "act"
+    reaches_outside = False
     config: LifterConfig
     clock: Clock
     lift: Serves[lift_t]
@@ -61,6 +62,7 @@ class Adder(Component):
     """Answers requests for sums."""
 
     stage = "worldstate"
+    reaches_outside = False
     clock: Clock
     sum: Serves[sum_request_t, sum_t]
 
@@ -88,6 +90,7 @@ class Worker(Component):
     """Requests sums and lifts at random, and counts the outcomes."""
 
     stage = "think"
+    reaches_outside = False
     config: WorkerConfig
     clock: Clock
     rng: np.random.Generator

@@ -12,6 +12,7 @@ class Obeys(Component):
     """Sums up all outside messages, and the newest three."""
 
     stage = ("think", "act")
+    reaches_outside = False
     clock: Clock
     wish: Reads[motor_command_t] = channel(history=3)
     total: Writes[imu_t]

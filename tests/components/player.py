@@ -37,6 +37,7 @@ class Player(Component):
     """Hears all players and writes down what it heard."""
 
     stage = "think"
+    reaches_outside = False
 
     config: PlayerConfig
     clock: Clock

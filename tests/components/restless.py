@@ -37,6 +37,7 @@ class Planner(Component):
     """Sums up everything it hears."""
 
     rate_hz = 0
+    reaches_outside = False
     clock: Clock
     config: PlannerConfig
     main_loop: MainLoop

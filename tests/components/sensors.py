@@ -11,6 +11,7 @@ class Sensor(Component):
     """Writes a heading that changes in each tick."""
 
     stage = "sensor_acquire"
+    reaches_outside = False
     imu: Writes[imu_t]
 
     def loop(self) -> None:

@@ -33,6 +33,7 @@ class Driver(Player):
     """Holds the main loop from one tick to another."""
 
     stage = "think"
+    reaches_outside = False
     clock: Clock
     config: DriverConfig
     main_loop: MainLoop

@@ -34,6 +34,7 @@ class Talker(Component):
     """Writes many messages, once."""
 
     stage = "sensor_acquire"
+    reaches_outside = False
     clock: Clock
     imu: Writes[imu_t]
 

@@ -33,6 +33,7 @@ class Talker(Component):
     """Logs and prints."""
 
     stage = "think"
+    reaches_outside = False
     config: TalkerConfig
     clock: Clock
     log: Logger

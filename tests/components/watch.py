@@ -34,6 +34,7 @@ class Watcher(Component):
     """Reports which frame was announced, what it saw, and how many frames it lost."""
 
     stage = "sensor_prepare"
+    reaches_outside = False
     image: Image = channel("r/image")
     pose: Writes[pose_t]
     rng: np.random.Generator

@@ -199,9 +199,13 @@ def fwk(folder: Path, *words: str | Path, code: int = 0) -> str:
 
 
 def replayed(folder: Path, *words: str, log: str | Path = "log.lcm", code: int = 0) -> str:
-    """Returns the output of `fwk replay LOG --verify`, which has to find no difference unless `code` says otherwise."""
+    """Returns the output of `fwk replay LOG --verify`, which has to find no difference unless `code` says otherwise.
+
+    No component may be left out because it tried to reach outside: the replay would not compare its messages.
+    """
     said = fwk(folder, "replay", log, "--verify", *words, code=code)
     assert code or "equal: " in said, said
+    assert "which reaches outside" not in said, said
     return said
 
 

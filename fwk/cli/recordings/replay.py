@@ -113,10 +113,6 @@ def _replayed(
     typer.echo(f"{done.iterations} iterations replayed")
     for name, reason in done.left_out.items():
         typer.echo(f"not replayed: {name}: {reason}")
-    if any("real world" in reason for reason in done.left_out.values()):
-        typer.echo(
-            "a class with 'reaches_outside = True' is a driver, which no replay runs; '= False' lets replays run it"
-        )
     if done.recording.skipped_bytes:
         typer.echo(f"{log}: cut off: its last {done.recording.skipped_bytes} bytes are not a whole message", err=True)
     if lost := {channel: numbers for channel, numbers in done.lost.items() if numbers}:

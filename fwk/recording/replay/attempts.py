@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from types import FrameType
 from typing import Any
 
-from fwk.recording.replay.descriptors import is_device, is_harmless
+from fwk.recording.replay.descriptors import is_device
+from fwk.recording.replay.files import Files, is_harmless
 
 LCM_EVENT = "lcm.LCM"
 """Audit event of the LCM library's client, which opens its sockets in C; the guard raises it."""
@@ -22,7 +23,6 @@ _PROGRAMS = (
 )
 _SIGNALS = ("os.kill", "os.killpg")
 _NETWORK = ("socket.connect", "socket.bind", "socket.sendto", "socket.sendmsg", LCM_EVENT)
-_MACHINE = ("/sys/", "/proc/")
 _LOOKUPS = ("ctypes.util", "platform")
 """Modules of Python that start programs to examine the machine, for libraries that are being imported."""
 _PROMPTS = ("cmd", "_pydevd_bundle.pydevd_vars")
@@ -30,26 +30,24 @@ _TYPED = ("onecmd", "evaluate_expression")
 """Modules of debuggers, and their functions that carry out what a user types; `cmd` is that of pdb."""
 
 
-def attempt(event: str, arguments: tuple[Any, ...]) -> str:
+def attempt(event: str, arguments: tuple[Any, ...], files: Files) -> str:
     """Describes the access to the outside; empty: there is none."""
     if event == "open":
-        return _opening(arguments[0], arguments[2])
+        return _opening(arguments[0]) or files.opening(arguments[0], arguments[2])
     if event in _PROGRAMS:
         return "" if _asks_about_the_machine() else "it starts a program"
     if event in _SIGNALS:
         return "it sends a signal"
-    return "it uses the network" if event in _NETWORK else ""
+    return "it uses the network" if event in _NETWORK else files.change(event, arguments)
 
 
-def _opening(path: Any, flags: int) -> str:
-    """Describes the opening of a device or of a setting of the machine; empty: the file is another one."""
+def _opening(path: Any) -> str:
+    """Describes the opening of a device; empty: the file is another one."""
     if not isinstance(path, str | bytes | os.PathLike):  # a descriptor that is open already
         return ""
     name = os.fsdecode(path)
     if is_harmless(name):
         return ""
-    if flags & (os.O_WRONLY | os.O_RDWR) and os.path.realpath(name).startswith(_MACHINE):
-        return f"it writes {name}"
     try:
         mode = os.stat(name).st_mode
     except (OSError, ValueError):

@@ -1,4 +1,4 @@
-"""Finds devices and connections that a library in C has opened."""
+"""Finds devices, connections and files to write that a library in C has opened."""
 
 import fcntl
 import os
@@ -7,10 +7,10 @@ import stat
 import struct
 from pathlib import Path
 
+from fwk.recording.replay.files import Files, is_harmless
+
 _TIOCGPTN = 0x80045430  # asks a pseudo terminal for its number; Python 3.11 does not name it
 _OPEN = Path("/proc/self/fd")
-_HARMLESS = ("/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom", "/dev/tty")
-_WITHIN = ("/dev/shm/", "/dev/pts/ptmx")
 
 
 class Descriptors:
@@ -19,7 +19,8 @@ class Descriptors:
     A descriptor that is opened takes the lowest free number; while that number stays the same, nothing is looked at.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, files: Files) -> None:
+        self._files = files
         self._lowest = -1
         self._known: set[str] = set()
 
@@ -30,17 +31,26 @@ class Descriptors:
             self._known = set(os.listdir(_OPEN)) - {str(self._lowest)}  # the descriptor of the listing itself
 
     def opened(self) -> str:
-        """Describes a device or connection that was opened since `note`; empty: none."""
+        """Describes a device, a connection or a file to write that was opened since `note`; empty: none."""
         if _lowest_free() == self._lowest:
             return ""
         opened = sorted(set(os.listdir(_OPEN)) - self._known, key=int)
         own = {name for number in opened if (name := _own_terminal(int(number)))}
-        return next((found for number in opened if (found := _reached(int(number), own))), "")
+        return next((found for number in opened if (found := self._reached(int(number), own))), "")
 
-
-def is_harmless(name: str) -> bool:
-    """Returns whether a path belongs to a file in /dev that reaches nothing."""
-    return name in _HARMLESS or name.startswith(_WITHIN)
+    def _reached(self, number: int, own_terminals: set[str]) -> str:
+        try:
+            about, name = os.fstat(number), os.readlink(_OPEN / str(number))
+            flags = fcntl.fcntl(number, fcntl.F_GETFL)
+        except OSError:  # closed in between
+            return ""
+        if stat.S_ISSOCK(about.st_mode):
+            return _connection(number)
+        if is_harmless(name) or name in own_terminals or name == "/dev/ptmx" or name.startswith("pipe:"):
+            return ""
+        if stat.S_ISREG(about.st_mode) and about.st_nlink and self._files.opening(name, flags):
+            return f"{name} to write"
+        return name if is_device(about.st_mode) else ""
 
 
 def is_device(mode: int) -> bool:
@@ -69,17 +79,6 @@ def _own_terminal(number: int) -> str:
     except OSError:
         return ""
     return f"/dev/pts/{index}"
-
-
-def _reached(number: int, own_terminals: set[str]) -> str:
-    try:
-        mode, name = os.fstat(number).st_mode, os.readlink(_OPEN / str(number))
-    except OSError:  # closed in between
-        return ""
-    if stat.S_ISSOCK(mode):
-        return _connection(number)
-    harmless = is_harmless(name) or name in own_terminals or name == "/dev/ptmx" or name.startswith("pipe:")
-    return "" if harmless or not is_device(mode) else name
 
 
 def _connection(number: int) -> str:

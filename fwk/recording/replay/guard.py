@@ -1,4 +1,4 @@
-"""Keeps replayed components from reaching devices, other programs and the network."""
+"""Keeps replayed components from reaching devices, other programs, the network and files that others see."""
 
 import os
 import sys
@@ -13,6 +13,7 @@ from typing import Any, NoReturn
 
 from fwk.recording.replay.attempts import LCM_EVENT, attempt, typed_in_debugger
 from fwk.recording.replay.descriptors import Descriptors
+from fwk.recording.replay.files import Files
 
 _ATTEMPTS_MAX = 10
 """Number of equal attempts in one iteration after which a component counts as one that never stops trying."""
@@ -26,7 +27,8 @@ class Guard:
     """Refuses access of components to the world outside: while it watches them, and in the threads that they start.
 
     It observes files, sockets and programs through Python's audit events, before anything is opened. A library in C
-    opens a device or a socket without Python; the guard notices that as soon as the call that opened it returns.
+    opens a device, a socket or a file without Python; the guard notices that as soon as the call that opened it
+    returns, if it is still open then.
     """
 
     def __init__(self) -> None:
@@ -38,7 +40,8 @@ class Guard:
         """Every thread besides that of the replay, with the component that started it; empty: none that is watched."""
         self._attempts: Counter[str] = Counter()  # of the component that is being executed
         self._elsewhere = False  # a watched component started a thread
-        self._descriptors = Descriptors()
+        self._files = Files()
+        self._descriptors = Descriptors(self._files)
 
     @contextmanager
     def watching(self, component: str) -> Iterator[None]:
@@ -79,7 +82,7 @@ class Guard:
         """Refuses what an audit event announces, if a watched component or one of its threads raised it."""
         own = threading.get_ident() == self._thread
         component = self._watched if own else self._threads.get(threading.current_thread(), self._watched)
-        if not component or not (tried := attempt(event, arguments)) or typed_in_debugger():
+        if not component or not (tried := attempt(event, arguments, self._files)) or typed_in_debugger():
             return
         self.refused[component] = tried
         if own:
@@ -110,7 +113,7 @@ def _end_replay(component: str, tried: str) -> NoReturn:
     """Ends the process: code that catches everything and tries again cannot be left in another way."""
     sys.stdout.flush()
     sys.stderr.write(
-        f"error: {component}: {tried}, which would reach the real world, and tries again whenever the replay refuses "
+        f"error: {component}: {tried}, which reaches outside, and tries again whenever the replay refuses "
         "that; declare 'reaches_outside' in its class, or replay other components with --only\n"
     )
     sys.stderr.flush()

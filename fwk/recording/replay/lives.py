@@ -116,7 +116,9 @@ class Lives:
 
     def leave_out(self, component: ComponentPlan, reason: str) -> None:
         """Ends a component that a replay must not run; its recorded messages replace it."""
-        self.left_out[component.name] = f"{reason}, which would reach the real world"
+        self.left_out[component.name] = (
+            f"{reason}, which reaches outside; 'reaches_outside = False' in {component.class_name} lets replays do that"
+        )
         self.chosen.discard(component.index)
         for lives in (*self.running.values(), *self.leaving.values()):
             for life in [life for life in lives if life.plan.index == component.index]:

@@ -1,13 +1,16 @@
-"""A replay reaches nothing outside: no device, no program, no connection."""
+"""A replay reaches nothing outside: no device, no program, no connection, no file that is written."""
 
 import ctypes
 import io
 import os
 import pdb
+import shutil
 import socket
+import sqlite3
 import struct
 import subprocess
 import sys
+import tempfile
 import threading
 from collections.abc import Callable
 from contextlib import suppress
@@ -18,7 +21,7 @@ import lcm
 import pytest
 
 from fwk import Component, Writes
-from fwk.model.tick_events import HostStarted, StageBegun, StageDone
+from fwk.model.tick_events import FinalDone, HostStarted, HostStopped, StageBegun, StageDone
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.testing.plans import plan_of
 from lcmtypes.soccer import pose_t
@@ -52,6 +55,19 @@ class HarmlessWheels(Wheels):
     reaches_outside = False
 
 
+class Notes(Component):
+    """Keeps notes in a file; its class does not declare that."""
+
+    stage = "think"
+    pose: Writes[pose_t]
+
+    def init(self) -> None:
+        self.pose.write()
+
+    def finalize(self) -> None:
+        Path("notes.csv").write_text("those of the replay")
+
+
 @pytest.fixture(autouse=True)
 def _device() -> None:
     opened.clear()
@@ -68,7 +84,9 @@ def test_component_that_opens_a_device_is_left_out(tmp_path: Path) -> None:
     replay = recorded(tmp_path / "log.lcm", Wheels).replayed()
     assert opened == []
     assert list(replay.left_out) == ["r/wheels"]
-    assert replay.left_out["r/wheels"].startswith(f"it opens {DEVICE}")
+    assert replay.left_out["r/wheels"] == (
+        f"it opens {DEVICE}, which reaches outside; 'reaches_outside = False' in Wheels lets replays do that"
+    )
     assert (replay.compared, replay.iterations) == (0, 0)
 
 
@@ -76,6 +94,18 @@ def test_declared_driver_is_left_out_from_the_start(tmp_path: Path) -> None:
     replay = recorded(tmp_path / "log.lcm", DeclaredWheels).replayed()
     assert opened == []
     assert replay.left_out == {"r/wheels": "it reaches outside"}
+
+
+def test_component_leaves_the_files_of_the_run_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("notes.csv").write_text("those of the run")
+    log = recorded(tmp_path / "log.lcm", Notes)
+    log.tick(2, [HostStopped(0), FinalDone(0, 1)])
+    replay = log.replayed()
+    assert Path("notes.csv").read_text() == "those of the run"
+    assert (replay.compared, replay.differences) == (1, [])
+    said = "it writes notes.csv, which reaches outside; 'reaches_outside = False' in Notes lets replays do that"
+    assert replay.left_out == {"r/wheels": said}
 
 
 def test_component_that_declares_no_harm_is_replayed(tmp_path: Path) -> None:
@@ -140,13 +170,64 @@ def test_guard_refuses_sockets_that_c_will_use(attempt: Callable[[], object], re
         os.close(descriptor)
 
 
-def test_guard_lets_files_be_read_and_written(tmp_path: Path) -> None:
+def _open_to_write_in_c() -> None:
+    opened.append(ctypes.CDLL(None).open(b"kept", os.O_RDWR))
+
+
+CHANGES = "append os write remove rename replace folder link truncate mode database copy tree library"
+
+
+@pytest.mark.parametrize(
+    ("attempt", "reason"),
+    [
+        (lambda: Path("board").open("a").close(), "writes board"),
+        (lambda: os.open("kept", os.O_RDWR), "writes kept"),
+        (lambda: Path("kept").write_text("1"), "writes kept"),
+        (lambda: Path("kept").unlink(), "removes kept"),
+        (lambda: Path("kept").rename("board"), "renames kept"),
+        (lambda: os.replace(tempfile.mkstemp()[1], "kept"), "renames kept"),
+        (lambda: Path("board").mkdir(), "makes board"),
+        (lambda: Path("board").symlink_to("kept"), "makes board"),
+        (lambda: os.truncate("kept", 0), "writes kept"),
+        (lambda: Path("kept").chmod(0), "changes kept"),
+        (lambda: sqlite3.connect("board"), "writes board"),
+        (lambda: shutil.copy("kept", "board"), "writes board"),
+        (lambda: shutil.rmtree("."), "removes .*/kept"),
+        (_open_to_write_in_c, "opens .*/kept to write"),
+    ],
+    ids=CHANGES.split(),
+)
+def test_guard_refuses_changes_of_ordinary_files(
+    attempt: Callable[[], object], reason: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("kept").write_text("untouched")
     guard = Guard()
-    with guard.watching("r/wheels"):
-        (tmp_path / "notes").write_text("a")
+    with pytest.raises(ReachesOutsideError, match=reason), guard.watching("r/wheels"):
+        attempt()
+    for descriptor in opened:
+        os.close(descriptor)
+    assert [(file.name, file.read_text()) for file in tmp_path.iterdir()] == [("kept", "untouched")]
+
+
+def test_guard_lets_private_files_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "notes").write_text("a")
+    with Guard().watching("r/wheels"):
         assert (tmp_path / "notes").read_text() == "a"
-    with pytest.raises(FileNotFoundError):
-        (tmp_path / "missing").read_bytes()
+        with tempfile.TemporaryDirectory() as folder, tempfile.TemporaryFile() as file:
+            file.write(b"a")
+            (Path(folder) / "more").mkdir()
+            (Path(folder) / "notes").write_text("a")
+            (Path(folder) / "notes").rename(Path(folder) / "more" / "notes")
+        for library in (tmp_path / "cache" / "fonts", tmp_path / "__pycache__"):
+            library.mkdir(parents=True)
+            (library / "made").write_text("a")
+        tmp_path.mkdir(exist_ok=True)
+        sqlite3.connect(":memory:").close()
+        Path("/dev/null").write_text("a")
+        with suppress(FileNotFoundError):
+            (tmp_path / "missing").read_bytes()
 
 
 def test_guard_lets_users_do_what_they_type_in_a_debugger() -> None:
@@ -192,13 +273,14 @@ def test_threads_of_the_replay_itself_are_not_watched() -> None:
 def test_module_that_opens_a_device_is_not_imported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = tmp_path / "code"
     folder.mkdir()
-    source = f"import os\nos.mkdir({str(tmp_path / 'imported')!r})\nos.open({DEVICE!r}, os.O_RDWR | os.O_NOCTTY)\n"
+    monkeypatch.setenv("IMPORTED", "")
+    source = f"import os\nos.environ['IMPORTED'] = 'yes'\nos.open({DEVICE!r}, os.O_RDWR | os.O_NOCTTY)\n"
     (folder / "opening_wheels.py").write_text(source)
     monkeypatch.syspath_prepend(str(folder))
     plan = plan_of({"r/wheels": Wheels})
     component = replace(plan.components[0], module="opening_wheels")
     replay = HandMadeLog(tmp_path / "log.lcm", replace(plan, components=(component,))).replayed()
-    assert (tmp_path / "imported").is_dir()
+    assert os.environ["IMPORTED"] == "yes"
     assert replay.left_out == {
         "r/wheels": f"opening_wheels cannot be imported in a replay: it opens {DEVICE}; "
         "with 'reaches_outside = False' its init() may do so"
@@ -214,8 +296,8 @@ def test_replay_ends_if_a_component_never_stops_trying(capfd: pytest.CaptureFixt
                     os.open(DEVICE, os.O_RDWR | os.O_NOCTTY)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 2
     assert capfd.readouterr().err == (
-        f"error: r/stubborn: it opens {DEVICE}, which would reach the real world, and tries again whenever the replay "
-        "refuses that; declare 'reaches_outside' in its class, or replay other components with --only\n"
+        f"error: r/stubborn: it opens {DEVICE}, which reaches outside, and tries again whenever the replay refuses "
+        "that; declare 'reaches_outside' in its class, or replay other components with --only\n"
     )
 
 
