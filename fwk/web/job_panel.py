@@ -1,7 +1,6 @@
 """Element that runs a command of fwk and shows its line, its output and its end."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Awaitable, Callable, Sequence
 
 from nicegui import background_tasks, ui
 
@@ -32,8 +31,8 @@ class JobPanel:
         self._area.set_visibility(False)
         ui.timer(_LOOK_S, self._show)
 
-    def start(self, words: Sequence[str], then: Callable[[int], Any] | None = None) -> None:
-        """Starts a command unless one runs already."""
+    def start(self, words: Sequence[str], then: Callable[[], Awaitable[None]] | None = None) -> None:
+        """Starts a command unless one runs already; calls `then` after its end."""
         if self._frame.role is not Role.STEER:
             ui.notify("this console is for reading only", type="negative")
             return
@@ -45,16 +44,16 @@ class JobPanel:
         self._area.set_visibility(True)
         background_tasks.create(self._run(self._job, then))
 
-    async def _run(self, job: Job, then: Callable[[int], Any] | None) -> None:
+    async def _run(self, job: Job, then: Callable[[], Awaitable[None]] | None) -> None:
         try:
-            code = await job.run()
+            await job.run()
         except OSError as error:
             job.code = 2
             self._told.append(f"error: {error}\n")
             return
         if then:
             with self._area:
-                then(code)
+                await then()
 
     def _show(self) -> None:
         job = self._job

@@ -95,9 +95,13 @@ class Player:
             branch = ui.button("branch from this tick", icon="call_split").props("dense outline no-caps")
         panel = JobPanel(self._frame)
 
+        async def find_branch() -> None:
+            other.set_options(await others_of(self._frame, name))
+
         def go_on_live() -> None:
             sets = [word for each in (changes.value or "").split() for word in ("--set", each)]
-            panel.start(["fwk", "replay", name, "--to-tick", str(self._link.tick), "--then-live", *sets])
+            words = ["fwk", "replay", name, "--to-tick", str(self._link.tick), "--then-live", *sets]
+            panel.start(words, find_branch)
 
         def compare_with() -> None:
             if other.value:
@@ -136,6 +140,12 @@ class Player:
         self._lines.append(
             [(number, line["level"], log_line(from_plain(line)), line["tick"]) for number, line in enumerate(near)]
         )
+
+
+async def others_of(frame: Frame, name: str) -> list[str]:
+    """Returns the names of the recordings except one."""
+    names = [Path(each["path"]).name for each in await asyncio.to_thread(frame.console.recordings)]
+    return [each for each in names if each != name]
 
 
 def _log_of(folder: Path) -> list[dict[str, Any]]:

@@ -8,7 +8,7 @@ from nicegui import ui
 
 from fwk.web.drawings import views_of
 from fwk.web.layout import Frame, body
-from fwk.web.pages.player import Player
+from fwk.web.pages.player import Player, others_of
 from fwk.web.recorded_link import RecordedLink
 from fwk.web.words import size
 
@@ -57,6 +57,6 @@ def _show(frame: Frame, name: str) -> None:
 
 async def _open(frame: Frame, area: ui.column, link: RecordedLink) -> None:
     views = await views_of(frame.console, link)
-    others = [Path(each["path"]).name for each in await asyncio.to_thread(frame.console.recordings)]
+    others = await others_of(frame, link.name)
     with area:
-        Player(frame, link, [view.title for view in views], [each for each in others if each != link.name])
+        Player(frame, link, [view.title for view in views], others)

@@ -1,5 +1,6 @@
 """Page of the components: state, times, losses; start, stop, restart, reload, log level."""
 
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -159,9 +160,8 @@ async def _open(frame: Frame, name: str) -> None:
         with ui.row().classes("items-center no-wrap"):
             line = f"fwk debug {name} --run {frame.run}"
             ui.label(line).classes("fwk-value")
-            ui.button(icon="content_copy", on_click=lambda: ui.clipboard.write(line)).props(
-                'flat dense aria-label="copy the line"'
-            )
+            copy = ui.button(icon="content_copy").props('flat dense aria-label="copy the line"')
+            copy.on("click", js_handler=f"() => navigator.clipboard.writeText({json.dumps(line)})")
         await _histogram(frame, name)
         with ui.grid(columns="auto 1fr").classes("gap-x-4 gap-y-0"):
             for key, value in rows_of("", {**component, "awake_s": age(component["awake_s"])}):

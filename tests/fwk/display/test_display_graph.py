@@ -81,6 +81,8 @@ def test_states_and_rates_of_a_run_are_shown() -> None:
     assert "    <- x/c 20.0 Hz from x" in live.lines()
     (failed,) = [each for each in Xml.fromstring(svg(live)).iter(f"{SVG}g") if each.get("class") == "failed"]
     assert failed.findtext(f"{SVG}text") == "y"
+    (rate,) = [each for each in Xml.fromstring(svg(live)).iter(f"{SVG}text") if each.get("class") == "rate"]
+    assert rate.text == "c 20.0 Hz"
 
 
 def test_mermaid_has_every_node_and_edge(made: Graph) -> None:

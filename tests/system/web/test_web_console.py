@@ -65,6 +65,9 @@ def test_details_of_a_component_set_its_log_level(garden: Garden) -> None:
     dialog = page.get_by_role("dialog")
     expect(dialog).to_contain_text(f"fwk debug a/mower --run {garden.name}")
     expect(dialog).to_contain_text("iterations, p50")
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    dialog.get_by_role("button", name="copy the line").click()
+    assert page.evaluate("navigator.clipboard.readText()") == f"fwk debug a/mower --run {garden.name}"
     dialog.get_by_role("combobox", name="log level").click()
     page.get_by_role("option", name="error").click()
     settings = garden.open("/settings?run=garden&component=a/mower")
@@ -291,13 +294,15 @@ def test_nothing_that_a_component_prints_is_markup(garden: Garden) -> None:
 
 
 def test_the_graph_shows_states_and_rates(garden: Garden) -> None:
-    page = garden.open("/graph?run=garden&around=a/*")
-    image = page.get_by_alt_text("graph of the components")
-    expect(image).to_have_attribute("src", re.compile("around=a%2F"))
-    answer = page.request.get(f"{garden.console.url}/graph.svg?run={garden.name}&around=a/*")
-    assert "a/mower to a/watcher: " in answer.text()
-    assert "crowd" not in answer.text()
-    page.wait_for_function("() => document.querySelector('.fwk-graph img').naturalWidth > 100")
+    page = garden.open("/graph?run=garden")
+    graph = page.get_by_label("graph of the components")
+    expect(graph.locator("g.running")).to_have_count(CROWD + 4)
+    expect(graph.locator("g.stopped")).to_have_text("b/later")
+    graph.get_by_text("a/mower", exact=True).click()  # only what it exchanges messages with
+    expect(page.get_by_label("components, such as")).to_have_value("a/mower")
+    expect(graph.locator("g").filter(has_text="crowd")).to_have_count(0)
+    expect(graph.locator(".rate").first).to_have_text(re.compile(r"place (9\.\d|1\d\.\d) Hz"))
+    expect(graph.locator("path > title").first).to_have_text(re.compile(r"a/mower to .*: a/place [1-9]\d?\.\d Hz"))
 
 
 def test_plots_draw_any_numeric_fields_together(garden: Garden) -> None:
