@@ -13,6 +13,11 @@ _BLOCK = 64
 class PortsInUseError(Exception):
     """Another run uses some of the ports; names that run and the ports to use instead."""
 
+    def __init__(self, text: str, fact: str = "") -> None:
+        super().__init__(text)
+        self.fact = fact
+        """The ports and the run that uses them, without the name of the refused run and the remedy."""
+
 
 class PortLock:
     """Holds the ports of a run as long as the process lives; other processes can find that process."""
@@ -23,13 +28,13 @@ class PortLock:
         free = (last + 1 + last - first) * _BLOCK
         for block in range(first, last + 1):
             used = f"ports {ports.base} to {ports.end - 1} are used"
-            self._take(f"ports-{block}", f"{name}: {used}", f"start this one with --bus-port {free}")
+            self._take(f"ports-{block}", name, used, f"start this one with --bus-port {free}")
         if public_url:
             bus = public_url.partition("?")[0]
             advice = f"start this one with --bus-port {free} or another public_url"
-            self._take(f"public-{bus}", f"{name}: the public bus {bus} is used", advice)
+            self._take(f"public-{bus}", name, f"the public bus {bus} is used", advice)
 
-    def _take(self, what: str, used: str, advice: str) -> None:
+    def _take(self, what: str, name: str, used: str, advice: str) -> None:
         lock = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
             lock.bind(_address(what))
@@ -37,7 +42,8 @@ class PortLock:
         except OSError as error:
             lock.close()
             self.release()
-            raise PortsInUseError(f"{used} by another run{_holder(what)}; stop it, or {advice}") from error
+            fact = f"{used} by another run{_holder(what)}"
+            raise PortsInUseError(f"{name}: {fact}; stop it, or {advice}", fact) from error
         self._sockets.append(lock)
 
     def belong_to_this_process(self) -> None:

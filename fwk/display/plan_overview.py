@@ -34,8 +34,12 @@ def counted(number: int, one: str, many: str = "") -> str:
     return f"{number} {one if number == 1 else many or f'{one}s'}"
 
 
-def fewer_processes(plan: Plan) -> str:
-    """Returns the option of `fwk-launch` with which the plan needs fewer processes, or else fewer components."""
+def fewer_processes(plan: Plan, most: int | None = None) -> str:
+    """Returns the option of `fwk-launch` with which the plan needs fewer processes, or else fewer components.
+
+    With `most`, `--hosting robot` is chosen only if it needs no more processes than that.
+    """
     hosts = len(plan.hosts)
     namespaces = len({component.name.rpartition("/")[0] for component in plan.components})
-    return "--hosting robot" if namespaces < hosts else "--hosting single" if hosts > 1 else "--only NAME..."
+    fewer = namespaces < hosts and (most is None or namespaces <= most)
+    return "--hosting robot" if fewer else "--hosting single" if hosts > 1 else "--only NAME..."

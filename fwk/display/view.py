@@ -1,10 +1,10 @@
 """State of the display: newest messages, rates and log lines of the run; selection and filters of the user."""
 
-import os
 from collections import deque
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us
+from fwk.display.cores import usable_cores
 from fwk.display.cpu import CpuMeter
 from fwk.display.figures import LoopTime, loop_times, slowest
 from fwk.display.floods import LineGroup, LineGroups
@@ -104,7 +104,7 @@ class View:
         if busiest and busiest[0].mean_ms > period_ms:
             takes = f"{busiest[0].name} takes {busiest[0].mean_ms:.0f} ms"
             return f"slower than asked; {takes}, but a tick has only {period_ms:g} ms"
-        hosts, cores = len(self.plan.hosts), len(os.sched_getaffinity(0))
+        hosts, cores = len(self.plan.hosts), usable_cores()
         if hosts <= cores:
             return "slower than asked; 'fwk top' shows where the time goes"
         shared = f"{hosts} processes share {counted(cores, 'core')}"

@@ -2,7 +2,6 @@
 
 import errno
 import fcntl
-import os
 import resource
 import socket
 import struct
@@ -12,11 +11,14 @@ from fwk.bus.port_owner import port_owner
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import GROUP, LOOPBACK, multicast_holder, own_socket
 from fwk.control.address import gateway_address, supervisor_address
+from fwk.display.cores import usable_cores
 from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
 from fwk.model.public_url import parse_url
 
+THROUGH_FIREWALL = f"sudo iptables -I INPUT -d {GROUP} -j ACCEPT; sudo iptables -I OUTPUT -d {GROUP} -j ACCEPT"
+"""Command that lets datagrams to LCM's group pass."""
 _SIOCGIFFLAGS, _IFF_UP = 0x8913, 1
 _PORTS_NAMED = 3
 _FILES_BESIDE = 64
@@ -57,9 +59,7 @@ def check_ports(plan: Plan) -> None:
     Raises:
         MachineError: a program has some.
     """
-    ports = Ports.of(plan)
-    used = [port for port in range(ports.base, ports.end) if not _is_free(port, port in ports.members)]
-    if used:
+    if used := taken_ports(Ports.of(plan)):
         more = ", ..." if len(used) > _PORTS_NAMED else ""
         raise MachineError(
             f"{plan.name}: another program uses UDP port {', '.join(map(str, used[:_PORTS_NAMED]))}{more}"
@@ -68,9 +68,14 @@ def check_ports(plan: Plan) -> None:
         )
 
 
+def taken_ports(ports: Ports) -> list[int]:
+    """Returns the ports of a run that other programs have."""
+    return [port for port in range(ports.base, ports.end) if not _is_free(port, port in ports.members)]
+
+
 def advice(plan: Plan, cores: int | None = None, free_bytes: int | None = None) -> list[str]:
     """Returns a line for each resource of which the machine has too little for real time; the run still starts."""
-    cores = cores or len(os.sched_getaffinity(0))
+    cores = cores or usable_cores()
     free_bytes = free_bytes or _free_bytes()
     hosts = len(plan.hosts)
     remedy = fewer_processes(plan)
@@ -100,13 +105,19 @@ def _check_files(plan: Plan) -> None:
 
 
 def _check_loopback() -> None:
-    advice = "type: sudo ip link set lo up multicast on"
+    if mistake := loopback_mistake():
+        raise MachineError(f"no IPv4 multicast on the interface lo: {mistake[0]}; type: {mistake[1]}")
+
+
+def loopback_mistake() -> tuple[str, str] | None:
+    """Returns why the interface lo has no IPv4 multicast, and the command that helps; None: lo has multicast."""
+    advice = "sudo ip link set lo up multicast on"
     try:
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             if _is_up("lo", probe):
-                advice = f"type: sudo ip address add {LOOPBACK}/8 dev lo"
+                advice = f"sudo ip address add {LOOPBACK}/8 dev lo"
                 probe.bind((LOOPBACK, 0))
-                advice = "type: sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo"
+                advice = "sudo ip link set lo multicast on; sudo ip route add 224.0.0.0/4 dev lo"
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
             membership = socket.inet_aton(GROUP) + socket.inet_aton(LOOPBACK)
             probe.setsockopt(socket.IPPROTO_IP, socket.IP_ADD_MEMBERSHIP, membership)
@@ -114,8 +125,11 @@ def _check_loopback() -> None:
             probe.setsockopt(socket.IPPROTO_IP, socket.IP_MULTICAST_TTL, 0)
             probe.bind((LOOPBACK, 0))
             probe.sendto(b"", (GROUP, probe.getsockname()[1]))
+    except PermissionError:
+        return "a firewall forbids datagrams", THROUGH_FIREWALL
     except OSError as error:
-        raise MachineError(f"no IPv4 multicast on the interface lo: {error.strerror}; {advice}") from error
+        return str(error.strerror), advice
+    return None
 
 
 def _is_up(interface: str, any_socket: socket.socket) -> bool:

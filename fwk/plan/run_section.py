@@ -65,14 +65,19 @@ def _types() -> list[str]:
     return [f"{file.parent.name}.{file.stem}" for entry in lcmtypes.__path__ for file in Path(entry).glob("*/*_t.py")]
 
 
+def default_public_url(bus_port: int | None) -> str:
+    """Returns the URL of the public bus of a run with this bus port, where no file sets another."""
+    moved = 0 if bus_port is None else bus_port - Plan.bus_port
+    port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # wraps around
+    return Plan.public_url.replace(f":{_PUBLIC_PORT}", f":{port}")
+
+
 def public_url_of(files: Files, problems: Problems, bus_port: int | None) -> str:
     """Returns the URL of the public bus, with a receive buffer that is large enough for bursts; empty: no public bus.
 
     Where no file sets the URL, its port moves with the bus port, so that two runs do not hear each other.
     """
-    moved = 0 if bus_port is None else bus_port - Plan.bus_port
-    port = _PORTS[(_PUBLIC_PORT - _PORTS[0] + moved) % len(_PORTS)]  # wraps around
-    url: str = last(files, "public_url", Plan.public_url.replace(f":{_PUBLIC_PORT}", f":{port}"))
+    url: str = last(files, "public_url", default_public_url(bus_port))
     if not url:
         return ""
     if not url.startswith(_URL):

@@ -1,5 +1,6 @@
 """Checks of installation, processes, clock and disk, and of a plan on this machine."""
 
+import errno
 import os
 import re
 import tempfile
@@ -10,9 +11,10 @@ from pathlib import Path
 import psutil
 
 import lcmtypes
-from fwk.cli.check.machine_checks import Finding, Severity
+from fwk.cli.check.findings import Finding, Severity
 from fwk.cli.run.run_directory import RUNS
 from fwk.clock import US_PER_S, monotonic_us, wall_us
+from fwk.display.cores import usable_cores
 from fwk.display.plan_overview import counted, fewer_processes
 from fwk.lcm.typegen import stale_types
 from fwk.model.plan import Plan
@@ -63,9 +65,13 @@ def _parts(version: str) -> list[int]:
 
 
 def stale_files(folders: Iterable[str] | None = None) -> Finding:
-    """Checks that the classes of message types are those of their .lcm files; by default those of all in use."""
+    """Checks that the classes of message types are those of their .lcm files.
+
+    By default these are all types in use, and those of the project in the present folder.
+    """
     subject = "message types"
-    old = [each for folder in (lcmtypes.__path__ if folders is None else folders) for each in stale_types(Path(folder))]
+    searched = dict.fromkeys(map(os.path.abspath, [*lcmtypes.__path__, "lcmtypes"] if folders is None else folders))
+    old = [each for folder in searched for each in stale_types(Path(folder))]
     if old:
         text = f"the classes of {', '.join(str(each) for each in old[:3])} are not those of the file"
         parents = " ".join(dict.fromkeys(str(each.parent) for each in old))
@@ -108,10 +114,12 @@ def clock(source: Path = _CLOCK_SOURCE, now_us: Callable[[], int] = wall_us) -> 
         )
     name = source.read_text().strip() if source.is_file() else ""
     if name and name not in _FAST_CLOCKS:
-        advice = f"echo tsc | sudo tee {source}"
-        return Finding(
-            Severity.WARNING, subject, f"the kernel reads '{name}', which is slow: ticks take longer", advice
-        )
+        text = f"the kernel reads '{name}', which is slow: ticks take longer"
+        available = source.with_name("available_clocksource")
+        offered = available.read_text().split() if available.is_file() else []
+        fast = next((each for each in _FAST_CLOCKS if each in offered), "")
+        advice = f"echo {fast} | sudo tee {source}" if fast else "sudo dmesg | grep -i clocksource"
+        return Finding(Severity.WARNING, subject, text if fast else f"{text}, and it offers no faster one", advice)
     return Finding(Severity.OK, subject, f"set, read from {name}" if name else "set")
 
 
@@ -128,7 +136,7 @@ def disk(folder: Path | None = None, now_us: Callable[[], int] = monotonic_us) -
             os.fsync(file.fileno())
             seconds = max(now_us() - began, 1) / US_PER_S
     except OSError as error:
-        return Finding(Severity.BAD, subject, f"{error.strerror}: nothing is recorded", f"df -h {there}")
+        return Finding(Severity.BAD, subject, f"{error.strerror}: nothing is recorded", _disk_advice(error, there))
     rate = _DISK_BYTES / seconds
     text = f"writes {rate / (1 << 20):.0f} MiB/s"
     if rate < _DISK_BYTES_PER_S:
@@ -137,18 +145,21 @@ def disk(folder: Path | None = None, now_us: Callable[[], int] = monotonic_us) -
     return Finding(Severity.OK, subject, text)
 
 
+def _disk_advice(error: OSError, folder: Path) -> str:
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return f"fwk runs prune --keep 10; if it is still full: du -xh {folder} | sort -h | tail"
+    if error.errno == errno.EROFS:
+        return f"sudo mount -o remount,rw $(findmnt -no TARGET --target {folder})"
+    return f"sudo chown $USER {folder}; chmod u+rwx {folder}"
+
+
 def cores(plan: Plan, count: int | None = None) -> Finding:
     """Checks that the machine has enough cores for the processes of a plan."""
-    cores_ = count or len(os.sched_getaffinity(0))
+    cores_ = count or usable_cores()
     text = f"{counted(len(plan.hosts), 'process', 'processes')} on {counted(cores_, 'core')}"
-    if len(plan.hosts) > _PROCESSES_PER_CORE * cores_:
+    most = _PROCESSES_PER_CORE * cores_
+    if len(plan.hosts) > most:
         slow = "late components in real time" if plan.clock == "wall" else "slow ticks"
-        return Finding(
-            Severity.WARNING, f"cores for {plan.name}", f"{text}: {slow}", f"fwk-launch FILE {fewer_processes(plan)}"
-        )
+        advice = f"fwk-launch FILE {fewer_processes(plan, most)}"
+        return Finding(Severity.WARNING, f"cores for {plan.name}", f"{text}: {slow}", advice)
     return Finding(Severity.OK, f"cores for {plan.name}", text)
-
-
-def system_checks(plan: Plan | None) -> list[Callable[[], Finding]]:
-    """Returns the checks of this module; with a plan, also that of its processes."""
-    return [versions, stale_files, orphans, clock, disk, *([lambda: cores(plan)] if plan else [])]

@@ -1,5 +1,6 @@
 """`fwk doctor` finds problems of a machine, and its advice helps."""
 
+import errno
 import os
 import resource
 import socket
@@ -12,9 +13,10 @@ import typer
 from typer.testing import CliRunner
 
 from fwk.bus.port_lock import PortLock
-from fwk.cli.check import machine_checks as checks
+from fwk.bus.sockets import GROUP
+from fwk.cli.check import machine_checks, network_checks
 from fwk.cli.check.doctor import doctor
-from fwk.cli.check.machine_checks import Finding, Severity
+from fwk.cli.check.findings import Finding, Severity
 from fwk.model.ports import Ports
 from tests.harness.runs import PortBlock
 
@@ -23,35 +25,51 @@ DOCTOR = [sys.executable, "-c", "import typer; from fwk.cli.check.doctor import 
 
 def test_ports_of_another_run_are_named(ports: PortBlock) -> None:
     wanted = Ports(ports.bus, 3, 4)
-    assert checks.ports(wanted).level is Severity.OK
+    assert network_checks.ports(wanted).level is Severity.OK
     lock = PortLock(wanted, "other")
     try:
-        found = checks.ports(wanted)
+        found = network_checks.ports(wanted)
+        advised = int(found.advice.removeprefix("fwk-launch FILE --bus-port "))
+        assert network_checks.ports(Ports(advised, 3, 4)).level is Severity.OK
     finally:
         lock.release()
     assert found.level is Severity.WARNING
-    assert "are used by another run" in found.text
-    assert checks.ports(wanted).level is Severity.OK
+    assert found.text.startswith(f"used by another run (pid {os.getpid()}: ")
+    assert network_checks.ports(wanted).level is Severity.OK
 
 
 def test_ports_of_other_programs_are_named(ports: PortBlock) -> None:
+    wanted = Ports(ports.bus, 3, 4)
+    for address, port in (("127.0.0.1", wanted.supervisor), (GROUP, wanted.stage(0))):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind((address, port))
+            found = network_checks.ports(wanted)
+        assert found.level is Severity.WARNING
+        assert found.text.startswith(f"other programs use {port} (pid {os.getpid()}: ")
+        assert found.advice.startswith("fwk-launch FILE --bus-port ")
+
+
+def test_a_taken_port_of_the_public_bus_is_named(ports: PortBlock) -> None:
+    url, wanted = f"udpm://{GROUP}:{ports.bus}?ttl=0", Ports(ports.bus + 1, 1, 1)
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
-        taken.bind(("127.0.0.1", ports.bus + 2))
-        found = checks.ports(Ports(ports.bus, 3, 4))
-    assert (found.level, found.text) == (Severity.WARNING, f"other programs use {ports.bus + 2}")
-    assert found.advice.startswith("fwk-launch FILE --bus-port ")
+        taken.bind(("0.0.0.0", ports.bus))
+        found = network_checks.public_bus(url, wanted)
+    assert found.level is Severity.BAD
+    assert found.text.startswith(f"another program has UDP port {ports.bus} for itself (pid {os.getpid()}: ")
+    assert network_checks.public_bus(url, wanted).level is Severity.OK
+    assert network_checks.public_bus("", wanted).level is Severity.OK
 
 
 def test_missing_java_is_a_warning(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("PATH", "")
-    assert checks.java() == Finding(
+    assert machine_checks.java() == Finding(
         Severity.WARNING, "Java", "no java, javac: 'fwk spy' does not work", "sudo apt install default-jdk"
     )
 
 
 def test_small_buffers_and_few_files_are_warnings(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(checks, "BUFFER_BYTES", 1 << 30)
-    found = checks.receive_buffers()
+    monkeypatch.setattr(network_checks, "BUFFER_BYTES", 1 << 30)
+    found = network_checks.receive_buffers()
     assert (found.level, found.advice.split(";")[0]) == (
         Severity.WARNING,
         "sudo sysctl -w net.core.rmem_max=1073741824",
@@ -59,22 +77,42 @@ def test_small_buffers_and_few_files_are_warnings(monkeypatch: pytest.MonkeyPatc
     limit, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     resource.setrlimit(resource.RLIMIT_NOFILE, (256, hard))
     try:
-        few = checks.open_files()
+        few = machine_checks.open_files()
     finally:
         resource.setrlimit(resource.RLIMIT_NOFILE, (limit, hard))
     assert few == Finding(
         Severity.WARNING, "open files", "256 a process: large launch files need 1024", "ulimit -n 1024"
     )
+    monkeypatch.setattr(resource, "getrlimit", lambda _: (256, 256))
+    assert machine_checks.open_files().advice == "sudo prlimit --pid $$ --nofile=1024"
+
+
+def test_a_firewall_is_told_from_a_missing_route(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refused(code: int) -> None:
+        def send(*_: object) -> int:
+            raise OSError(code, os.strerror(code))
+
+        monkeypatch.setattr("socket.socket.sendto", send)
+
+    refused(errno.EPERM)
+    for check in (network_checks.multicast_loopback, network_checks.multicast_route):
+        found = check()
+        assert "a firewall forbids datagrams" in found.text
+        assert found.advice.startswith(f"sudo iptables -I INPUT -d {GROUP} ")
+    refused(errno.ENETUNREACH)
+    found = network_checks.multicast_route()
+    assert found.level is Severity.WARNING  # a run then uses the interface lo
+    assert found.text.startswith(f"no route to {GROUP} (Network is unreachable): ")
 
 
 def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.MonkeyPatch) -> None:
     def refused(name: str) -> int:
         raise OSError(38, "Function not implemented")
 
-    monkeypatch.setattr(checks, "lcm_gen", lambda: "/bin/false")
+    monkeypatch.setattr(machine_checks, "lcm_gen", lambda: "/bin/false")
     monkeypatch.setattr(os, "memfd_create", refused)
-    assert checks.generator().level is Severity.BAD
-    assert checks.shared_memory() == Finding(
+    assert machine_checks.generator().level is Severity.BAD
+    assert machine_checks.shared_memory() == Finding(
         Severity.BAD, "shared memory (memfd)", "Function not implemented: cameras do not work"
     )
 
@@ -82,8 +120,7 @@ def test_a_broken_generator_and_no_shared_memory_are_bad(monkeypatch: pytest.Mon
 @pytest.mark.parametrize(("level", "code"), [(Severity.OK, 0), (Severity.WARNING, 0), (Severity.BAD, 1)])
 def test_only_problems_that_stop_runs_are_failures(monkeypatch: pytest.MonkeyPatch, level: Severity, code: int) -> None:
     found = [lambda: Finding(level, "gears", "turning", "oil them" if code else "")]
-    monkeypatch.setattr("fwk.cli.check.doctor.all_checks", lambda wanted: found)
-    monkeypatch.setattr("fwk.cli.check.doctor.system_checks", lambda plan: [])
+    monkeypatch.setattr("fwk.cli.check.doctor._checks", lambda *_: found)
     app = typer.Typer()
     app.command()(doctor)
     result = CliRunner().invoke(app, [])
@@ -105,7 +142,8 @@ def test_missing_multicast_is_found_and_the_advice_helps(
         line.split("type: ")[1].replace("sudo ", "") for line in sick.stdout.splitlines() if "type: sudo ip" in line
     ]
     assert len(advice) == 2
-    assert "bad      multicast by route (public bus): " in sick.stdout
+    assert "bad      multicast on lo (inner buses): " in sick.stdout
+    assert "warning  multicast by route (public bus): no route to " in sick.stdout
     script = "; ".join([*advice, 'exec "$@"'])
     well = subprocess.run(
         [*without_network, "sh", "-c", script, "sh", *DOCTOR], capture_output=True, text=True, check=False

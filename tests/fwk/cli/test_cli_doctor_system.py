@@ -1,8 +1,11 @@
 """`fwk doctor` finds trouble with libraries, types, processes, clock, disk and cores; each trouble is produced."""
 
+import errno
 import os
 from pathlib import Path
 from types import SimpleNamespace
+from typing import cast
+from unittest.mock import Mock
 
 import pytest
 import typer
@@ -10,8 +13,10 @@ from typer.testing import CliRunner
 
 from fwk.cli.check import system_checks as checks
 from fwk.cli.check.doctor import doctor
-from fwk.cli.check.machine_checks import Finding, Severity
+from fwk.cli.check.findings import Finding, Severity
+from fwk.display.cores import usable_cores
 from fwk.lcm.typegen import generate
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
 from tests.harness.components import sources
 from tests.harness.runs import write_files
@@ -25,7 +30,7 @@ def test_missing_and_old_libraries_are_named() -> None:
     assert found.advice == "pip install --upgrade 'lcm>=99.1' no-such-library"
 
 
-def test_classes_of_an_older_file_are_found_and_mended(tmp_path: Path) -> None:
+def test_classes_of_an_older_file_are_found_and_mended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write_files(tmp_path, sources("lcmtypes/walk.lcm"))
     folder = tmp_path / "lcmtypes"
     generate(folder)
@@ -34,6 +39,8 @@ def test_classes_of_an_older_file_are_found_and_mended(tmp_path: Path) -> None:
     found = checks.stale_files([str(folder)])
     assert (found.level, found.advice) == (Severity.WARNING, f"python -m fwk.lcm.typegen {folder}")
     assert str(folder / "walk.lcm") in found.text
+    monkeypatch.chdir(tmp_path)
+    assert checks.stale_files() == found
     generate(folder)
     assert checks.stale_files([str(folder)]).level is Severity.OK
 
@@ -60,10 +67,15 @@ def test_a_padded_title_of_a_supervisor_is_its_own(monkeypatch: pytest.MonkeyPat
 
 def test_a_slow_clock_and_a_wrong_date_are_found(tmp_path: Path) -> None:
     source = tmp_path / "current_clocksource"
+    available = tmp_path / "available_clocksource"
+    available.write_text("hpet kvm-clock acpi_pm\n")
     for name, level in (("tsc\n", Severity.OK), ("hpet\n", Severity.WARNING)):
         source.write_text(name)
         assert checks.clock(source).level is level
     assert "'hpet', which is slow" in checks.clock(source).text
+    assert checks.clock(source).advice == f"echo kvm-clock | sudo tee {source}"
+    available.unlink()
+    assert checks.clock(source).text.endswith("it offers no faster one")
     assert checks.clock(tmp_path / "none").text == "set"
     assert "before 2025" in checks.clock(source, lambda: 0).text
 
@@ -75,11 +87,16 @@ def test_a_slow_or_full_disk_is_found(tmp_path: Path, monkeypatch: pytest.Monkey
     slow = checks.disk(tmp_path, lambda: next(times))
     assert (slow.level, slow.text.split(":")[0]) == (Severity.WARNING, "writes 1 MiB/s")
 
-    def full(_descriptor: int) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(os, "fsync", full)
-    assert checks.disk(tmp_path).text == "No space left on device: nothing is recorded"
+    for code, text, advice in (
+        (errno.ENOSPC, "No space left on device", "fwk runs prune --keep 10; "),
+        (errno.EROFS, "Read-only file system", "sudo mount -o remount,rw "),
+        (errno.EACCES, "Permission denied", "sudo chown $USER "),
+    ):
+        refused = OSError(code, text)
+        monkeypatch.setattr(os, "fsync", Mock(side_effect=refused))
+        found = checks.disk(tmp_path)
+        assert (found.level, found.text) == (Severity.BAD, f"{text}: nothing is recorded")
+        assert found.advice.startswith(advice)
 
 
 def test_too_few_cores_for_a_plan_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -91,8 +108,32 @@ def test_too_few_cores_for_a_plan_are_found(tmp_path: Path, monkeypatch: pytest.
     found = checks.cores(plan, 1)
     assert (found.level, found.text) == (Severity.WARNING, "9 processes on 1 core: late components in real time")
     assert found.advice == "fwk-launch FILE --hosting single"
+    many = SimpleNamespace(hosts=plan.hosts * 4, components=plan.components, name="many", clock="logical")
+    assert checks.cores(cast(Plan, many), 2).advice == "fwk-launch FILE --hosting robot"
+    assert checks.cores(cast(Plan, many), 1).advice == "fwk-launch FILE --hosting single"
     monkeypatch.chdir(tmp_path)
     app = typer.Typer()
     app.command()(doctor)
     assert "cores for many: 9 processes on " in CliRunner().invoke(app, ["many.yaml"]).stdout
     assert CliRunner().invoke(app, ["few.yaml"]).exit_code == 2
+    assert "cores for many: 1 process on " in CliRunner().invoke(app, ["many.yaml", "--hosting", "single"]).stdout
+    record = CliRunner().invoke(app, ["--record", str(tmp_path / "log.lcm")])
+    assert f"disk of {tmp_path}: writes " in record.stdout
+
+
+@pytest.mark.parametrize(
+    ("line", "files", "cores"),
+    [
+        ("0::/box", {"box/cpu.max": "50000 100000\n"}, 1),
+        ("0::/box/inner", {"box/inner/cpu.max": "max 100000\n", "box/cpu.max": "150000 100000\n"}, 2),
+        ("1:cpu,cpuacct:/box", {"cpu/box/cpu.cfs_quota_us": "90000\n", "cpu/box/cpu.cfs_period_us": "100000\n"}, 1),
+        ("1:cpu:/", {"cpu/cpu.cfs_quota_us": "-1\n", "cpu/cpu.cfs_period_us": "100000\n"}, 8),
+        ("4:memory:/box", {}, 8),
+    ],
+)
+def test_cores_that_a_control_group_grants_are_counted(
+    line: str, files: dict[str, str], cores: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: range(8))
+    write_files(tmp_path, {**files, "groups": f"{line}\n"})
+    assert usable_cores(tmp_path / "groups", tmp_path) == cores
