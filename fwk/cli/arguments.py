@@ -48,7 +48,7 @@ class SeveralNames(TyperCommand):
         return result
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
-        """Writes the help with its paragraphs as wide as the terminal; brackets, as in `fwk[plot]`, are no markup."""
+        """Writes the help with its paragraphs as wide as the terminal; brackets, as in `fwk[plot]`, are not markup."""
         text = self.help
         self.help = _LINE_END.sub(" ", text or "").replace("[", "\\[")
         try:

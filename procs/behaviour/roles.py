@@ -68,7 +68,7 @@ def assign(view: View, field: Field) -> dict[str, Job]:
 def receiver(team: Sequence[Robot], view: View) -> Robot | None:
     """Returns the robot of the team for which an agreed pass is on its way; None without one.
 
-    The passer says that it has passed, so that noise of the ball's velocity is no pass.
+    The passer says that it has passed, so that noise of the ball's velocity does not count as a pass.
     """
     if view.ball.speed_m_s < _ROLLS_M_S or taken(view):
         return None
