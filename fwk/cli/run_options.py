@@ -8,8 +8,9 @@ import typer
 
 from fwk.cli.arguments import seconds
 from fwk.cli.output import notice
-from fwk.control import client
-from fwk.control.client import RUN_VARIABLE, ControlError, RefusedError
+from fwk.control import client, runs
+from fwk.control.client import ControlError, RefusedError
+from fwk.control.runs import RUN_VARIABLE
 
 FAILED = 1
 BAD_INPUT = 2
@@ -64,5 +65,5 @@ def ask(chosen: str | int | None, verb: str, timeout_s: float | None = None, **f
     Raises:
         ControlError: refused, or no answer.
     """
-    with client.supervisor(chosen) as run:
+    with runs.supervisor(chosen) as run:
         return run.ask(verb, timeout_s, **fields)

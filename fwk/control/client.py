@@ -1,8 +1,7 @@
-"""Client side of the control sockets: finds a run and sends it requests. Imports nothing heavy."""
+"""Client side of the control sockets: sends requests to a run. Imports nothing heavy."""
 
 import contextlib
 import json
-import os
 import socket
 from collections.abc import Callable, Iterator
 from contextvars import ContextVar
@@ -12,19 +11,14 @@ from fwk.clock import US_PER_S, monotonic_us
 from fwk.control import address
 
 TIMEOUT_S = 5.0
-RUN_VARIABLE = "FWK_RUN"
-"""Environment variable that names the run that commands use by default."""
 _CHUNK = 64 << 10
 _DESCRIPTORS_MAX = 4
 _ANSWER_MAX_BYTES = 64 << 20
-_LOOK_S = 1.0
+LOOK_S = 1.0
+"""Time that a run has to say something about itself."""
 _NOTICE_US = US_PER_S
-_TOGETHER = 64
-"""Number of runs that are asked at a time."""
 notice: ContextVar[Callable[[str], None] | None] = ContextVar("notice", default=None)
 """Takes a text about a request that has had no answer for a second; without it, such requests wait silently."""
-_NEEDED = frozenset(("name", "plan", "pid"))
-"""Keys of the answer by which a run is chosen."""
 
 
 class ControlError(Exception):
@@ -180,9 +174,9 @@ class Client:
     def _waits_for(self) -> list[str]:
         """Returns the components that the main loop waits for, as its supervisor says on another connection."""
         try:
-            with Client(address.supervisor_beside(self._address), _LOOK_S) as other:
+            with Client(address.supervisor_beside(self._address), LOOK_S) as other:
                 other.send("status")
-                found: list[str] = other.answer(monotonic_us() + round(_LOOK_S * US_PER_S)).get("waits_for", [])
+                found: list[str] = other.answer(monotonic_us() + round(LOOK_S * US_PER_S)).get("waits_for", [])
                 return found
         except (ControlError, TimeoutError, EOFError):
             return []
@@ -198,111 +192,3 @@ class _Answer(dict[str, Any]):
 def _plain(text: str) -> str:
     """Replaces characters that would steer the terminal."""
     return "".join(each if each.isprintable() or each == "\n" else "�" for each in text)
-
-
-def look() -> dict[int, dict[str, Any]]:
-    """Returns what each run says about itself, and the user number of its owner, by bus port; runs that do not answer
-    in a second have no entry. Root sees the runs of all users.
-    """
-    ports = address.running()
-    found: dict[int, dict[str, Any]] = {}
-    for first in range(0, len(ports), _TOGETHER):
-        found |= _asked(ports[first : first + _TOGETHER])
-    return found
-
-
-def _asked(ports: list[int]) -> dict[int, dict[str, Any]]:
-    """Asks several runs at once, so that silent ones cost no more time than one."""
-    clients: dict[int, Client] = {}
-    found: dict[int, dict[str, Any]] = {}
-    with contextlib.ExitStack() as stack:
-        for port in ports:
-            with contextlib.suppress(ControlError):
-                clients[port] = stack.enter_context(Client(address.supervisor_address(port), _LOOK_S))
-                clients[port].send("run")
-        end_us = monotonic_us() + round(_LOOK_S * US_PER_S)
-        for port, client in clients.items():
-            with contextlib.suppress(ControlError, TimeoutError, EOFError):
-                run = client.answer(end_us)
-                if run.keys() >= _NEEDED:
-                    found[port] = {**run, "owner": client.uid}
-    return found
-
-
-def states() -> list[dict[str, Any]]:
-    """Returns the status of each run, with the number of its components in their place; a run that does not answer has
-    only its port.
-    """
-    return [_state(port) for port in sorted(look())]
-
-
-def _state(port: int) -> dict[str, Any]:
-    with contextlib.suppress(ControlError), Client(address.supervisor_address(port), _LOOK_S) as run:
-        status = run.ask("status")
-        found = [each["state"] for each in status.pop("components")]
-        return {**status, "components": len(found), "failed": found.count("failed"), "answers": True}
-    return {"bus_port": port, "answers": False}
-
-
-def find_run(chosen: str | int | None) -> int:
-    """Returns the bus port of a run: the one with that name or bus port, else the one that FWK_RUN names, else the only
-    one.
-
-    Raises:
-        RefusedError: no run, or more than one, has that name; or several runs exist and none is named.
-        ControlError: no run exists.
-    """
-    if chosen == "":
-        raise RefusedError("a run has a name or a bus port, not ''; 'fwk ps' lists the runs")
-    wanted = str(chosen if chosen is not None else os.environ.get(RUN_VARIABLE, ""))
-    by_port = {str(port): port for port in address.running()}
-    if wanted in by_port:
-        return by_port[wanted]
-    if not wanted and len(ports := address.running()) == 1:
-        return ports[0]
-    runs = _preferred(look(), wanted)
-    if wanted:
-        ports = [port for port, run in runs.items() if wanted in (run.get("name"), str(port))]
-        if len(ports) == 1:
-            return ports[0]
-        if ports:
-            raise RefusedError(f"several runs are called '{wanted}'; name one by its port: {_listed(runs, ports)}")
-        others = f"; there is {_listed(runs, list(runs))}" if runs else ""
-        raise RefusedError(f"no run '{wanted}' on this machine{others}")
-    if not runs:
-        raise ControlError("nothing runs on this machine; start something with: fwk-launch FILE")
-    if len(runs) > 1:
-        raise RefusedError(f"several runs on this machine; choose one: {_listed(runs, list(runs))}")
-    (port,) = runs
-    return port
-
-
-def _preferred(runs: dict[int, dict[str, Any]], wanted: str) -> dict[int, dict[str, Any]]:
-    """Returns the user's own runs if one of them can be meant, else the runs of all users, which only root sees."""
-    own = {port: run for port, run in runs.items() if run.get("owner") == os.geteuid()}
-    return own if any(not wanted or run["name"] == wanted for run in own.values()) else runs
-
-
-def supervisor(chosen: str | int | None) -> Client:
-    """Connects to the supervisor of a run.
-
-    Raises:
-        ControlError: as `find_run`.
-    """
-    return Client(address.supervisor_address(find_run(chosen)))
-
-
-def gateway(chosen: str | int | None) -> Client:
-    """Connects to the gateway of a run.
-
-    Raises:
-        ControlError: as `find_run`.
-    """
-    return Client(address.gateway_address(find_run(chosen)))
-
-
-def _listed(runs: dict[int, dict[str, Any]], ports: list[int]) -> str:
-    names = [run.get("name", "") for run in runs.values()]
-    own = {port: runs[port].get("name", "") for port in ports}
-    words = {port: name if name and names.count(name) == 1 else port for port, name in own.items()}
-    return " or ".join(f"--run {word} ({runs[port]['plan']}, pid {runs[port]['pid']})" for port, word in words.items())

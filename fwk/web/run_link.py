@@ -7,7 +7,7 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.address import gateway_address, supervisor_address
 from fwk.control.client import Client, ControlError, RefusedError
 from fwk.lcm import envelope, messages
@@ -36,7 +36,7 @@ class NotRunningError(ControlError):
 class Runs:
     """All runs of this user on this machine."""
 
-    def __init__(self, shared: Shared, look: Callable[[], dict[int, dict[str, Any]]] = client.look) -> None:
+    def __init__(self, shared: Shared, look: Callable[[], dict[int, dict[str, Any]]] = runs.look) -> None:
         self._shared = shared
         self._look = look
         self._links: dict[str, RunLink] = {}

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from fwk.cli.index import Command, Parameter, read, subcommands
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.client import ControlError
 
 _TIMEOUT_S = 3.0  # a busy machine answers slowly
@@ -108,7 +108,7 @@ def _assignments(chosen: str | None) -> Iterable[str]:
 
 
 def _channels(chosen: str | None) -> Iterable[str]:
-    with client.gateway(chosen) as gateway:
+    with runs.gateway(chosen) as gateway:
         return [row["channel"] for row in gateway.ask("channels", _TIMEOUT_S)["channels"]]
 
 
@@ -117,7 +117,7 @@ def _commands(chosen: str | None) -> Iterable[str]:
 
 
 def _runs(_: str | None) -> Iterable[str]:
-    return (str(run.get("name") or port) for port, run in client.look().items())
+    return (str(run.get("name") or port) for port, run in runs.look().items())
 
 
 def _recordings(_: str | None) -> Iterable[str]:
@@ -130,7 +130,7 @@ def _launch_files(_: str | None) -> Iterable[str]:
 
 
 def _ask(chosen: str | None, verb: str) -> dict[str, Any]:
-    with client.supervisor(chosen) as run:
+    with runs.supervisor(chosen) as run:
         return run.ask(verb, _TIMEOUT_S)
 
 

@@ -12,7 +12,7 @@ from fwk.cli.look.channel_rates import channels_with_rates
 from fwk.cli.output import BAD_INPUT, say_table
 from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import US_PER_S
-from fwk.control import client
+from fwk.control import runs
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
 
@@ -56,7 +56,7 @@ def show(
     as_json: Json = False,
 ) -> None:
     """Shows a channel's newest message, field by field; long arrays are shortened, except with --json or --all."""
-    with asking(), client.gateway(chosen) as run:
+    with asking(), runs.gateway(chosen) as run:
         answer = run.ask("show", channel=channel)
     typer.echo(json.dumps(answer, indent=2) if as_json else "\n".join(_message(answer, whole)))
 
@@ -79,7 +79,7 @@ def watch(
     A reader that is slower than the channel misses messages; their number is shown. `--json` prints a line for each
     message. With `--field` a line has tick, logical time and the values of these fields.
     """
-    with asking(), client.gateway(chosen) as run:
+    with asking(), runs.gateway(chosen) as run:
         for seen, answer in enumerate(run.follow("watch", channel=channel), 1):
             if fields and answer["value"] is not None:
                 typer.echo(_field_line(answer, fields, as_json))

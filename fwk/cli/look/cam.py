@@ -13,7 +13,7 @@ from fwk.cli.look.recorded_pictures import Recorded
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.run_options import BAD_INPUT, Json, RunChoice, ask, asking
 from fwk.component.images import Ring
-from fwk.control import client
+from fwk.control import runs
 from fwk.model.errors import hint
 
 FRAME_TYPE = "core.frame_t"
@@ -73,7 +73,7 @@ def cam(
 
 
 def _cameras(chosen: str | None) -> list[dict[str, Any]]:
-    with asking(), client.gateway(chosen) as run:
+    with asking(), runs.gateway(chosen) as run:
         rows = [row for row in run.ask("channels")["channels"] if row["type"] == FRAME_TYPE]
     if not rows:
         fail("the run has no cameras")

@@ -3,7 +3,7 @@
 from typing import Any
 
 from fwk.clock import US_PER_S, monotonic_us, sleep_s
-from fwk.control import client
+from fwk.control import runs
 
 _RATE_S = 1.0
 
@@ -14,7 +14,7 @@ def channels_with_rates(chosen: str | None) -> list[dict[str, Any]]:
     Raises:
         ControlError: no run, or no answer.
     """
-    with client.gateway(chosen) as run:
+    with runs.gateway(chosen) as run:
         before, began_us = run.ask("channels")["channels"], monotonic_us()
         sleep_s(_RATE_S)
         rows, elapsed_us = run.ask("channels")["channels"], monotonic_us() - began_us

@@ -12,8 +12,8 @@ from fwk.cli.output import FAILED
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.cli.run_options import asking
 from fwk.clock import US_PER_S, monotonic_us
-from fwk.control import client
-from fwk.control.client import ControlError
+from fwk.control import runs
+from fwk.control.client import Client, ControlError
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import header_of
 
@@ -35,7 +35,7 @@ def listening(chosen: str | None, instead: str) -> Iterator[tuple[dict[str, Any]
 
     Ends the command if no run answers, or the run has no public bus; `instead` says what helps then.
     """
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         about = run.ask("run")
         for folder in about["folders"]:
             use_folders([folder])
@@ -49,7 +49,7 @@ def listening(chosen: str | None, instead: str) -> Iterator[tuple[dict[str, Any]
             bus.close()
 
 
-def _heard(bus: PublicBus, run: client.Client) -> Iterator[Heard]:
+def _heard(bus: PublicBus, run: Client) -> Iterator[Heard]:
     """Yields messages from now on, until the run ends."""
     look_us = monotonic_us() + _LOOK_US
     while True:

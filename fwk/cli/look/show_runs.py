@@ -5,13 +5,13 @@ from typing import Any
 
 from fwk.cli.output import say, say_table
 from fwk.clock import US_PER_S
-from fwk.control import client
+from fwk.control import runs
 from fwk.display.table import Column, Table
 
 
 def show_runs(as_json: bool) -> int:
     """Prints a row for each run of this user."""
-    found = client.states()
+    found = runs.states()
     if as_json:
         say(json.dumps(found, indent=2))
     elif not found:

@@ -5,7 +5,7 @@ from typing import Any
 
 from fwk.cli.output import say, say_table
 from fwk.clock import US_PER_S, rate_word, turns_word
-from fwk.control import client
+from fwk.control import runs
 from fwk.display.table import Column, Table
 
 _STYLES = {"running": "", "failed": "red", "late": "yellow", "held": "yellow", "stopped": "dim"}
@@ -13,7 +13,7 @@ _STYLES = {"running": "", "failed": "red", "late": "yellow", "held": "yellow", "
 
 def show_status(names: list[str], chosen: str | None, as_json: bool) -> int:
     """Prints the status; for one component alone, everything that is known of it."""
-    with client.supervisor(chosen) as run:
+    with runs.supervisor(chosen) as run:
         answer = run.ask("status", names=names)
         alone = answer["components"][0] if names and len(answer["components"]) == 1 else None
         if alone:

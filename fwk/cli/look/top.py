@@ -15,7 +15,7 @@ from fwk.cli.look.times import TITLES, Since, Stopwatch, stage_table, words
 from fwk.cli.output import say
 from fwk.cli.run_options import Json, RunChoice, asking
 from fwk.clock import sleep_s
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.client import Client
 from fwk.display.table import Column, Table, terminal_width
 
@@ -42,7 +42,7 @@ def top(
     beginning to its end (loop) and to the next one's beginning (cycle). `--json` prints a line
     for each picture, with the histograms: pairs of the longest time that a bucket counts and its count.
     """
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         meter = _Meter(since)
         meter.measure(run)
         sleep_s(interval_s)

@@ -13,7 +13,7 @@ from fwk.cli.run.run_directory import GB, KEEP, RUNS, RunDir, prune, run_dirs
 from fwk.cli.run.run_record import RunRecord, age_s, read_record
 from fwk.cli.run_options import BAD_INPUT, Json
 from fwk.clock import US_PER_S
-from fwk.control import client
+from fwk.control.runs import states
 from fwk.display.table import Column, Table
 from fwk.model.errors import hint
 from fwk.model.sections import RunsPlan
@@ -125,7 +125,7 @@ def _duration(run: RunDir, record: RunRecord) -> str:
 
 def _waiting() -> dict[str, list[str]]:
     """Returns the components that each run of this machine waits for, by run directory."""
-    return {run["run_dir"]: run["waits_for"] for run in client.states() if {"run_dir", "waits_for"} <= run.keys()}
+    return {run["run_dir"]: run["waits_for"] for run in states() if {"run_dir", "waits_for"} <= run.keys()}
 
 
 def _result(run: RunDir, record: RunRecord, waits_for: list[str]) -> str:

@@ -23,7 +23,7 @@ from fwk.cli.run.profile import write_profiles
 from fwk.cli.run.run_directory import GB, RunDirError, make_run_dir, prune
 from fwk.cli.run.run_files import write_run_files
 from fwk.cli.run.run_record import write_result, write_start
-from fwk.control.client import look
+from fwk.control.runs import look
 from fwk.control.server import ControlNameError
 from fwk.display.keys import restore, terminal_settings
 from fwk.display.summary import introduction, summary

@@ -11,8 +11,8 @@ from fwk.cli.look.bb import field_lines
 from fwk.cli.run_options import FAILED, Json, RunChoice, ask, asking
 from fwk.cli.steer.send import made
 from fwk.component.services import ANSWERS
-from fwk.control import client
-from fwk.control.client import RefusedError
+from fwk.control import runs
+from fwk.control.client import Client, RefusedError
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
@@ -70,7 +70,7 @@ def _called(
     name: str, fields: list[str], timeout_s: float, expires_s: float, accepted: bool, chosen: str | None
 ) -> dict[str, Any]:
     """Returns the last answer; after the time-out, the last one until then, with `timed_out`."""
-    with client.gateway(chosen) as gateway:
+    with runs.gateway(chosen) as gateway:
         data = _encoded(gateway, name, fields, chosen)
         last: dict[str, Any] = {}
         for answer in gateway.follow("call", timeout_s, True, name=name, data=data.hex(), expires_s=expires_s):
@@ -82,14 +82,14 @@ def _called(
 
 def _owner(name: str, chosen: str | None) -> str:
     """Returns the component that carries the commands out, with its state."""
-    with client.gateway(chosen) as gateway:
+    with runs.gateway(chosen) as gateway:
         rows = gateway.ask("channels")["channels"]
     owner = next(row["writer"] for row in rows if row["channel"] == f"{name}@{ANSWERS}")
     (component,) = ask(chosen, "status", names=[owner])["components"]
     return f"{owner} is {component['state']}{': ' if component['reason'] else ''}{component['reason']}"
 
 
-def _encoded(gateway: client.Client, name: str, fields: list[str], chosen: str | None) -> bytes:
+def _encoded(gateway: Client, name: str, fields: list[str], chosen: str | None) -> bytes:
     types = {row["channel"]: row["type"] for row in gateway.ask("channels")["channels"]}
     known = {channel.partition("@")[0]: kind for channel, kind in types.items() if channel.endswith(f"@{OUTSIDE}")}
     if name not in known:

@@ -8,8 +8,8 @@ import typer
 from fwk.cli.conditions import pattern
 from fwk.cli.output import say_table
 from fwk.cli.run_options import FAILED, Json, RunChoice, asking
-from fwk.control import client
-from fwk.control.client import ControlError
+from fwk.control import runs
+from fwk.control.client import Client, ControlError
 from fwk.display.table import Column, Table
 
 config = typer.Typer(add_completion=False, no_args_is_help=True)
@@ -105,7 +105,7 @@ def set_settings(
     `--save` first keeps them in NAME.host.yaml beside the launch file NAME.yaml. If that fails, nothing is changed.
     """
     origin, kept_in = "fwk config set", ""
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         if save:
             from fwk.cli.steer.setting_files import keep_beside
 
@@ -132,7 +132,7 @@ def unset(
 
     NAME is the name or pattern that was typed with `fwk config set --save`.
     """
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         from fwk.cli.steer.setting_files import forget_beside
 
         run.ask("settings", names=paths)
@@ -147,11 +147,11 @@ def reload(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json =
     Settings given with --set at the start stay; live changes that were not kept are undone. Settings that cannot be
     changed during a run are named.
     """
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         _take_over(run, names or [], "fwk config reload", as_json)
 
 
-def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool) -> None:
+def _take_over(run: Client, names: list[str], origin: str, as_json: bool) -> None:
     from fwk.cli.steer.setting_files import changed_in
 
     changes, later = changed_in(run.ask("run")["file"], run.ask("settings", names=names)["settings"])
@@ -170,7 +170,7 @@ def _take_over(run: client.Client, names: list[str], origin: str, as_json: bool)
 @config.command()
 def watch(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = False) -> None:
     """Shows each change of a setting as it happens, until the run ends."""
-    with asking(), client.supervisor(chosen) as run:
+    with asking(), runs.supervisor(chosen) as run:
         known: dict[str, Any] = {}
         for answer in run.follow("watch_settings", names=names or []):
             now = {_path(row): row for row in answer["settings"]}
@@ -186,7 +186,7 @@ def watch(names: SomeSettings = None, chosen: RunChoice = None, as_json: Json = 
 def _rows(names: list[str], file: str | None, chosen: str | None) -> list[dict[str, Any]]:
     with asking():
         if file is None:
-            with client.supervisor(chosen) as run:
+            with runs.supervisor(chosen) as run:
                 found: list[dict[str, Any]] = run.ask("settings", names=names)["settings"]
             return found
         from fwk.cli.steer.setting_files import rows_of

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.run_options import BAD_INPUT, FAILED, RunChoice, ask, asking
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.client import ControlError, RefusedError
 from fwk.host.attach import NoPlaceError, Place
 from fwk.host.debugger import LEFT, DebuggerMissingError, DebugRequest, check
@@ -43,7 +43,7 @@ def debug(
     if debugpy and no_debugger:
         raise typer.BadParameter("--debugpy and --no-debugger exclude each other; keep one")
     with asking():
-        port = client.find_run(chosen)
+        port = runs.find(chosen)
         run = ask(port, "run")
         place = _place(run, port, name, no_debugger, debugpy or 0)
     code = run_guarded(place.take, run["pid"])

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from fwk.cli.run_options import FAILED, Json, Names, RunChoice, Timeout, ask, asking
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.client import NoAnswerError, RefusedError
 from fwk.control.requests import Action
 
@@ -104,7 +104,7 @@ def unload(
 def _end_run(chosen: str | None, timeout_s: float, as_json: bool) -> None:
     """Interrupts the process of the run, which the kernel names, and waits until it has ended."""
     with asking():
-        with client.supervisor(chosen) as run:
+        with runs.supervisor(chosen) as run:
             about = run.ask("run")
             if run.pid != about["pid"]:
                 raise RefusedError(f"process {about['pid']} of the run is not visible from here; end it there")

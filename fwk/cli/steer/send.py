@@ -8,7 +8,7 @@ import typer
 
 from fwk.bus.public import PublicBus
 from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.requests import refuse_deep_nesting
 from fwk.lcm import messages
 from fwk.lcm.messages import MessageError
@@ -36,9 +36,9 @@ def send(
     The run stamps the message when it takes it in, between two ticks.
     """
     with asking():
-        with client.gateway(chosen) as board:
+        with runs.gateway(chosen) as board:
             rows = {row["channel"]: row for row in board.ask("channels")["channels"]}
-        with client.supervisor(chosen) as run:
+        with runs.supervisor(chosen) as run:
             about = run.ask("run")
     try:
         row = rows.get(channel)

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 from fwk.cli.commands import app
 from fwk.cli.complete.candidates import complete
-from fwk.control import client
+from fwk.control import runs
 from fwk.control.client import ControlError
 from fwk.control.settings import RunSettings
 
@@ -39,9 +39,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
         chosen.append(name)
         return Run()
 
-    monkeypatch.setattr(client, "supervisor", connect)
-    monkeypatch.setattr(client, "gateway", connect)
-    monkeypatch.setattr(client, "look", lambda: {17700: {"name": "match"}, 18000: {"name": ""}})
+    monkeypatch.setattr(runs, "supervisor", connect)
+    monkeypatch.setattr(runs, "gateway", connect)
+    monkeypatch.setattr(runs, "look", lambda: {17700: {"name": "match"}, 18000: {"name": ""}})
     return chosen
 
 
@@ -113,7 +113,7 @@ def test_without_a_run_there_are_no_names(monkeypatch: pytest.MonkeyPatch) -> No
     def refuse(_: object) -> Run:
         raise ControlError("nothing runs on this machine")
 
-    monkeypatch.setattr(client, "supervisor", refuse)
+    monkeypatch.setattr(runs, "supervisor", refuse)
     assert complete(["fwk", "stop", "c"]) == []
 
 

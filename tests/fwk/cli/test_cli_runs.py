@@ -12,7 +12,6 @@ from typer.testing import CliRunner
 from fwk.cli.recordings.runs import runs
 from fwk.cli.run.run_directory import IN_USE, RUNS, RunDirError, make_run_dir, named, prune, run_dirs
 from fwk.cli.run.run_record import RUN_FILE, write_result
-from fwk.control import client
 from tests.fwk.cli.cli_processes import PROCS, launch, write_files
 
 
@@ -152,7 +151,7 @@ def test_a_result_of_several_lines_is_shown_in_one_row(home: Path) -> None:
 def test_the_list_names_what_a_run_waits_for(home: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     made = make_run_dir("match", home)
     row = {"run_dir": str(made), "waits_for": ["a/b"]}
-    monkeypatch.setattr(client, "states", lambda: [row, {"answers": True, "name": "false"}])
+    monkeypatch.setattr("fwk.cli.recordings.runs.states", lambda: [row, {"answers": True, "name": "false"}])
     assert "waits for a/b" in said("list")
     assert json.loads(said("list", "--json"))[0]["waits_for"] == ["a/b"]
 

@@ -1,91 +1,15 @@
-"""Choice of the run for a command: the named one, the one in FWK_RUN, or the only one."""
+"""Requests to a run, and what programs that are not runs answer."""
 
-import contextlib
 import os
 import re
 import socket
 import threading
-from collections.abc import Callable, Iterator
-from itertools import count
+from collections.abc import Callable
 
 import pytest
 
-from fwk.clock import monotonic_us
 from fwk.control import address, client
-from fwk.control.client import Client, ControlError, RefusedError
-
-_NUMBERS = count()
-RUNS = {1: {"name": "match", "plan": "soccer", "pid": 11}, 2: {"name": "solo", "plan": "soccer", "pid": 22}}
-
-
-@pytest.fixture
-def runs(monkeypatch: pytest.MonkeyPatch) -> dict[int, dict[str, object]]:
-    """The runs that exist; a test may add and remove some."""
-    found: dict[int, dict[str, object]] = {port: dict(run) for port, run in RUNS.items()}
-    monkeypatch.delenv(client.RUN_VARIABLE, raising=False)
-    monkeypatch.setattr(address, "running", lambda: sorted(found))
-    monkeypatch.setattr(client, "look", lambda: found)
-    return found
-
-
-@pytest.mark.parametrize(
-    ("ports", "typed", "answer"),
-    [
-        ([], None, "nothing runs on this machine; start something with: fwk-launch FILE"),
-        ([], "17700", "no run '17700' on this machine"),
-        ([1], "", "a run has a name or a bus port, not ''"),
-        ([1, 2], None, "several runs on this machine; choose one: --run match (soccer, pid 11) or --run solo"),
-        ([1], "2", "no run '2' on this machine; there is --run match (soccer, pid 11)"),
-        ([1], "mach", "no run 'mach' on this machine; there is --run match"),
-    ],
-)
-def test_an_unclear_choice_is_refused(
-    runs: dict[int, dict[str, object]], ports: list[int], typed: str | None, answer: str
-) -> None:
-    for port in set(runs) - set(ports):
-        del runs[port]
-    with pytest.raises(ControlError, match=re.escape(answer)):
-        client.find_run(typed)
-
-
-def test_runs_of_one_name_are_told_apart_by_port(runs: dict[int, dict[str, object]]) -> None:
-    runs[2]["name"] = "match"
-    with pytest.raises(RefusedError, match=r"several runs are called 'match'; .*--run 1 .* or --run 2 "):
-        client.find_run("match")
-
-
-@pytest.mark.parametrize(("typed", "found"), [("solo", 2), ("match", 1), ("2", 2), (2, 2)])
-def test_a_run_is_found_by_name_or_port(runs: dict[int, dict[str, object]], typed: str | int, found: int) -> None:
-    assert client.find_run(typed) == found
-
-
-def test_the_environment_names_the_default_run(
-    runs: dict[int, dict[str, object]], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("FWK_RUN", "solo")
-    assert client.find_run(None) == 2
-    assert client.find_run("match") == 1
-
-
-def test_the_only_run_needs_no_name(runs: dict[int, dict[str, object]]) -> None:
-    del runs[1]
-    assert client.find_run(None) == 2
-
-
-def test_a_run_that_has_just_ended_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(address, "running", lambda: [1])
-    with pytest.raises(ControlError, match="does not answer"):
-        client.supervisor("1")
-
-
-@pytest.fixture
-def bound() -> Iterator[list[socket.socket]]:
-    made: list[socket.socket] = []
-    yield made
-    for each in made:
-        with contextlib.suppress(OSError):  # not connected
-            each.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
-        each.close()
+from fwk.control.client import Client, ControlError
 
 
 def test_socket_names_of_any_bytes_hide_no_run(bound: list[socket.socket]) -> None:
@@ -111,29 +35,6 @@ def test_the_socket_of_another_user_is_not_asked(bound: list[socket.socket], mon
     accepted, _ = squatter.accept()
     assert accepted.recv(100) == b""
     accepted.close()
-
-
-@pytest.fixture
-def fake(bound: list[socket.socket]) -> Callable[[bytes], str]:
-    """Makes the control socket of a program that sends these bytes to every client; returns its address."""
-
-    def make(sent: bytes) -> str:
-        listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
-        bound.append(listening)
-        listening.bind(f"\0fwk-control-test-{os.getpid()}-{next(_NUMBERS)}")  # a waiting thread keeps a closed one
-        listening.listen()
-
-        def serve() -> None:
-            with contextlib.suppress(OSError):
-                while True:
-                    connection, _ = listening.accept()
-                    bound.append(connection)
-                    connection.sendall(sent)
-
-        threading.Thread(target=serve, daemon=True).start()
-        return str(listening.getsockname().decode())
-
-    return make
 
 
 @pytest.mark.parametrize(
@@ -169,7 +70,7 @@ def test_a_request_that_waits_names_what_the_run_waits_for(
     monkeypatch.setattr(client, "_NOTICE_US", 50_000)
     listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     bound.append(listening)
-    listening.bind(f"\0fwk-control-test-{os.getpid()}-{next(_NUMBERS)}")
+    listening.bind(f"\0fwk-control-test-{os.getpid()}-slow")
     listening.listen()
 
     def serve() -> None:
@@ -187,25 +88,6 @@ def test_a_request_that_waits_names_what_the_run_waits_for(
         assert run.ask("pause")["tick"] == 7
     client.notice.reset(before)
     assert said == ["no answer yet; the run waits for a/b"]
-
-
-def test_silent_and_false_runs_hide_no_other(fake: Callable[[bytes], str], monkeypatch: pytest.MonkeyPatch) -> None:
-    real = b'{"ok": true, "name": "match", "plan": "soccer", "pid": 11}\n'
-    sent = [b"", b"[]\n", b"", b'{"ok": true}\n', b" ", real]
-    addresses = dict(enumerate(map(fake, sent)))
-    monkeypatch.setattr(address, "running", lambda: list(addresses))
-    monkeypatch.setattr(address, "supervisor_address", addresses.__getitem__)
-    monkeypatch.setattr(client, "_LOOK_S", 0.2)
-    began_us = monotonic_us()
-    assert list(client.look()) == [5]
-    assert monotonic_us() - began_us < 550_000  # the silent ones are waited for together
-
-
-def test_root_prefers_its_own_run(runs: dict[int, dict[str, object]]) -> None:
-    runs[3] = {**runs[1], "owner": os.geteuid()}
-    assert client.find_run("match") == 3
-    assert client.find_run(None) == 3
-    assert client.find_run("solo") == 2
 
 
 def test_root_may_use_the_runs_of_all_users(monkeypatch: pytest.MonkeyPatch) -> None:

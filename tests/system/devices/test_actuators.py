@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from fwk.control import client
+from fwk.control import runs
 from fwk.model.tick_events import HostLost, HostStopped
 from lcmtypes.core import header_t
 from tests.harness.components import sources
@@ -41,7 +41,7 @@ def drive(match: Steered, ports: PortBlock) -> None:
     """Waits until the robot is fast."""
 
     def fast() -> bool:
-        with client.gateway(ports.bus) as run:
+        with runs.gateway(ports.bus) as run:
             truth = run.ask("show", channel="world/ground_truth")["value"]
         return truth is not None and math.hypot(truth["robots"][0]["vx_m_s"], truth["robots"][0]["vy_m_s"]) > 0.5
 
