@@ -79,6 +79,8 @@ def run_gateway(
     network.run(gateway.serve())
     if dropped := sum(each.dropped for each in recorders):
         unwritten = f"the recording lacks {dropped} messages that could not be written"
+    if cut_bytes := sum(each.cut_bytes for each in recorders):
+        unwritten = f"the recording lacks {cut_bytes} bytes that another program has cut off"
     control.setblocking(True)
     for what, text in ((DELETED, run_files.deleted), (UNWRITTEN, unwritten)):
         if text:

@@ -19,9 +19,8 @@ class RunFiles:
     def __init__(self, options: RunOptions, report: Callable[[str], None]) -> None:
         self.deleted = ""
         """The deleted one, as text; empty: both exist."""
-        self._watched: list[tuple[str, Path]] = [("run directory", options.run_dir)]
-        if options.record and exists(options.record):
-            self._watched.append(("recording", options.record))
+        paths = {"run directory": options.run_dir, "recording": options.record}
+        self._watched = {what: (path, path.stat().st_ino) for what, path in paths.items() if path and path.exists()}
         self._report = report
         self._look_us = 0
 
@@ -40,18 +39,17 @@ class RunFiles:
         self._look()
 
     def _look(self) -> None:
-        for what, path in self._watched if not self.deleted else ():
-            if _is_gone(path):
+        for what, (path, inode) in self._watched.items() if not self.deleted else ():
+            if _is_gone(path, inode):
                 self.deleted = f"the {what} {path} was deleted during the run"
                 self._report(f"{self.deleted}; files written there are lost")
                 return
 
 
-def _is_gone(path: Path) -> bool:
+def _is_gone(path: Path, inode: int) -> bool:
     try:
-        path.stat()
+        return path.stat().st_ino != inode  # another file has taken its place
     except FileNotFoundError:
         return not exists(path)  # a recording may have been compressed
     except OSError:  # it cannot be seen from here, for example for lack of rights
         return False
-    return False

@@ -1,6 +1,7 @@
 """LCM event logs, the files of lcm-logger and lcm-logplayer; damaged files stay readable."""
 
 import fcntl
+import os
 import struct
 from collections.abc import Callable, Iterator
 from io import FileIO
@@ -37,8 +38,8 @@ class LogWriter:
     """Writes a log that lcm-logplayer plays; an existing log is replaced, with all its parts.
 
     While the disk is full, events are dropped and counted in `dropped`; `report` gets a message when this begins and
-    when writing continues, so a recording never stops the run. However the writer ends, the file is readable up to the
-    last `flush`.
+    when writing continues, so a recording never stops the run. If another program shortens the file, `report` gets a
+    message, and the log goes on at the new end. However the writer ends, the file is readable up to the last `flush`.
 
     Raises:
         LogError: the file cannot be created.
@@ -47,6 +48,8 @@ class LogWriter:
     def __init__(self, path: Path, report: Callable[[str], None], buffer_bytes: int = 256 << 10) -> None:
         self.path = path
         self.dropped = 0
+        self.cut_bytes = 0
+        """Size of what another program has cut off the newest part."""
         self.events = 0
         """Number of appended events, including dropped ones."""
         self._report = report
@@ -85,6 +88,7 @@ class LogWriter:
 
     def flush(self) -> None:
         """Passes all appended events to the operating system."""
+        self._check_size()
         if not self._buffered:
             return
         data, events = self._buffer, self._buffered
@@ -142,6 +146,14 @@ class LogWriter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def _check_size(self) -> None:
+        size_bytes = os.fstat(self._file.fileno()).st_size
+        if size_bytes < self._good_bytes:
+            cut_bytes, self._good_bytes = self._good_bytes - size_bytes, size_bytes
+            self._file.seek(size_bytes)
+            self.cut_bytes += cut_bytes
+            self._report(f"{self.newest_part}: another program has cut {cut_bytes} bytes off the recording")
 
     def _write(self, data: bytearray, events: int) -> None:
         rest = memoryview(data)

@@ -90,7 +90,7 @@ class IndexedLogWriter(LogWriter):
             return
         super().close()
         first = existing(self.path)  # may have been compressed by now
-        if self.dropped or not self._end or not first or not first.is_file():
+        if self.dropped or self.cut_bytes or not self._end or not first or not first.is_file():
             return
         if self._end > self._begin:
             self._end_block()

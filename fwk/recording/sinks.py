@@ -50,6 +50,11 @@ class Recorder:
         """Number of messages that could not be written, for example because the disk was full."""
         return self._writer.dropped
 
+    @property
+    def cut_bytes(self) -> int:
+        """Size of what another program has cut off the recording."""
+        return self._writer.cut_bytes
+
     def message(self, channel: str, data: bytes, time_us: int) -> None:
         """Adds a message, unless the recording has reached its limit."""
         if self._is_full:

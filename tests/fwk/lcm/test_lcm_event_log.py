@@ -170,6 +170,25 @@ def test_full_disk_is_reported_once_and_writing_resumes(tmp_path: Path) -> None:
     assert "the disk has room again; 2 messages are missing" in said[1]
 
 
+def test_a_file_that_another_program_cuts_is_named(tmp_path: Path) -> None:
+    reports: list[str] = []
+    with LogWriter(tmp_path / "log", reports.append) as writer:
+        for event in EVENTS[:20]:
+            writer.append(event.channel, event.data, event.time_us)
+        writer.flush()
+        size_bytes, kept_bytes = (tmp_path / "log").stat().st_size, starts(tmp_path / "log")[5]
+        os.truncate(tmp_path / "log", kept_bytes)
+        for event in EVENTS[20:]:
+            writer.append(event.channel, event.data, event.time_us)
+        writer.flush()
+        os.truncate(tmp_path / "log", size_bytes)
+    cut_bytes = size_bytes - kept_bytes
+    assert reports[0] == f"{tmp_path / 'log'}: another program has cut {cut_bytes} bytes off the recording"
+    assert len(reports) == 2
+    assert writer.cut_bytes > cut_bytes
+    assert [*LogReader(tmp_path / "log")][:10] == [*EVENTS[:5], *EVENTS[20:25]]
+
+
 def test_a_disk_full_from_the_beginning_stops_no_process() -> None:
     said: list[str] = []
     writer = LogWriter(Path("/dev/full"), said.append, buffer_bytes=1)

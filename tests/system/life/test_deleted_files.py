@@ -42,6 +42,8 @@ def test_a_deleted_run_directory_fails_the_run(launch: Launch, folder: Path) -> 
 def test_a_deleted_recording_fails_the_run(launch: Launch, folder: Path) -> None:
     run = launch("counted.yaml", "--ticks", "160", "--record", "log.lcm")
     run.until("tick ")
+    (folder / "log.lcm").write_bytes(b"")
+    run.until("another program has cut ")
     (folder / "log.lcm").unlink()
     assert run.wait() == 1
     assert f"the recording {folder / 'log.lcm'} was deleted during the run" in run.text
