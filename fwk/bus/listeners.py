@@ -39,6 +39,7 @@ class Listeners:
         self._inodes: set[str] = set()
         self._processes: dict[str, int] = {}  # by inode of their sockets
         self._threads: dict[int, list[int]] = {}  # by process: open files with the states of its threads
+        self._names: dict[int, str] = {}  # by process
         self._runs: dict[str, str] = {}  # by thread: how often it had run at the last check
 
     def busy(self) -> list[str] | None:
@@ -54,11 +55,11 @@ class Listeners:
             try:
                 # One thread may pass its work to another during a check, so all are checked twice.
                 if any(_can_run(thread) for thread in threads) or any(_can_run(thread) for thread in threads):
-                    found.append(_name_of(process))
+                    found.append(self._names[process])
             except OSError:  # the program, or one of its threads, has ended
                 self._forget(process)
                 self._look_us = now_us
-        if self._held_up or now_us >= self._queue_look_us:
+        if (self._held_up and not found) or now_us >= self._queue_look_us:
             self._queue_look_us = now_us + QUEUE_LOOK_US
             self._held_up = self._with_datagrams()
         return list(dict.fromkeys(found + self._held_up))
@@ -85,13 +86,14 @@ class Listeners:
                 self._runs.update((thread, Path(thread, "schedstat").read_text()) for thread in threads)
                 if len(threads) > THREADS_MAX:
                     threads = [thread for thread in threads if self._runs[thread] != before.get(thread)]
-                self._threads[process] = []
+                self._threads[process], self._names[process] = [], _name_of(process)
                 for thread in threads:
                     self._threads[process].append(os.open(f"{thread}/stat", os.O_RDONLY | os.O_CLOEXEC))
 
     def _with_datagrams(self) -> list[str]:
         waiting = [each.inode for each in sockets_on(self._port) if each.waiting]
-        return [_name_of(self._processes[inode]) for inode in waiting if inode in self._processes]
+        processes = [self._processes[inode] for inode in waiting if inode in self._processes]
+        return [self._names.get(process, "") or _name_of(process) for process in processes]
 
     def _forget(self, process: int) -> None:
         for file in self._threads.pop(process):
