@@ -41,6 +41,8 @@ class Console:
     opened: RecordedRuns = field(default_factory=RecordedRuns)
     rates: dict[int, Rates] = field(default_factory=dict)
     """Rates of channels by process of a run."""
+    folders: dict[str, str] = field(default_factory=dict)
+    """Run directories by name, as they were listed last."""
     usages: dict[str, Usage] = field(default_factory=dict)
     """Meters of CPU and memory by run."""
 
@@ -69,10 +71,11 @@ class Console:
         Raises:
             LogError: there is none, or it cannot be read.
         """
-        for each in self.recordings():
-            if Path(each["path"]).name == name:
-                return self.opened.of(each["path"], anew)
-        raise LogError(f"no recording '{name}'; 'fwk runs list' shows all")
+        if anew or name not in self.folders:
+            self.folders.update({Path(each["path"]).name: each["path"] for each in self.recordings()})
+        if name not in self.folders:
+            raise LogError(f"no recording '{name}'; 'fwk runs list' shows all")
+        return self.opened.of(self.folders[name], anew)
 
 
 STATIC = Path(__file__).with_name("static")

@@ -22,7 +22,6 @@ from fwk.control.client import ControlError, RefusedError
 from fwk.display.graph import graph
 from fwk.display.graph_svg import svg
 from fwk.lcm.event_log import LogError
-from fwk.recording.play.timeline import MomentError
 from fwk.web.console import Console
 from fwk.web.device_view import DeviceView
 from fwk.web.general_view import GeneralView
@@ -62,7 +61,7 @@ def add_drawings(app: FastAPI, console: Console) -> None:
             lags, paused = await link.lags(), (await link.clock())["paused"]
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
-        except (LogError, MomentError) as error:
+        except LogError as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
         return _answer(request, found, _LAG_PERIOD_MS if lags else 0, glides=not paused and not device)
 
@@ -94,7 +93,7 @@ def add_drawings(app: FastAPI, console: Console) -> None:
             status, channels = await link.status(), await link.channels()
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
-        except (LogError, MomentError) as error:
+        except LogError as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
         rates = console.rates.setdefault(status["pid"], Rates()).measure(channels, monotonic_us())
         rows = [{"rate_hz": rates.get(row["channel"], 0.0), **row} for row in channels]

@@ -22,6 +22,7 @@ export default {
     show(made, url) {
       const old = this.shadow.firstChild;
       const [before, after] = [old, made].map((each) => (each ? [...each.querySelectorAll("*")] : []));
+      if (url !== this.shown) this.$el.scrollTo(0, 0);
       if (url !== this.shown || before.length !== after.length) this.shadow.replaceChildren(made);
       else after.forEach((each, i) => {
         const [now, state] = [before[i], each.getAttribute("class")];

@@ -9,10 +9,9 @@ from fwk.lcm.event_log import LogReader
 from fwk.lcm.type_registry import decoded
 from fwk.model.plan import Plan
 from fwk.recording.log_contents import LogInfo
-from fwk.recording.log_info import log_info
 from fwk.recording.pictures import RecordedPicture, picture_of
-from fwk.recording.play.timeline import Timeline
-from fwk.recording.versions import BROKEN, PLAN, read_plan
+from fwk.recording.versions import BROKEN, read_plan
+from fwk.web.recorded_ticks import RecordedTicks, contents
 
 LOG = "log.lcm"
 _BEGIN_TICKS = 20
@@ -23,7 +22,7 @@ _BACK_TICKS = 100
 
 
 class RecordedRun:
-    """One recording. Reading on to a later tick is quick; a jump reads the hundred ticks before it.
+    """One recording; its run may go on. Reading on to a later tick is quick; a jump reads the hundred ticks before it.
 
     Raises:
         LogError: the log cannot be read.
@@ -31,8 +30,9 @@ class RecordedRun:
 
     def __init__(self, folder: Path) -> None:
         self.path = folder / LOG
-        self.info: LogInfo = log_info(self.path)
-        self._timeline = Timeline(self.path)
+        self.info: LogInfo = contents(self.path)
+        self._ticks = RecordedTicks(self.path)
+        self._reader = LogReader(self.path)
         self.plan: Plan | None = self._read_plan()
         """Plan of the recorded run; None: the log has none that can be read."""
         self._lock = threading.Lock()
@@ -71,12 +71,13 @@ class RecordedRun:
     def time_us(self, tick: int) -> int:
         """Returns the logical time at which a tick begins."""
         with self._lock:
-            return self._timeline.of_tick(tick).time_us - self._timeline.zero_us
+            position = self._ticks.position(tick)
+            first = None if position is None else next(self._reader.events_from(position), None)
+            return first.time_us if first else self.info.last_us
 
     def _read_plan(self) -> Plan | None:
-        first, _ = next(self._timeline.events_from(self._timeline.begin))
         with suppress(*BROKEN):
-            return read_plan(first.data)[0] if first.channel == PLAN else None
+            return read_plan(self._ticks.plan)[0] if self._ticks.plan else None
         return None
 
     def picture(self, camera: str) -> RecordedPicture | None:
@@ -88,11 +89,11 @@ class RecordedRun:
     def _read(self, newest: dict[str, bytes], after: int, until: int) -> dict[str, bytes]:
         """Returns the newest messages with those of the ticks from `after` to `until`."""
         made = dict(newest)
-        last = self.last_tick
-        begin = self._timeline.of_tick(min(after + 1, last))
-        end = self._timeline.of_tick(until + 1).position if until < last else None
-        for event, position in self._timeline.events_from(begin):
-            if end is not None and position > end:
+        begin, end = self._ticks.position(after + 1), self._ticks.position(until + 1)
+        if begin is None:
+            return made
+        for event in self._reader.events_from(begin):
+            if end is not None and self._reader.position > end:
                 break
             if not event.channel.startswith("fwk/"):
                 made[event.channel] = event.data

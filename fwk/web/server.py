@@ -15,7 +15,6 @@ from nicegui import ui
 from starlette.requests import Request
 
 from fwk.lcm.event_log import LogError
-from fwk.recording.play.timeline import MomentError
 from fwk.web.access import Access, Gate, Role
 from fwk.web.background import give_way
 from fwk.web.console import Console
@@ -119,7 +118,7 @@ def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> N
         try:
             query = {} if path in OF_RUNS else request.query_params
             link = await asyncio.to_thread(console.link, query, run, True)
-        except (LogError, MomentError) as error:
+        except LogError as error:
             ui.label(str(error)).classes("q-pa-md text-negative")
             return
         frame = Frame(console, request, role, link, known)

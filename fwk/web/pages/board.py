@@ -6,6 +6,7 @@ from nicegui import ui
 
 from fwk.clock import monotonic_us
 from fwk.control.client import ControlError
+from fwk.web.instruments import CAMERA
 from fwk.web.layout import Frame, body
 from fwk.web.rates import Rates
 from fwk.web.sending import send_form
@@ -24,6 +25,7 @@ _COLUMNS = {
 _WORDS = ("channel", "type", "writer", "readers")
 _LIST_S = 2.0
 _SHOW_S = 0.25
+_IMAGE_S = 0.2
 
 
 def build(frame: Frame) -> None:
@@ -45,6 +47,7 @@ def build(frame: Frame) -> None:
         with ui.column().classes("fwk-half"):
             title = ui.label("choose a channel").classes("text-subtitle1").props("data-name=channel")
             about = ui.label("").classes("opacity-70")
+            image = ui.column().classes("w-full")
             fields = ui.table(
                 rows=[],
                 columns=[
@@ -87,6 +90,11 @@ def build(frame: Frame) -> None:
 
     async def choose(channel: str) -> None:
         chosen["channel"] = channel
+        kind = (await link.types([channel])).get(channel)
+        image.clear()
+        if kind and CAMERA.members <= {*kind.__slots__}:
+            with image:
+                frame.canvas(channel, _IMAGE_S, device=channel).classes("fwk-device")
         form.clear()
         with form:
             await send_form(frame, channel)
