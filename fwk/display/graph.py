@@ -50,13 +50,17 @@ class Graph:
     columns: tuple[str, ...]
     nodes: tuple[Node, ...]
     edges: tuple[Edge, ...]
+    unread: tuple[Edge, ...] = ()
+    """Channels of components that no component reads; their `reader` is empty."""
 
     def around(self, patterns: Sequence[str]) -> "Graph":
         """Returns the part with these components and those that exchange messages with them."""
         chosen = {each.name for each in self.nodes if any(fnmatchcase(each.name, pattern) for pattern in patterns)}
         edges = tuple(each for each in self.edges if each.writer in chosen or each.reader in chosen)
         shown = chosen.union(*((each.writer, each.reader) for each in edges))
-        return replace(self, nodes=tuple(each for each in self.nodes if each.name in shown), edges=edges)._tidy()
+        nodes = tuple(each for each in self.nodes if each.name in shown)
+        unread = tuple(each for each in self.unread if each.writer in chosen)
+        return replace(self, nodes=nodes, edges=edges, unread=unread)._tidy()
 
     def column(self, name: str) -> list[Node]:
         """Returns the nodes of a column."""
@@ -74,6 +78,7 @@ class Graph:
                 written = dict.fromkeys(each.label for each in self.edges if each.writer == node.name)
                 yield from (f"    <- {each}" for each in read)
                 yield from (f"    -> {each}" for each in written)
+                yield from (f"    -> {each.label} (no reader)" for each in self.unread if each.writer == node.name)
 
     def mermaid(self) -> Iterator[str]:
         """Yields a flowchart in the language of mermaid, with a subgraph for each column."""
@@ -127,11 +132,16 @@ def graph(
     """
     nodes = {each["name"]: Node(each["name"], (*each["stages"], CONTINUOUS)[0], each["state"]) for each in components}
     edges = []
+    unread = [
+        Edge(row["writer"], "", row["channel"], row["type"], row.get("rate_hz"))
+        for row in channels
+        if row["writer"] in nodes and not row["readers"]
+    ]
     for row in channels:
         for reader in row["readers"] if row["writer"] else ():
             nodes.setdefault(row["writer"], Node(row["writer"], OUTSIDE))
             edges.append(Edge(row["writer"], reader, row["channel"], row["type"], row.get("rate_hz")))
-    return Graph(name, (OUTSIDE, *stages, CONTINUOUS), tuple(nodes.values()), tuple(edges))._tidy()
+    return Graph(name, (OUTSIDE, *stages, CONTINUOUS), tuple(nodes.values()), tuple(edges), tuple(unread))._tidy()
 
 
 def _mermaid(text: str) -> str:

@@ -1,7 +1,8 @@
-"""Messages as Foxglove's well-known types: images, transforms, poses, markers, log lines.
+"""Messages as Foxglove's well-known types: images, transforms, poses, markers, scans, places on the earth, log lines.
 
 Every message with a position gets a view, by the names of its members: `x_m` and `y_m`, perhaps `z_m`, `heading_rad`,
-`radius_m` and `name`. The comment of a member in its .lcm file names its frame of reference.
+`radius_m` and `name`; so does a scan (`ranges_m`, `angle_min_rad`, `angle_step_rad`), and a place on the earth
+(`latitude_deg`, `longitude_deg`). The comment of a member in its .lcm file names its frame of reference.
 """
 
 import math
@@ -17,6 +18,9 @@ from foxglove.messages import (
     CylinderPrimitive,
     FrameTransform,
     FrameTransforms,
+    LaserScan,
+    LocationFix,
+    LocationFixPositionCovarianceType,
     Log,
     LogLevel,
     Pose,
@@ -36,7 +40,7 @@ from numpy.typing import NDArray
 
 from fwk.clock import US_PER_S
 from fwk.lcm.messages import current_name, type_name
-from fwk.log_tools.frames import full_frame
+from fwk.log_tools.frames import comment_frame, full_frame
 from fwk.log_tools.positions import Position, positions_in
 from lcmtypes.core import log_t
 
@@ -74,6 +78,10 @@ def views_of(channel: str, message: Any, time_us: int) -> Iterator[View]:
         text = {"message": message.text, "name": message.component, "file": message.file}
         yield View(PREFIX + channel, Log(timestamp=stamp, level=level, line=max(0, message.line), **text))
     elif not kind.startswith("core"):
+        if all(hasattr(message, each) for each in ("ranges_m", "angle_min_rad", "angle_step_rad")):
+            yield View(PREFIX + channel, _scan(channel, message, stamp))
+        if hasattr(message, "latitude_deg") and hasattr(message, "longitude_deg"):
+            yield View(f"{PREFIX}{channel}/location", _location(channel, message, stamp))
         yield from _positions(channel, message, stamp)
 
 
@@ -82,6 +90,33 @@ def frame_view(camera: str, pixels: NDArray[np.uint8], time_us: int) -> View:
     stamp = Timestamp(time_us // US_PER_S, time_us % US_PER_S * 1000)
     data = cv2.imencode(".jpg", pixels)[1].tobytes()
     return View(PREFIX + camera, CompressedImage(timestamp=stamp, frame_id=camera, format="jpeg", data=data))
+
+
+def _scan(channel: str, scan: Any, stamp: Timestamp) -> LaserScan:
+    frame = comment_frame(type_name(type(scan)), "angle_min_rad") or "robot"
+    return LaserScan(
+        timestamp=stamp,
+        frame_id=full_frame(frame, channel),
+        pose=Pose(position=Vector3(x=0, y=0, z=0), orientation=Quaternion(x=0, y=0, z=0, w=1)),
+        start_angle=scan.angle_min_rad,
+        end_angle=scan.angle_min_rad + scan.angle_step_rad * max(0, len(scan.ranges_m) - 1),
+        ranges=list(scan.ranges_m),
+    )
+
+
+def _location(channel: str, fix: Any, stamp: Timestamp) -> LocationFix:
+    covariance_m2 = [value for row in getattr(fix, "covariance_m2", ()) for value in row]
+    is_known = any(covariance_m2)
+    kinds = LocationFixPositionCovarianceType
+    return LocationFix(
+        timestamp=stamp,
+        frame_id=channel,
+        latitude=fix.latitude_deg,
+        longitude=fix.longitude_deg,
+        altitude=getattr(fix, "altitude_m", 0.0),
+        position_covariance=covariance_m2 if is_known else None,
+        position_covariance_type=kinds.Known if is_known else kinds.Unknown,
+    )
 
 
 def _positions(channel: str, message: Any, stamp: Timestamp) -> Iterator[View]:

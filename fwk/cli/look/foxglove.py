@@ -1,12 +1,13 @@
 """`fwk foxglove`: shows a run in Foxglove while it goes on."""
 
+import json
 from typing import Annotated
 
 import typer
 
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import FAILED
-from fwk.cli.run_options import RunChoice
+from fwk.cli.output import FAILED, say
+from fwk.cli.run_options import Json, RunChoice
 from fwk.log_tools.export import INSTALL
 
 PORT = 8765
@@ -15,10 +16,12 @@ PORT = 8765
 def foxglove(
     port: Annotated[int, typer.Option(min=0, max=65535, metavar="N", help="port for Foxglove; 0: a free one")] = PORT,
     chosen: RunChoice = None,
+    as_json: Json = False,
 ) -> None:
     """Serves the messages of a run to Foxglove until the run ends: each as its type, and poses, images and more.
 
     Open Foxglove, choose 'Open connection' and type the address that is printed. Other machines cannot connect.
+    `--json` prints one object: name of the run, address and port.
     """
     try:
         from fwk.log_tools.foxglove_server import FoxgloveServer
@@ -32,7 +35,9 @@ def foxglove(
         except (OSError, RuntimeError) as error:
             typer.echo(f"error: port {port} cannot be opened: {error}; choose another with --port", err=True)
             raise typer.Exit(FAILED) from error
-        typer.echo(f"{about['name']}: ws://127.0.0.1:{server.port} for Foxglove; Ctrl-C ends")
+        address = f"ws://127.0.0.1:{server.port}"
+        served = {"name": about["name"], "address": address, "port": server.port}
+        say(json.dumps(served) if as_json else f"{about['name']}: {address} for Foxglove; Ctrl-C ends")
         try:
             for message in messages:
                 server.show(*message)

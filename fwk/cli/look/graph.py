@@ -16,6 +16,7 @@ from fwk.cli.run_options import Json, RunChoice, ask, asking
 from fwk.display.graph import Graph, channel_rows, graph_of
 from fwk.display.graph import graph as made
 from fwk.display.graph_svg import svg
+from fwk.display.plan_overview import counted
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
@@ -72,7 +73,7 @@ def graph(
         out.write_text(text)
     except OSError as error:
         _refuse(f"{out}: cannot be written: {error.strerror}")
-    typer.echo(f"{out}: {len(found.nodes)} components, {len(found.edges)} connections")
+    typer.echo(f"{out}: {counted(len(found.nodes), 'component')}, {counted(len(found.edges), 'connection')}")
 
 
 def who(

@@ -1,6 +1,8 @@
 """`fwk monitor SCRIPT.py`: a few lines of the user see the messages of a run or of a log."""
 
-from contextlib import suppress
+import json
+from contextlib import redirect_stdout, suppress
+from io import StringIO
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -8,10 +10,10 @@ import typer
 
 from fwk.cli.arguments import folder
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import BAD_INPUT, FAILED
+from fwk.cli.output import BAD_INPUT, FAILED, say
 from fwk.cli.recordings.find_log import failing, find_log_with_types
 from fwk.cli.recordings.user_folders import use_folders
-from fwk.cli.run_options import RunChoice
+from fwk.cli.run_options import Json, RunChoice
 from fwk.lcm.event_log import LogReader
 from fwk.model.errors import hint
 from fwk.monitor.script import Script, ScriptError, templates
@@ -30,23 +32,25 @@ def monitor(
         Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
     chosen: RunChoice = None,
+    as_json: Json = False,
 ) -> None:
     """Gives messages to a script: those of a run as they appear on its public bus, or those of a recording.
 
     The script has `channels`, a tuple of channels or patterns, and a function `message(channel, message, time_us)`;
     if it has a function `end()`, that is called at the end of the run or log, and at Ctrl-C.
+    `--json` makes each line that the script prints an object: `text`, and `channel` and `time_us` of the message.
 
     Exit codes: 0 ended; 1 the script fails, or no run answers; 2 bad input.
     """
     if template is not None:
-        _print_template(template)
+        _print_template(template, as_json)
         return
     if script is None:
         _complain("name a script, or print one with --template", BAD_INPUT)
     with failing(BAD_INPUT):
         use_folders([str(types)])
         try:
-            made = Script(script)
+            made = LinesAsJson(script) if as_json else Script(script)
         except ScriptError as error:
             _complain(error, BAD_INPUT)
         try:
@@ -78,12 +82,32 @@ def _listen(script: Script, chosen: str | None, count: int | None) -> None:
                 return
 
 
-def _print_template(name: str) -> None:
+class LinesAsJson(Script):
+    """Script whose printed lines become JSON lines."""
+
+    def hear(self, channel: str, data: bytes, time_us: int) -> bool:
+        """Gives a message to the script, and prints its lines with channel and time."""
+        with redirect_stdout(StringIO()) as printed:
+            wanted = super().hear(channel, data, time_us)
+        self._say(printed, channel=channel, time_us=time_us)
+        return wanted
+
+    def end(self) -> None:
+        """Calls `end` of the script, and prints its lines."""
+        with redirect_stdout(StringIO()) as printed:
+            super().end()
+        self._say(printed)
+
+    def _say(self, printed: StringIO, **about: str | int) -> None:
+        say(*(json.dumps({**about, "text": line}) for line in printed.getvalue().splitlines()))
+
+
+def _print_template(name: str, as_json: bool) -> None:
     known = templates()
     if name == "list":
-        for each, text in known.items():
-            about = text.splitlines()[0].strip('"')
-            typer.echo(f"{each:<10} {about}")
+        found = {each: text.splitlines()[0].strip('"') for each, text in known.items()}
+        lines = [f"{each:<10} {about}" for each, about in found.items()]
+        say(*([json.dumps(found, indent=2)] if as_json else lines))
     elif name in known:
         typer.echo(known[name], nl=False)
     else:

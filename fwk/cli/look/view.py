@@ -1,6 +1,9 @@
 """`fwk view`: shows a run or a recording in Rerun."""
 
+import errno
+import json
 import os
+import socket
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
@@ -10,11 +13,11 @@ import typer
 
 from fwk.cli.arguments import folder, new_file
 from fwk.cli.look.public_messages import listening
-from fwk.cli.output import BAD_INPUT, say
+from fwk.cli.output import BAD_INPUT, FAILED, say
 from fwk.cli.recordings.find_log import failing, find_log
 from fwk.cli.recordings.progress import progress_of
 from fwk.cli.recordings.user_folders import use_folders
-from fwk.cli.run_options import RunChoice
+from fwk.cli.run_options import Json, RunChoice
 from fwk.clock import sleep_s
 from fwk.lcm.log_parts import uncompressed_name
 from fwk.recording.compare import plan_in
@@ -62,14 +65,16 @@ def view(
         Path, typer.Option(parser=folder, metavar="FOLDER", help="folder whose lcmtypes/ defines the messages")
     ] = Path(),
     chosen: RunChoice = None,
+    as_json: Json = False,
 ) -> None:
     """Shows a live run or a recording in Rerun: positions, images, scans, plots and log lines, tick by tick.
 
     Views that the project adds to the console are drawn, too. Without a screen the viewer is a web page.
+    `--json` prints one object: name of the run, and file, or addresses of page and stream.
 
     Needs: pip install 'fwk[view]'
 
-    Exit codes: 0 ended; 1 no run answers; 2 bad input, or the library is missing.
+    Exit codes: 0 ended; 1 no run answers, or a port is taken; 2 bad input, or the library is missing.
     """
     with failing(BAD_INPUT):
         use_folders([str(types)])
@@ -85,13 +90,13 @@ def view(
         try:
             if log:
                 feed = RerunFeed(name, channels or (), views or (), types)
-                end = _opened(feed, save, web, port)
+                end = _opened(feed, name, save, web, port, as_json)
                 with progress_of("reading", found) as progress:
                     feed.read(found, progress)
             else:
                 with listening(chosen, "show its recording with --from") as (about, messages):
                     feed = RerunFeed(about["name"], channels or (), views or (), types, about["pid"])
-                    end = _opened(feed, save, web, port)
+                    end = _opened(feed, about["name"], save, web, port, as_json)
                     with suppress(KeyboardInterrupt):
                         feed.follow(messages)
         except ViewError as error:
@@ -100,16 +105,34 @@ def view(
     end()
 
 
-def _opened(feed: "RerunFeed", save: Path | None, web: bool, port: int) -> Callable[[], None]:
+def _opened(feed: "RerunFeed", name: str, save: Path | None, web: bool, port: int, as_json: bool) -> Callable[[], None]:
     """Begins the output; returns what is to be done at its end."""
     if save:
         feed.save(save)
-        return lambda: say(f"{save}: open it with: rerun {save}")
+        saved = {"name": name, "file": str(save)}
+        return lambda: say(json.dumps(saved) if as_json else f"{save}: open it with: rerun {save}")
     if web or not (os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY")):
-        say(f"Rerun: {feed.serve(port)}; Ctrl-C ends")
+        _check_free(port, port + 1)
+        page = feed.serve(port)
+        served = {"name": name, "page": page, "stream": page.partition("?url=")[2]}
+        say(json.dumps(served) if as_json else f"Rerun: {page}; Ctrl-C ends")
         return _wait
     feed.spawn(port)
+    if as_json:
+        say(json.dumps({"name": name, "port": port}))
     return lambda: None
+
+
+def _check_free(*ports: int) -> None:
+    """Ends the command if another program has one of the ports, of which Rerun would only write a log line."""
+    for port in ports:
+        with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind(("0.0.0.0", port))
+            except OSError as error:
+                reason = "is taken" if error.errno == errno.EADDRINUSE else f"cannot be opened: {error.strerror}"
+                _complain(f"port {port} {reason}; choose another with --port", FAILED, error)
 
 
 def _wait() -> None:

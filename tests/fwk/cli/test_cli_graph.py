@@ -23,6 +23,9 @@ def test_graph_of_a_launch_file_is_written_by_its_suffix(tmp_path: Path) -> None
         code, text = said("graph", "--file", FILE, "--out", str(tmp_path / name))
         assert (code, text.startswith(str(tmp_path / name))) == (0, True)
         assert (tmp_path / name).read_text().startswith(begin)
+        assert text.endswith(" connections\n")
+    small = said("graph", "cyan1/camera", "--file", FILE, "--out", str(tmp_path / "small.mmd"))[1]
+    assert " components, " in small
     made = json.loads(said("graph", "cyan1/camera", "--file", FILE, "--json")[1])
     assert "cyan1/omni_ball" in {node["name"] for node in made["nodes"]}
     assert "cyan1/agent" not in {node["name"] for node in made["nodes"]}

@@ -33,6 +33,7 @@ class Thinker(Component):
 class Free(Component):
     rate_hz = 20.0
     odometry: Reads[odometry_t]
+    gyro: Writes[imu_t]
 
 
 @pytest.fixture
@@ -62,6 +63,10 @@ def test_text_names_the_channels_of_each_component(made: Graph) -> None:
     lines = list(made.lines())
     place = lines.index("  a/thinker")
     assert lines[place + 1 : place + 3] == ["    <- a/imu from a/sensor", "    -> a/odometry"]
+    place = lines.index("  a/free")
+    assert lines[place + 1 : place + 3] == ["    <- a/odometry from a/thinker", "    -> a/gyro (no reader)"]
+    assert made.around(["a/free"]).unread == made.unread
+    assert made.around(["a/sensor"]).unread == ()
 
 
 def test_part_has_the_chosen_components_and_their_neighbours(made: Graph) -> None:

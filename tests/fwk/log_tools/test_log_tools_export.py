@@ -23,7 +23,7 @@ from fwk.log_tools.plain import json_schema, of_plain, plain
 from fwk.log_tools.selection import Selection
 from fwk.recording.log_info import log_info
 from lcmtypes.core import frame_events_t, log_t, picture_t, transform_t, transforms_t
-from lcmtypes.robot import odometry_t
+from lcmtypes.robot import gps_fix_t, laser_scan_t, odometry_t
 from lcmtypes.soccer import obstacle_percepts_t, obstacle_t, pose_t, world_model_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, heard, recording
 from tests.fwk.recording.recording_made import PERIOD_US, odometry, write
@@ -190,6 +190,23 @@ def test_positions_are_markers_in_the_frame_of_their_comment(tmp_path: Path) -> 
         "foxglove.SceneUpdate", "cyan1/robot", 1.5, 0.5,
     )  # fmt: skip
     assert len(scene.deletions) == 1
+
+
+def test_scans_and_places_on_the_earth_have_views(tmp_path: Path) -> None:
+    scan = laser_scan_t(angle_min_rad=-0.5, angle_step_rad=0.25, n_ranges=5, ranges_m=[1.0, 2.0, math.inf, 4.0, 5.0])
+    name, shown = views(tmp_path, "cyan1/scan", scan)["view/cyan1/scan"]
+    assert (name, shown.frame_id, shown.start_angle, shown.end_angle, list(shown.ranges)) == (
+        "foxglove.LaserScan", "cyan1/sensor", -0.5, 0.5, [1.0, 2.0, math.inf, 4.0, 5.0],
+    )  # fmt: skip
+    (tmp_path / "out.mcap").unlink()
+    fix = gps_fix_t(latitude_deg=50.5, longitude_deg=6.25, covariance_m2=[[4.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0] * 3])
+    name, shown = views(tmp_path, "cyan1/gps", fix)["view/cyan1/gps/location"]
+    assert (name, shown.latitude, shown.longitude, shown.position_covariance[0]) == (
+        "foxglove.LocationFix", 50.5, 6.25, 4.0,
+    )  # fmt: skip
+    (tmp_path / "out.mcap").unlink()
+    _, shown = views(tmp_path, "cyan1/gps", gps_fix_t())["view/cyan1/gps/location"]
+    assert list(shown.position_covariance) in ([], [0.0] * 9)
 
 
 def test_transforms_and_log_lines_have_views(tmp_path: Path) -> None:

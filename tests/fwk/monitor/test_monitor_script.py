@@ -1,5 +1,6 @@
 """Scripts of `fwk monitor`, and the templates for them."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +75,17 @@ def test_template_prints_what_its_hardware_says(tmp_path: Path, capsys: pytest.C
     assert text in capsys.readouterr().out
 
 
+def test_printed_lines_become_json_lines(tmp_path: Path, log: Path) -> None:
+    text = "channels = ('r/imu',)\ndef message(c, m, t): print('seen\\ntwice')\ndef end(): print('over')\n"
+    (tmp_path / "it.py").write_text(text)
+    words = ["monitor", str(tmp_path / "it.py"), "--from", str(log), "--count", "1", "--json"]
+    assert [json.loads(line) for line in CliRunner().invoke(app, words).output.splitlines()] == [
+        {"channel": "r/imu", "time_us": 0, "text": "seen"},
+        {"channel": "r/imu", "time_us": 0, "text": "twice"},
+        {"text": "over"},
+    ]
+
+
 def test_other_channels_are_not_given_to_the_script(script: Path) -> None:
     assert not Script(script).hear("r/other", imu_t().encode(), 0)
 
@@ -108,6 +120,7 @@ def test_command_reads_a_log_and_prints_templates(script: Path, log: Path) -> No
     assert (failing.exit_code, "ValueError: three (r/imu at 150000 us)" in failing.output) == (1, True)
     assert run(app, ["monitor", "--template", "imu"]).output == templates()["imu"]
     assert len(run(app, ["monitor", "--template", "list"]).output.splitlines()) == len(templates())
+    assert set(json.loads(run(app, ["monitor", "--template", "list", "--json"]).output)) == set(templates())
     assert run(app, ["monitor", "--template", "imo"]).exit_code == 2
     assert run(app, ["monitor"]).exit_code == 2
     assert run(app, ["monitor", "none.py"]).exit_code == 2

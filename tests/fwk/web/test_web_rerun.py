@@ -1,6 +1,7 @@
 """Messages, images and drawings of projects as entities of Rerun, read back from the file."""
 
 import contextlib
+import json
 import signal
 import socket
 import subprocess
@@ -137,12 +138,24 @@ def test_bad_input_of_the_command_is_named(tmp_path: Path) -> None:
     wrong = CliRunner().invoke(app, ["view", "--from", "log", "--save", "out.mp4"])
     assert (wrong.exit_code, "a name such as run.rrd" in " ".join(wrong.stderr.replace("│", "").split())) == (2, True)
     log = recording(tmp_path / "log", ticks=1)
+    words = ["view", "--from", str(log), "--save", str(tmp_path / "c.rrd"), "--json"]
+    assert json.loads(CliRunner().invoke(app, words).stdout) == {"name": "log", "file": str(tmp_path / "c.rrd")}
     missing = CliRunner().invoke(app, ["view", "--from", str(log), "--save", str(tmp_path / "a.rrd"), "--view", "nix"])
     assert (missing.exit_code, "nix: cannot be imported" in missing.stderr) == (2, True)
     words = ["view", "--from", str(log), "--save", str(tmp_path / "b.rrd"), "--channels", "cyan1/odometri"]
     nothing = CliRunner().invoke(app, words)
     assert nothing.exit_code == 2
     assert "no channel matches 'cyan1/odometri'; did you mean 'cyan1/odometry'?" in nothing.stderr
+
+
+def test_a_port_that_is_taken_is_named(tmp_path: Path) -> None:
+    log = recording(tmp_path / "log", ticks=1)
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = int(other.getsockname()[1])
+        done = CliRunner().invoke(app, ["view", "--from", str(log), "--web", "--port", str(port - 1)])
+    assert (done.exit_code, done.stderr) == (1, f"error: port {port} is taken; choose another with --port\n")
 
 
 def free_ports() -> int:
@@ -161,10 +174,12 @@ def page(tmp_path: Path) -> Iterator[str]:
     """The address of a page with a recording."""
     recording(tmp_path / "log.lcm", ticks=6)
     (tmp_path / "garden_view.py").write_text(PROJECT)
-    words = ["view", "--from", "log.lcm", "--web", "--view", "garden_view", "--port", str(free_ports())]
+    words = ["view", "--from", "log.lcm", "--web", "--view", "garden_view", "--port", str(free_ports()), "--json"]
     process = subprocess.Popen([str(BIN / "fwk"), *words], cwd=tmp_path, stdout=subprocess.PIPE, text=True)
     assert process.stdout
-    yield process.stdout.readline().split()[1].rstrip(";")
+    served = json.loads(process.stdout.readline())
+    assert served["page"].endswith(f"/?url={served['stream']}")
+    yield served["page"]
     process.send_signal(signal.SIGINT)
     assert process.wait(30) == 0
     process.stdout.close()
