@@ -50,7 +50,7 @@ EXAMPLES = {
         "fwk graph 'cyan1/*' --run red",
         "fwk graph --file robots.yaml --form mermaid",
     ),
-    "fwk who": ("fwk who cyan1/ball", "fwk who '*/pose' --file robots.yaml"),
+    "fwk who": ("fwk who cyan1/pose", "fwk who '*/pose' --file robots.yaml"),
     "fwk bb list": ("fwk bb list 'cyan1/*'",),
     "fwk bb show": ("fwk bb show cyan1/world_model", "fwk bb show cyan1/world_model --json"),
     "fwk bb watch": ("fwk bb watch cyan1/odometry", "fwk bb watch cyan1/pose --field x_m --field y_m"),
@@ -70,7 +70,7 @@ EXAMPLES = {
         "fwk replay log.lcm --verify",
         "fwk replay log.lcm --only 'cyan1/*' --from-tick 100",
         "fwk replay log.lcm --debug cyan1/world_model --from-tick 500",
-        "fwk replay log.lcm --to-tick 1200 --then-live --set cyan1/agent.boldness=0.9 --record bold.lcm",
+        "fwk replay log.lcm --to-tick 1200 --then-live --set cyan1/world_model.ball_timeout_s=0.5 --record brief.lcm",
     ),
     "fwk bisect": (
         "fwk bisect log.lcm --good v1.2 --bad HEAD --only cyan1/agent",

@@ -18,7 +18,7 @@ from fwk.cli.project.edit import (
 from fwk.cli.run_options import Json
 from fwk.scaffold.changes import ScaffoldError
 
-add = typer.Typer(no_args_is_help=True)
+add = typer.Typer(add_completion=False, no_args_is_help=True)
 
 
 @add.callback()

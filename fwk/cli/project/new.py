@@ -15,7 +15,7 @@ from fwk.scaffold.new import new_component, new_launch, new_project
 from fwk.scaffold.project import Project, project_at
 from fwk.scaffold.templates import kinds
 
-new = typer.Typer(no_args_is_help=True)
+new = typer.Typer(add_completion=False, no_args_is_help=True)
 
 _KINDS, _TYPES = ", ".join(kinds()), ", ".join(KINDS)
 

@@ -6,7 +6,7 @@ from fwk.cli.project.changing import DryRun
 from fwk.cli.project.edit import ComponentWord, Names, remove_each
 from fwk.cli.run_options import Json
 
-remove = typer.Typer(no_args_is_help=True)
+remove = typer.Typer(add_completion=False, no_args_is_help=True)
 
 
 @remove.callback()

@@ -197,7 +197,8 @@ def launch(
             typer.echo(f"console: {beside(name, run_dir)}")
         removed = prune(run_dir.parent, plan.runs.keep, round(plan.runs.size_gb * GB))
         if removed:
-            typer.echo(f"removed the {len(removed)} oldest run directories; 'fwk runs keep RUN' keeps one")
+            which = f"{len(removed)} oldest run directories" if len(removed) > 1 else "oldest run directory"
+            typer.echo(f"removed the {which}; 'fwk runs keep RUN' keeps one")
         terminal = terminal_settings()
         try:
             outcome = run(plan, options, lock)
