@@ -1,5 +1,6 @@
 """Message types that a project can use: its own and the installed ones."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import lcmtypes
@@ -49,3 +50,26 @@ def check_type(project: Project, name: str) -> str:
     if alike:
         raise ScaffoldError(f"several types '{name}': {', '.join(alike)}; write it with its package")
     raise ScaffoldError(f"no message type '{name}'; {hint(name, known)}")
+
+
+def check_port_types(project: Project, kind: str, names: Sequence[str]) -> tuple[str, ...]:
+    """Returns the full names of the types of a port; `kind` is reads, writes, serves or calls.
+
+    Raises:
+        ScaffoldError: there is no such type, or a port of that kind cannot have it.
+    """
+    full = tuple(check_type(project, each) for each in names)
+    roles = (("request", "command"), ("reply", "answer")) if kind in ("serves", "calls") else (("message", ""),)
+    if len(full) > len(roles):
+        right = "a request, and a reply if it has one" if len(roles) > 1 else "one message type"
+        raise ScaffoldError(f"'{','.join(names)}' are {len(full)} types; {kind} takes {right}")
+    known = known_types(project)
+    for name, (role, member) in zip(full, roles, strict=False):
+        found = [(each.type, each.name) for each in known[name].members[:2]]
+        if member and found != [("core.header_t", "header"), (f"core.{member}_t", member)]:
+            package = name.partition(".")[0]
+            raise ScaffoldError(
+                f"{name} is not a {role}: its first members are not 'core.header_t header; core.{member}_t {member};'; "
+                f"make one with: fwk new interface {package}.NAME FIELD:TYPE --kind {role}"
+            )
+    return full

@@ -1,6 +1,7 @@
 """Candidates for the next word of a command line: commands, options, and names of running and recorded things."""
 
 import os
+import re
 import sys
 from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout
@@ -14,6 +15,8 @@ from fwk.control.client import ControlError
 _TIMEOUT_S = 3.0  # a busy machine answers slowly
 _LAUNCH_FILES = (".yaml", ".yml")
 _RUNS = Path(".cache", "fwk", "runs")
+_OWN_NAME = re.compile(r"[-\dT]{20}(.+)-\d+")
+"""A run directory: its time, the run's own name, a process number."""
 
 
 def complete(words: list[str]) -> list[str]:
@@ -120,9 +123,15 @@ def _runs(_: str | None) -> Iterable[str]:
     return (str(run.get("name") or port) for port, run in runs.look().items())
 
 
-def _recordings(_: str | None) -> Iterable[str]:
+def _run_directories(_: str | None) -> Iterable[str]:
     folder = Path.home() / _RUNS
     return os.listdir(folder) if folder.is_dir() else ()
+
+
+def _recordings(_: str | None) -> Iterable[str]:
+    """Returns the run directories, and the names of their runs, of which each stands for the newest."""
+    folders = [*_run_directories(None)]
+    return [*folders, *(found[1] for each in folders if (found := _OWN_NAME.fullmatch(each)))]
 
 
 def _launch_files(_: str | None) -> Iterable[str]:
@@ -142,7 +151,7 @@ _SOURCES: dict[str, Callable[[str | None], Iterable[str]]] = {
     "COMMANDS": _commands,
     "NAME.SETTING": _settings,
     "NAME.SETTING=VALUE": _assignments,
-    "RUN": _recordings,
+    "RUN": _run_directories,
     "RUN_OR_LOG": _recordings,
     "LOG": _recordings,
     "A": _recordings,

@@ -12,7 +12,7 @@ from fwk.cli.output import notice, say
 from fwk.cli.project.changing import explaining
 from fwk.scaffold.changes import Change, ScaffoldError, write
 from fwk.scaffold.project import Project, project_at
-from fwk.scaffold.types import check_type
+from fwk.scaffold.types import check_port_types
 
 if TYPE_CHECKING:
     from fwk.scaffold.source import Source
@@ -69,7 +69,7 @@ def add_ports(kind: str, component: str, words: Sequence[str], dry_run: bool, as
             name, colon, types = word.partition(":")
             if not colon or not types:
                 raise ScaffoldError(f"'{word}' is not a port; write NAME:TYPE, such as ball:garden.ball_t")
-            full = tuple(check_type(project, each.strip()) for each in types.split(","))
+            full = check_port_types(project, kind, [each.strip() for each in types.split(",")])
             add_port(source, PortRequest(kind, name, full, **more))
         finish(source, dry_run, as_json)
 

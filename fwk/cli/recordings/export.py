@@ -75,7 +75,7 @@ def export(
 
 
 def import_(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="MCAP file, or log of lcm-logger")],
+    file: Annotated[Path, typer.Argument(metavar="FILE.mcap", help="MCAP file, or log of lcm-logger")],
     out: Out,
     force: Force = False,
     as_json: Json = False,

@@ -1,4 +1,4 @@
-"""`fwk log-info FILE`: the contents of a log."""
+"""`fwk log-info RUN_OR_LOG`: the contents of a log."""
 
 import json
 from dataclasses import asdict
@@ -19,7 +19,7 @@ from fwk.recording.log_info import log_info as read_info
 
 
 def log_info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", help="log, or run by its name or directory")],
+    file: Annotated[Path, typer.Argument(metavar="RUN_OR_LOG", help="log, or run by its name or directory")],
     check: Annotated[
         bool, typer.Option("--check", help="read every message and compare the check sums; exit 1 at damage")
     ] = False,

@@ -83,6 +83,11 @@ def test_launch_files_and_recordings_are_found(tmp_path: Path, monkeypatch: pyte
     assert complete(["fwk-launch", "g"]) == ["garden.yaml"]
     assert complete(["fwk", "replay", "20"]) == ["2026-garden-7"]
     assert complete(["fwk", "compare", "2026-garden-7", "2"]) == ["2026-garden-7"]
+    (tmp_path / ".cache" / "fwk" / "runs" / "2026-11-22T22-44-07-my-bed-25068").mkdir()
+    for words in ("log-info", "cut", "play", "export", "compare", "view --from", "cam --log"):
+        assert complete(["fwk", *words.split(), "my"]) == ["my-bed"], words
+    assert complete(["fwk", "runs", "keep", "my"]) == []
+    assert complete(["fwk", "import", ""]) == []
 
 
 @pytest.mark.parametrize(

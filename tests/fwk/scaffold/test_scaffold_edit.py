@@ -11,12 +11,13 @@ from typer.testing import CliRunner
 from fwk.cli.project.add import add
 from fwk.cli.project.remove import remove
 from fwk.scaffold.changes import ScaffoldError, write
+from fwk.scaffold.interface import new_interface
 from fwk.scaffold.new import new_project
 from fwk.scaffold.ports import PortRequest, add_port, remove_port
 from fwk.scaffold.project import Project
 from fwk.scaffold.settings import SettingRequest, add_setting, python_value, remove_setting
 from fwk.scaffold.source import Source, find_source
-from fwk.scaffold.types import check_type
+from fwk.scaffold.types import check_port_types, check_type
 
 PLAIN = '''"""Tracks."""
 
@@ -253,6 +254,24 @@ def test_mistakes_name_file_and_line(tmp_path: Path, monkeypatch: pytest.MonkeyP
     for kind, text in (("float", "x"), ("bool", "1"), ("list", "1")):
         with pytest.raises(ScaffoldError):
             python_value(kind, text)
+
+
+def test_types_that_a_port_cannot_have_are_refused(tmp_path: Path) -> None:
+    write(new_project("garden", tmp_path))
+    project = Project(tmp_path)
+    write([new_interface(project, "garden.mow", ["speed_m_s:double"], "request")])
+    write([new_interface(project, "garden.mown", ["area_m2:double"], "reply")])
+    types = ["mow_t", "mown_t"]
+    for kind in ("serves", "calls"):
+        assert check_port_types(project, kind, types) == ("garden.mow_t", "garden.mown_t")
+        for wrong, role in ((["distance_t"], "request"), (["mow_t", "distance_t"], "reply")):
+            right = f"make one with: fwk new interface garden.NAME FIELD:TYPE --kind {role}"
+            with pytest.raises(ScaffoldError, match=f"garden.distance_t is not a {role}: .*{re.escape(right)}"):
+                check_port_types(project, kind, wrong)
+    with pytest.raises(ScaffoldError, match="'mow_t,mown_t' are 2 types; reads takes one message type"):
+        check_port_types(project, "reads", types)
+    with pytest.raises(ScaffoldError, match="are 3 types; calls takes a request, and a reply if it has one"):
+        check_port_types(project, "calls", [*types, "mow_t"])
 
 
 def test_types_are_found_by_their_names(tmp_path: Path) -> None:
