@@ -52,7 +52,7 @@ def cut(
         selection: channels and types.
         begin: first moment: a tick (`1200`), a time (`12.5s`) or the text of a bookmark; empty: the beginning.
         end: last moment; its tick is in the new log; empty: the end.
-        last_s: begins so many seconds before the end of the log, which may still grow.
+        last_s: begins so many seconds before the present end of the log, which may still grow.
         replace: replaces an existing file.
         progress: takes the number of bytes read so far.
 
@@ -105,7 +105,8 @@ def _interval(log: Path, begin: str, end: str, last_s: float | None) -> tuple[Mo
             first = timeline.of_time(max(timeline.begin.time_us, timeline.end_us - round(last_s * US_PER_S)))
         else:
             first = timeline.find(begin) if begin else timeline.begin
-        last = timeline.find(end) if end else None
+        growing_end = timeline.of_time(timeline.end_us) if last_s is not None else None
+        last = timeline.find(end) if end else growing_end
     except MomentError as error:
         raise LogError(str(error)) from error
     if last and last.position < first.position:

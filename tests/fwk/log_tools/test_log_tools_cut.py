@@ -15,7 +15,9 @@ from fwk.log_tools.cut import cut
 from fwk.log_tools.selection import Selection
 from fwk.recording.log_info import log_info
 from fwk.recording.part_compressor import compress_part
+from fwk.recording.play.timeline import Timeline
 from fwk.recording.replay.recording import Recording, RecordingError
+from fwk.recording.ticks import tick_of
 from lcmtypes.core import excerpt_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, channels_of, heard, recording
 from tests.fwk.recording.recording_made import write
@@ -91,6 +93,13 @@ def test_logs_of_lcm_logger_are_cut_by_seconds(tmp_path: Path) -> None:
     assert ticks_in(done.out) == (2, 4)
     assert not done.replayable
     assert set(channels_of(done.out)) == {"cyan2/odometry"}, "no marker in a log without a plan"
+
+
+def test_the_last_seconds_end_when_the_command_begins(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log = recording(tmp_path / "log")
+    before = next(event.time_us for event in LogReader(log) if tick_of(event.channel, event.data) == 8)
+    monkeypatch.setattr(Timeline, "_last_time_us", lambda _: before)  # ticks 9 and 10 are written later
+    assert ticks_in(cut(log, tmp_path / "out", ALL, last_s=0.1).out) == (6, 8)
 
 
 def test_the_last_seconds_are_an_interval(tmp_path: Path) -> None:
