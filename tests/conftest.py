@@ -37,14 +37,14 @@ _PACKAGES = {
     "unshare": "util-linux",
 }
 """Program to Debian package, where the names differ."""
-_BROWSER_TESTS = Path(__file__).parent / "system/web"
+_BROWSER_TESTS = "tests/system/web/"
 """Folder of the tests that share a run and a browser: each worker that executes some of them would start both."""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Puts the tests that share a browser first, for one worker; then files with slow tests, short tests at the end."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
-    items.sort(key=lambda item: (_BROWSER_TESTS not in item.path.parents, item.path not in slow))
+    items.sort(key=lambda item: (not item.nodeid.startswith(_BROWSER_TESTS), item.path not in slow))
 
 
 @pytest.fixture(autouse=True)
