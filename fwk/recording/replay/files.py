@@ -29,7 +29,7 @@ _OPENED_TO_WRITE = os.O_WRONLY | os.O_RDWR | os.O_TRUNC
 class Files:
     """Describes audit events that change files; keeps in mind which files are temporary.
 
-    Private files are no concern of anybody else: those that `tempfile` makes, caches of libraries and compiled code.
+    Private files are those that `tempfile` makes, caches of libraries and compiled code: no other program reads them.
     """
 
     def __init__(self) -> None:
