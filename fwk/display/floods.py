@@ -14,12 +14,8 @@ _WARNING_WINDOW_US = 60 * US_PER_S
 """The same for warnings on the live display, where a warning every few seconds would displace all other lines."""
 PRINTED_MAX = 4
 """Number of lines of a group that are printed; the others are counted."""
-_VARYING = re.compile(r"[\w.-]+/[\w./-]+|\d+(?:\.\d+)?")
-
-
-def meaning(line: log_t) -> tuple[int, str]:
-    """Returns level and text of a line without names of components and numbers."""
-    return line.level, _VARYING.sub("*", line.text)
+_VARYING = re.compile(r"(?<![\w.-])[\w.-]++/[\w./-]+|\d+(?:\.\d+)?")
+"""Names and numbers. A name is looked for at the beginning of a word only, so that long words take no longer."""
 
 
 class LineGroup:
@@ -28,6 +24,8 @@ class LineGroup:
     def __init__(self, line: log_t) -> None:
         self.line = line
         """Newest line of the group."""
+        self.meaning = line.level, _VARYING.sub("*", line.text)
+        """Level and text without names of components and numbers."""
         self.count = 1
         self.since_us = 0
         """Begin of the group, in monotonic wall time."""
@@ -51,17 +49,17 @@ class LineGroups:
     def add(self, line: log_t) -> LineGroup:
         """Adds a line to the group of its meaning, or begins one; returns the group."""
         window_us = _WARNING_WINDOW_US if line.level == log_t.WARNING else WINDOW_US
+        made = LineGroup(line)
         for group in reversed(self._groups):
             if line.wall_us - group.line.wall_us > window_us:
                 break
-            if meaning(group.line) == meaning(line):
+            if group.meaning == made.meaning:
                 group.line, group.count = line, group.count + 1
                 self._groups.remove(group)
                 self._groups.append(group)
                 return group
-        group = LineGroup(line)
-        self._groups.append(group)
-        return group
+        self._groups.append(made)
+        return made
 
 
 class FloodGate:
@@ -72,11 +70,10 @@ class FloodGate:
 
     def passes(self, line: log_t, now_us: int) -> bool:
         """Tells whether to print a line that came at `now_us` of monotonic wall time."""
-        key = meaning(line)
-        group = self._groups.get(key)
-        if group is None:
-            self._groups[key] = LineGroup(line)
-            self._groups[key].since_us = now_us
+        made = LineGroup(line)
+        group = self._groups.setdefault(made.meaning, made)
+        if group is made:
+            made.since_us = now_us
             return True
         group.line, group.count = line, group.count + 1
         if group.printed < PRINTED_MAX:

@@ -163,17 +163,17 @@ def _log_rows(view: View, columns: int, rows: int) -> list[Text]:
     """Returns the newest lines, whole, as many as fit; of the newest at least its beginning."""
     found: list[Text] = []
     for group in reversed(view.shown_lines()):
-        made = _log_lines(group, columns)
+        made = _log_lines(group, columns, rows)
         if found and len(found) + len(made) > rows:
             break
         found = [*made[:rows], *found]
     return found
 
 
-def _log_lines(group: LineGroup, columns: int) -> list[Text]:
+def _log_lines(group: LineGroup, columns: int, rows: int) -> list[Text]:
     line = group.line
     level = LEVEL_NAMES.get(line.level, "error")
-    text = f" {line.time_us / US_PER_S:8.2f} {level:7} {line.component}: {group.text}"
+    text = f" {line.time_us / US_PER_S:8.2f} {level:7} {line.component}: {group.text[: columns * rows]}"
     return [Text(part, _LEVEL_STYLES[level], no_wrap=True) for part in _folded(text, columns)]
 
 

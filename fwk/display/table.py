@@ -103,11 +103,22 @@ def wrapped(text: str, width: int) -> list[str]:
             lines.append(line)
             line = ""
         line = f"{line} {word}" if line else word
-        while cells(line) > width:
-            end = next(end for end in range(len(line), 0, -1) if cells(line[:end]) <= max(2, width))
-            lines.append(line[:end])
-            line = line[end:]
+        if cells(line) > width:
+            *full, line = _broken(line, max(2, width))
+            lines += full
     return [*lines, line] if line else lines
+
+
+def _broken(word: str, width: int) -> list[str]:
+    """Breaks a word anywhere into parts of at most `width` columns, which is at least 2."""
+    parts, begin, used = [], 0, 0
+    for place, character in enumerate(word):
+        taken = cells(character)
+        if used + taken > width:
+            parts.append(word[begin:place])
+            begin, used = place, 0
+        used += taken
+    return [*parts, word[begin:]]
 
 
 def terminal_width(descriptor: int = 1) -> int | None:

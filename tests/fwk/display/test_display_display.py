@@ -236,6 +236,12 @@ def test_lines_that_differ_are_no_flood() -> None:
     assert [group.text for group in groups][-1] == "kicked (and 1 like it)"
 
 
+def test_a_long_word_does_not_stop_the_display() -> None:
+    gate, word = FloodGate(), "x" * 3_000_000
+    assert [gate.passes(log(f"{word} at a/b, try {number}"), 0) for number in range(PRINTED_MAX + 1)].count(True) == 4
+    assert gate.passes(log(f"{word} elsewhere"), 0)
+
+
 def test_a_warning_that_returns_stays_one_line() -> None:
     groups = LineGroups(10)
     for number in range(5):

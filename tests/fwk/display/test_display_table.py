@@ -65,3 +65,10 @@ def test_control_characters_do_not_reach_the_terminal() -> None:
 def test_lines_break_between_words(text: str, width: int, lines: list[str]) -> None:
     assert wrapped(text, width) == lines
     assert all(cells(line) <= width for line in lines)
+
+
+def test_a_long_word_is_broken_into_lines() -> None:
+    lines = wrapped("see " + "x" * 1_000_000, 80)
+    assert lines[0] == "see"
+    assert {len(line) for line in lines[1:]} == {80}
+    assert "".join(lines[1:]) == "x" * 1_000_000
