@@ -29,7 +29,8 @@ _LARGE_BATCHES: dict[str, Any] = {"flush_tick": 10.0, "flush_num_bytes": 4 << 20
 """For recordings: files are a quarter as large as with the batches of live runs."""
 _FLUSH_PERIOD_US = US_PER_S
 _FRAMEWORK = "fwk/"
-_SHOWN = ("fwk/log", "fwk/frame")
+_LOG = "fwk/log"
+_SHOWN = (_LOG, "fwk/frame")
 """Channels of the framework that are shown."""
 
 ViewError = ExtensionError
@@ -145,6 +146,9 @@ class RerunFeed:
             return
         tick = tick_of(channel, data)
         time_us = message.time_us - self._zero_us
+        if channel == _LOG:
+            self._take_line(data, tick or self._tick, time_us)
+            return
         if tick is not None and tick > self._tick:
             self._draw()
             self._tick, self._time_us = tick, max(self._time_us, time_us)
@@ -163,6 +167,17 @@ class RerunFeed:
         self._output.show(channel, found)
         if self._frames and current_name(type_name(type(found))) == "core.frame_t":
             self._look(channel, found)
+
+    def _take_line(self, data: bytes, tick: int, time_us: int) -> None:
+        """Shows a log line at its own tick: lines may come before the messages of earlier ticks."""
+        try:
+            line = decoded(data)
+        except Exception:  # any error of generated code on broken bytes
+            self.undecodable[_LOG] = self.undecodable.get(_LOG, 0) + 1
+            return
+        self._output.at(tick, time_us if self._zero_us else line.time_us)
+        self._output.show(_LOG, line)
+        self._output.at(self._tick, self._time_us)
 
     def _is_shown(self, channel: str) -> bool:
         shown = self._shown.get(channel)

@@ -17,13 +17,14 @@ from typer.testing import CliRunner
 from fwk.cli.commands import app
 from fwk.log_tools.live_frames import LiveFrames
 from fwk.web.rerun_feed import RerunFeed
-from lcmtypes.core import frame_t, picture_t, transform_t, transforms_t
+from lcmtypes.core import frame_t, log_t, picture_t, transform_t, transforms_t
 from lcmtypes.robot import laser_scan_t
 from lcmtypes.soccer import ball_percept_t, pose_t
 from tests.fwk.log_tools.log_tools_made import PLAIN, recording
 from tests.fwk.recording.recording_made import Entry, write
 from tests.harness.commands import BIN
 
+POSE = pose_t(x_m=1.0, y_m=2.0, localized=True)
 PROJECT = """
 from fwk.web import View
 
@@ -117,6 +118,13 @@ def test_images_of_a_run_come_from_its_memory(tmp_path: Path, monkeypatch: pytes
     feed.close()
     images = Written(tmp_path / "a.rrd").values("/images/r/image", "EncodedImage:blob")
     assert list(images) == [1, 5, 9, 13, 17], "five a second"
+
+
+def test_log_lines_are_at_their_tick_and_move_no_other_message(tmp_path: Path) -> None:
+    line = "fwk/log", log_t(tick=3, time_us=150_000, component="r/base", text="hot").encode(), 50_000
+    written = shown(tmp_path, [at(1, "r/pose", POSE), line, at(2, "r/pose", POSE)])
+    assert written.values("/log/r/base", "TextLog:text") == {3: ["r/base: hot"]}
+    assert [*written.values("/r/pose/world", "Points3D:positions")] == [1, 2]
 
 
 def test_the_command_writes_what_a_project_draws(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
