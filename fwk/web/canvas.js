@@ -71,7 +71,7 @@ export default {
     on("pointerdown", this.press); on("pointermove", this.move); on("pointerup", this.release);
     on("keydown", this.key); on("dblclick", () => { this.scale = 0; this.paint(); });
     this.pointers = new Map();
-    new ResizeObserver(() => this.paint()).observe(this.canvas);
+    new ResizeObserver(() => { if (this.fitted) this.scale = 0; this.paint(); }).observe(this.canvas);
     this.ask();
   },
   beforeUnmount() { this.open = false; clearTimeout(this.next); cancelAnimationFrame(this.frame); },
@@ -86,6 +86,7 @@ export default {
         const answer = await fetch(`${this.url}&have=${this.have}&ground=${this.ground.name}`);
         this.pace = Math.max(this.period, Number(answer.headers.get("fwk-period-ms")));
         if (answer.ok) await this.take(answer);
+        else this.pace = RETRY_MS; // the run has ended, or is not there yet
       } catch (error) { this.pace = RETRY_MS; }
       setTimeout(this.ask, this.due + this.pace - performance.now());
     },
@@ -158,6 +159,7 @@ export default {
       }
       this.scale = Math.min(width / (box[2] - box[0]), height / (box[3] - box[1]));
       this.middle = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+      this.fitted = true; // until it is zoomed or shifted
     },
     paint() {
       if (!this.drawing) return;
@@ -254,6 +256,7 @@ export default {
       this.scale = Math.min(5000, Math.max(0.5, this.scale * factor));
       const after = this.at({ offsetX: x, offsetY: y });
       this.middle = [this.middle[0] + before[0] - after[0], this.middle[1] + before[1] - after[1]];
+      this.fitted = false;
       this.paint();
     },
     press(event) {
@@ -278,6 +281,7 @@ export default {
         [this.dragged.x, this.dragged.y] = this.at(event);
         this.paint();
       } else {
+        this.fitted = this.fitted && !this.pressed.moved;
         this.middle = [this.middle[0] - (event.offsetX - last[0]) / this.scale,
                        this.middle[1] + (this.up * (event.offsetY - last[1])) / this.scale];
         this.paint();
@@ -305,7 +309,7 @@ export default {
       else if (event.key === "-") this.zoom(1 / 1.2, x, y);
       else if (event.key === "0") { this.scale = 0; this.paint(); }
       else if (event.key === "Tab" || !(event.key in moves)) return;
-      else { this.middle = this.middle.map((m, i) => m + moves[event.key][i]); this.paint(); }
+      else { this.middle = this.middle.map((m, i) => m + moves[event.key][i]); this.fitted = false; this.paint(); }
       event.preventDefault();
     },
   },

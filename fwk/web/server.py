@@ -29,6 +29,8 @@ from fwk.web.shared import Shared
 
 _RECONNECT_S = 30.0
 """A page survives so long without a sign of life, on a busy machine or while the browser sleeps; then it loads anew."""
+_BUILD_S = 120.0
+"""Longest time in which a page is made: on a machine without an idle processor a page is late rather than missing."""
 _BUILDERS: dict[str, Callable[[Frame], None]] = {
     "/": system.build,
     "/view": view.build,
@@ -130,7 +132,7 @@ def _add_page(console: Console, path: str, builder: Callable[[Frame], Any]) -> N
                 "nothing runs on this machine; the page Runs starts launch files, and so does: fwk-launch FILE"
             ).classes("q-pa-md")
 
-    ui.page(path, response_timeout=_RECONNECT_S)(made)
+    ui.page(path, response_timeout=_BUILD_S)(made)
 
 
 async def _own_pages(console: Console, frame: Frame) -> dict[str, tuple[str, str]]:

@@ -82,7 +82,7 @@ def _settle(page: Page, settled_ms: float) -> None:
     """Waits until the page shows the run."""
     page.wait_for_function("document.querySelector('[data-name=clock]').innerText.startsWith('tick')")
     if page.url.partition("?")[0].endswith("/view"):
-        page.wait_for_function("document.querySelector('canvas')?.dataset.frames > 40")
+        page.wait_for_function("document.querySelector('canvas')?.dataset.frames > 10")
     page.wait_for_timeout(settled_ms)
 
 

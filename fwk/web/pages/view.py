@@ -40,8 +40,8 @@ async def _show(frame: Frame, views: list[View], number: int) -> None:
     drags = frame.may_steer and type(view).moved is not View.moved
     with ui.row().classes("w-full items-start"):
         canvas = frame.canvas(f"{view.title} of {frame.run}", 1 / view.rate_hz, drags, view=str(number))
-        canvas.props("data-name=canvas")
-        chosen = ui.row().classes("w-full items-start")
+        canvas.props("data-name=canvas").classes("fwk-view")
+        chosen = ui.row().classes("fwk-chosen items-start")
     hidden: set[str] = set()
 
     def show_layers(names: list[str]) -> None:

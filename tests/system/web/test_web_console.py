@@ -214,10 +214,18 @@ def test_a_view_draws_smoothly_and_lets_shapes_be_dragged(garden: Garden) -> Non
     x_px = box["x"] + box["width"] / 2 + place[0] * scale
     y_px = box["y"] + box["height"] / 2 - place[1] * scale
     page.mouse.click(x_px, y_px)
-    expect(page.locator("[data-name='canvas a/image'] canvas")).to_have_attribute("data-picture", re.compile(r"\d+"))
-    page.mouse.move(x_px, y_px)
+    image = page.locator("[data-name='canvas a/image'] canvas")
+    expect(image).to_have_attribute("data-picture", re.compile(r"\d+"))
+    expect(image).to_be_in_viewport(ratio=0.9)  # beside the drawing, which shows all of it again
+    box = canvas.first.bounding_box()
+    assert box
+    scale = float(canvas.first.get_attribute("data-scale") or 0)
+    assert scale == pytest.approx(min(box["width"], box["height"]) / 10.0, rel=0.01)
+    x_px = box["x"] + box["width"] / 2
+    y_px = box["y"] + box["height"] / 2
+    page.mouse.move(x_px + place[0] * scale, y_px - place[1] * scale)
     page.mouse.down()
-    page.mouse.move(box["x"] + box["width"] / 2 + 3 * scale, box["y"] + box["height"] / 2 - scale, steps=3)
+    page.mouse.move(x_px + 3 * scale, y_px - scale, steps=3)
     page.mouse.up()
     page.get_by_role("button", name="pause or resume").click()
     garden.run.until_true(lambda: "dragged mower" in garden.run.text, "the mower was dragged")
