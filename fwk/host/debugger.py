@@ -43,7 +43,9 @@ def check(request: DebugRequest) -> None:
         try:
             import_module("debugpy")
         except ImportError as error:
-            raise DebuggerMissingError("--debugpy: debugpy is not installed; type: pip install debugpy") from error
+            raise DebuggerMissingError(
+                "--debugpy: debugpy is not installed; type: pip install 'fwk[debugpy]'"
+            ) from error
 
 
 def debug(

@@ -30,7 +30,7 @@ def check_profiler() -> None:
         import_module("pyinstrument")
     except ImportError as error:
         raise ProfilerMissingError(
-            "--profile: pyinstrument is not installed; type: pip install pyinstrument"
+            "--profile: pyinstrument is not installed; type: pip install 'fwk[profile]'"
         ) from error
 
 

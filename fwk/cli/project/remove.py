@@ -1,10 +1,15 @@
 """`fwk remove reads|writes|serves|calls|setting COMPONENT NAME...`: removes ports or settings of a component."""
 
+from typing import TYPE_CHECKING
+
 import typer
 
 from fwk.cli.project.changing import DryRun
 from fwk.cli.project.edit import ComponentWord, Names, remove_each
 from fwk.cli.run_options import Json
+
+if TYPE_CHECKING:
+    from fwk.scaffold.source import Source
 
 remove = typer.Typer(add_completion=False, no_args_is_help=True)
 
@@ -44,12 +49,19 @@ def calls(component: ComponentWord, names: Names, dry_run: DryRun = False, as_js
 @remove.command("setting")
 def setting(component: ComponentWord, names: Names, dry_run: DryRun = False, as_json: Json = False) -> None:
     """Removes settings with their docstrings."""
-    from fwk.scaffold.settings import remove_setting
 
-    remove_each(component, names, dry_run, as_json, remove_setting)
+    def removed(source: "Source", name: str) -> list[str]:
+        from fwk.scaffold.settings import remove_setting  # needs a library that `remove_each` asks for
+
+        return remove_setting(source, name)
+
+    remove_each(component, names, dry_run, as_json, removed)
 
 
 def _remove(kind: str, component: str, names: list[str], dry_run: bool, as_json: bool) -> None:
-    from fwk.scaffold.ports import remove_port
+    def removed(source: "Source", name: str) -> list[str]:
+        from fwk.scaffold.ports import remove_port  # needs a library that `remove_each` asks for
 
-    remove_each(component, names, dry_run, as_json, lambda source, name: remove_port(source, kind, name))
+        return remove_port(source, kind, name)
+
+    remove_each(component, names, dry_run, as_json, removed)

@@ -3,6 +3,7 @@
 import ast
 import json
 import re
+import sys
 from pathlib import Path
 
 import pytest
@@ -308,3 +309,6 @@ def test_commands_print_the_difference_and_do_it_once(tmp_path: Path, monkeypatc
     assert "is not a setting; write NAME:TYPE=VALUE" in typed(add, "setting", "sensor", "x:int", code=2)
     monkeypatch.setattr("fwk.cli.project.edit.find_spec", lambda name: None)
     assert "pip install 'fwk[new]'" in typed(add, *words, code=2)
+    for module, kind in (("ports", "reads"), ("settings", "setting")):
+        monkeypatch.setitem(sys.modules, f"fwk.scaffold.{module}", None)  # they import the missing library
+        assert "pip install 'fwk[new]'" in typed(remove, kind, "sensor", "ball", code=2)
