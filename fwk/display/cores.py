@@ -1,7 +1,8 @@
-"""Number of cores that this process may use."""
+"""Cores and memory that this process may use."""
 
 import math
 import os
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
@@ -15,17 +16,31 @@ def usable_cores(groups: Path = _GROUPS, mount: Path = _MOUNT) -> int:
     A container has a limit in its control group: `docker run --cpus=2` on a machine of 16 cores.
     """
     count = len(os.sched_getaffinity(0))
+    for folder in _folders("cpu", groups, mount):
+        count = min(count, math.ceil(_granted(folder) or count))
+    return count
+
+
+def memory_limit_bytes(groups: Path = _GROUPS, mount: Path = _MOUNT) -> int | None:
+    """Returns the memory that the control groups of this process grant, such as `docker run --memory=1g`; None: any."""
+    limits = []
+    for folder in _folders("memory", groups, mount):
+        for name in ("memory.max", "memory.limit_in_bytes"):
+            with suppress(OSError, ValueError):  # 'max': no limit
+                limits.append(int((folder / name).read_text()))
+    return min(limits, default=None)
+
+
+def _folders(controller: str, groups: Path, mount: Path) -> Iterator[Path]:
+    """Yields the folders of the control groups of this process, each before its parents, of both versions."""
     with suppress(OSError):
         for line in groups.read_text().splitlines():
             _, controllers, path = line.split(":", 2)
-            if controllers and "cpu" not in controllers.split(","):
+            if controllers and controller not in controllers.split(","):
                 continue
-            top = mount / "cpu" if controllers else mount
+            top = mount / controller if controllers else mount
             own = top / path.lstrip("/")
-            for folder in (own, *own.parents):
-                if folder.is_relative_to(top):
-                    count = min(count, math.ceil(_granted(folder) or count))
-    return count
+            yield from (folder for folder in (own, *own.parents) if folder.is_relative_to(top))
 
 
 def _granted(folder: Path) -> float:

@@ -11,7 +11,7 @@ from fwk.bus.port_owner import port_owner
 from fwk.bus.public import PublicBus
 from fwk.bus.sockets import GROUP, LOOPBACK, multicast_holder, own_socket
 from fwk.control.address import gateway_address, supervisor_address
-from fwk.display.cores import usable_cores
+from fwk.display.cores import memory_limit_bytes, usable_cores
 from fwk.display.plan_overview import fewer_processes
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
@@ -167,6 +167,7 @@ def _free_bytes() -> int:
     """Returns the memory that programs can get, in bytes; 0: unknown."""
     try:
         rows = dict(line.split(":", 1) for line in Path("/proc/meminfo").read_text().splitlines())
-        return int(rows["MemAvailable"].split()[0]) << 10
+        free_bytes = int(rows["MemAvailable"].split()[0]) << 10
+        return min(free_bytes, memory_limit_bytes() or free_bytes)
     except (OSError, KeyError, ValueError):
         return 0

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from fwk.cli.check import system_checks as checks
 from fwk.cli.check.doctor import doctor
 from fwk.cli.check.findings import Finding, Severity
-from fwk.display.cores import usable_cores
+from fwk.display.cores import memory_limit_bytes, usable_cores
 from fwk.lcm.typegen import generate
 from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
@@ -137,3 +137,18 @@ def test_cores_that_a_control_group_grants_are_counted(
     monkeypatch.setattr(os, "sched_getaffinity", lambda _: range(8))
     write_files(tmp_path, {**files, "groups": f"{line}\n"})
     assert usable_cores(tmp_path / "groups", tmp_path) == cores
+
+
+@pytest.mark.parametrize(
+    ("line", "files", "limit_bytes"),
+    [
+        ("0::/box/inner", {"box/inner/memory.max": "max\n", "box/memory.max": "1000\n"}, 1000),
+        ("4:memory:/box", {"memory/box/memory.limit_in_bytes": "2000\n"}, 2000),
+        ("1:cpu:/box", {"memory/box/memory.limit_in_bytes": "2000\n"}, None),
+    ],
+)
+def test_memory_that_a_control_group_grants_is_known(
+    line: str, files: dict[str, str], limit_bytes: int | None, tmp_path: Path
+) -> None:
+    write_files(tmp_path, {**files, "groups": f"{line}\n"})
+    assert memory_limit_bytes(tmp_path / "groups", tmp_path) == limit_bytes
