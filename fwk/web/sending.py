@@ -6,6 +6,7 @@ from typing import Any
 from nicegui import ui
 
 from fwk.control.client import ControlError, RefusedError
+from fwk.lcm import messages
 from fwk.plan.wiring.command_wiring import OUTSIDE
 from fwk.web.layout import Frame
 
@@ -28,6 +29,13 @@ def fields_of(kind: Any) -> dict[str, tuple[str, bool]]:
         for name, type_name, sizes in zip(kind.__slots__, kind.__typenames__, kind.__dimensions__, strict=True)
         if name not in _OWN and name not in counts
     }
+
+
+def examples_of(kind: Any) -> dict[str, str]:
+    """Returns the text with which each field that is not a single plain value begins: its empty value, in JSON."""
+    empty = messages.to_dict(kind())
+    wanted = [name for name, (type_name, plain) in fields_of(kind).items() if not plain and type_name != "byte"]
+    return {name: json.dumps(empty[name]) for name in wanted}
 
 
 def value_of(name: str, type_name: str, plain: bool, typed: Any) -> Any:
@@ -67,7 +75,8 @@ async def send_form(frame: Frame, channel: str) -> None:
     except ControlError as error:
         ui.label(str(error))
         return
-    made = {name: (_input(name, *how), *how) for name, how in fields_of(kind).items()}
+    examples = examples_of(kind)
+    made = {name: (_input(name, *how, examples.get(name, "")), *how) for name, how in fields_of(kind).items()}
 
     async def send() -> None:
         try:
@@ -86,8 +95,8 @@ async def send_form(frame: Frame, channel: str) -> None:
     ui.button("send", icon="send", on_click=send).props("no-caps").props("data-name=send")
 
 
-def _input(name: str, type_name: str, plain: bool) -> Any:
+def _input(name: str, type_name: str, plain: bool, text: str) -> Any:
     label = f"{name} ({type_name.removeprefix('lcmtypes.')}{'' if plain else ', JSON'})"
     if plain and type_name == "boolean":
         return ui.checkbox(label)
-    return ui.input(label).props("dense outlined").classes("w-full")
+    return ui.input(label, value=text).props("dense outlined").classes("w-full")

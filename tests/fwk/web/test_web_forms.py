@@ -1,13 +1,15 @@
 """Texts that people type into pages, and the answers of the pages."""
 
+import json
 from typing import Any
 
 import pytest
 
+from fwk.lcm.messages import of_dict
 from fwk.web.pages.log import FilterMistakeError, filter_of
 from fwk.web.pages.settings import matches, tree_of
 from fwk.web.rates import Rates
-from fwk.web.sending import FieldError, fields_of, value_of
+from fwk.web.sending import FieldError, examples_of, fields_of, value_of
 from fwk.web.words import age, rows_of, seconds, size
 from lcmtypes.core import log_t
 from lcmtypes.soccer import place_ball_t, world_model_t
@@ -21,6 +23,17 @@ def test_a_form_has_the_fields_that_people_fill_in() -> None:
     assert "n_mates" not in fields
     assert fields["localized"] == ("boolean", True)
     assert fields["mate_roles"] == ("string", False)
+
+
+def test_lists_and_structures_begin_with_their_empty_value() -> None:
+    examples = examples_of(world_model_t)
+    ball = json.loads(examples["ball"])
+    assert (ball["x_m"], ball["covariance"]) == (0.0, [[0.0] * 4] * 4)
+    assert examples["mate_roles"] == "[]"
+    assert "localized" not in examples
+    typed = examples | {"ball": json.dumps(ball | {"x_m": 1.5})}
+    values = {name: value_of(name, *fields_of(world_model_t)[name], text) for name, text in typed.items()}
+    assert of_dict(world_model_t, values).ball.x_m == 1.5
 
 
 @pytest.mark.parametrize(
