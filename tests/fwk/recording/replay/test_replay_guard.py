@@ -19,8 +19,10 @@ from pathlib import Path
 
 import lcm
 import pytest
+from typer.testing import CliRunner
 
 from fwk import Component, Writes
+from fwk.cli.commands import app
 from fwk.model.tick_events import FinalDone, HostStarted, HostStopped, StageBegun, StageDone
 from fwk.recording.replay.guard import Guard, ReachesOutsideError
 from fwk.testing.plans import plan_of
@@ -94,6 +96,17 @@ def test_declared_driver_is_left_out_from_the_start(tmp_path: Path) -> None:
     replay = recorded(tmp_path / "log.lcm", DeclaredWheels).replayed()
     assert opened == []
     assert replay.left_out == {"r/wheels": "it reaches outside"}
+
+
+def test_replay_command_says_that_it_compared_nothing(tmp_path: Path) -> None:
+    recorded(tmp_path / "log.lcm", DeclaredWheels).replayed()
+    done = CliRunner().invoke(app, ["replay", str(tmp_path / "log.lcm"), "--verify"])
+    assert done.stdout.splitlines() == [
+        "0 iterations replayed",
+        "not replayed: r/wheels: it reaches outside",
+        "nothing was compared: none of these components wrote a message",
+    ]
+    assert done.exit_code == 0
 
 
 def test_component_leaves_the_files_of_the_run_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
