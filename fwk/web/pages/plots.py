@@ -28,7 +28,7 @@ def build(frame: Frame) -> None:
         chart = ui.echart(
             {
                 "animation": False,
-                "legend": {},
+                "legend": {"top": 0},
                 "tooltip": {"trigger": "axis"},
                 "grid": {"left": 60, "right": 20, "top": 40, "bottom": 40},
                 "xAxis": {"type": "value", "scale": True, "name": "s"},
