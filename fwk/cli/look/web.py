@@ -12,6 +12,7 @@ from fwk.cli.run.run_record import read_record
 from fwk.cli.run_options import BAD_INPUT, FAILED
 
 _HOST_NAME = re.compile(r"[A-Za-z0-9]([A-Za-z0-9.-]*[A-Za-z0-9])?")
+_EVERY = ("0.0.0.0", "::")
 
 
 def web(
@@ -62,6 +63,11 @@ def web(
     if not local and not (certificate and key):
         raise typer.BadParameter(
             f"--address {address}: other machines reach it, so it needs TLS; add --certificate FILE --key FILE"
+        )
+    if address in _EVERY and not names:
+        raise typer.BadParameter(
+            f"--address {address}: these are all addresses of this machine, and links need one; add --name with the "
+            "name or address by which browsers reach it"
         )
     if local and (certificate or key):
         raise typer.BadParameter("--certificate and --key are for addresses beyond this machine; leave them out")
