@@ -58,12 +58,13 @@ def add_drawings(app: FastAPI, console: Console) -> None:
                 key = ("drawing", link.run.path, link.tick, number, device)
                 return _answer(request, await console.shared.get(key, _RECORDED_AGE_S, draw))
             found = await console.shared.get(("drawing", link.name, number, device), _DRAWING_AGE_S, draw)
-            lags, paused = await link.lags(), (await link.clock())["paused"]
+            lags, clock = await link.lags(), await link.clock()
         except ControlError as error:
             return PlainTextResponse(str(error), 503, _NO_STORE)
         except LogError as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
-        return _answer(request, found, _LAG_PERIOD_MS if lags else 0, glides=not paused and not device)
+        glides = bool(clock["pace"]) and not clock["paused"] and not device  # a run at full speed wants the processors
+        return _answer(request, found, _LAG_PERIOD_MS if lags else 0, glides)
 
     async def image(request: Request) -> Response:
         channel, frame = (request.query_params.get(key, "") for key in ("channel", "frame"))

@@ -18,5 +18,5 @@ class Senses(Component):
 def test_missing_debugger_is_named_with_the_command_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "debugpy", None)
     component = plan_of({"r/senses": Senses}).components[0]
-    with pytest.raises(DebuggerMissingError, match="pip install debugpy"):
+    with pytest.raises(DebuggerMissingError, match=r"pip install 'fwk\[debugpy\]'"):
         check(DebugRequest(0, component, debugpy_port=5678))

@@ -42,7 +42,7 @@ def test_system_page_shows_all_and_steers_by_clicks(garden: Garden) -> None:
 
 
 def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
-    page = garden.open("/plots?run=garden")
+    page, drawing = garden.open("/plots?run=garden"), f"/drawing?run={garden.name}"
     expect(page.locator("[data-name=state]")).to_have_text("running")
     page.get_by_role("button", name="pause or resume").click()
     expect(page.locator("[data-name=state]")).to_have_text("paused")
@@ -53,8 +53,11 @@ def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
     expect(page.locator("[data-name=state]")).to_have_text("paused")
     page.get_by_role("button", name="pause or resume").press("Enter")
     expect(page.locator("[data-name=state]")).to_have_text("running")
-    page.get_by_role("combobox", name="speed").click()
-    page.get_by_role("option", name="x 2").click()
+    speed = page.get_by_role("combobox", name="speed")
+    for option, glides in (("max", "0"), ("x 2", "1")):
+        speed.click()
+        page.get_by_role("option", name=option).click()
+        page.wait_for_function(f"async () => (await fetch({drawing!r})).headers.get('fwk-glides') === {glides!r}")
     expect(page.locator("[data-name=clock]")).to_contain_text(re.compile(r"x (1\.[5-9]|2)"))
 
 
