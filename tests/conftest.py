@@ -4,6 +4,7 @@ import gc
 import os
 import shutil
 import subprocess
+import sys
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import NoReturn
@@ -58,6 +59,20 @@ def _same_environment() -> Iterator[None]:
         os.environ.pop(name, None)
     os.environ.update({name: before[name] for name in changed & before.keys()})
     assert not left, f"the test changed variables of the environment: {', '.join(sorted(left))}"
+
+
+@pytest.fixture(autouse=True)
+def _own_modules(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """Forgets the modules of a test's own folder: those of a later test may have the same names."""
+    path, modules = list(sys.path), set(sys.modules)
+    yield
+    sys.path[:] = path
+    base = str(tmp_path_factory.getbasetemp())
+    for name in set(sys.modules) - modules:
+        module = sys.modules[name]
+        places = [getattr(module, "__file__", None) or "", *getattr(module, "__path__", [])]
+        if any(place.startswith(base) for place in places):
+            del sys.modules[name]
 
 
 @pytest.hookimpl(wrapper=True)

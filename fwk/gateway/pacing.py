@@ -21,8 +21,12 @@ LARGEST = 14
 A Java program pauses for some milliseconds to collect garbage, which its other threads do not show. Its socket holds
 the groups of that time, not more.
 """
-QUEUE_MAX = 16_384
-"""Largest number of waiting datagrams; of a system that writes more, the excess leaves at once."""
+QUEUE_MAX = 65_536
+"""Largest number of waiting datagrams, some 30 MB of a soccer match; the excess leaves at once.
+
+Room for what a run at full speed writes in half a minute: three listeners beside 104 processes on two cores take that
+long to catch up.
+"""
 LONGEST_US = 250_000
 """Longest wall time over which the messages of a tick are spread."""
 _NEVER = 1 << 62

@@ -1,7 +1,6 @@
 """A folder for the launch files, components and types of a test, from which nothing stays behind."""
 
-import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -11,18 +10,11 @@ from fwk.plan.load import LaunchOptions, load_plan
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """An empty folder that is the current one."""
     monkeypatch.chdir(tmp_path)
-    path, modules = list(sys.path), set(sys.modules)
-    sys.path.insert(0, str(Path(__file__).parent))  # launch files use the components of plan_parts
-    yield tmp_path
-    sys.path[:] = path
-    for name in set(sys.modules) - modules:
-        module = sys.modules[name]
-        where = [getattr(module, "__file__", None) or "", *getattr(module, "__path__", [])]
-        if any(each.startswith(str(tmp_path)) for each in where):
-            del sys.modules[name]
+    monkeypatch.syspath_prepend(Path(__file__).parent)  # launch files use the components of plan_parts
+    return tmp_path
 
 
 @pytest.fixture
