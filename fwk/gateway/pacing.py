@@ -22,7 +22,7 @@ A Java program pauses for some milliseconds to collect garbage, which its other 
 the groups of that time, not more.
 """
 QUEUE_MAX = 65_536
-"""Largest number of waiting datagrams, some 30 MB of a soccer match; the excess leaves at once.
+"""Largest number of waiting datagrams, some 30 MB of small messages; the excess leaves at once.
 
 Room for what a run at full speed writes in half a minute: three listeners beside 104 processes on two cores take that
 long to catch up.
