@@ -1,7 +1,6 @@
 """Candidates for the next word of a command line: commands, options, and names of running and recorded things."""
 
 import os
-import re
 import sys
 from collections.abc import Callable, Iterable
 from contextlib import redirect_stdout
@@ -14,9 +13,6 @@ from fwk.control.client import ControlError
 
 _TIMEOUT_S = 3.0  # a busy machine answers slowly
 _LAUNCH_FILES = (".yaml", ".yml")
-_RUNS = Path(".cache", "fwk", "runs")
-_OWN_NAME = re.compile(r"[-\dT]{20}(.+)-\d+")
-"""A run directory: its time, the run's own name, a process number."""
 
 
 def complete(words: list[str]) -> list[str]:
@@ -124,14 +120,18 @@ def _runs(_: str | None) -> Iterable[str]:
 
 
 def _run_directories(_: str | None) -> Iterable[str]:
-    folder = Path.home() / _RUNS
+    from fwk.cli.run.run_directory import RUNS
+
+    folder = Path.home() / RUNS
     return os.listdir(folder) if folder.is_dir() else ()
 
 
 def _recordings(_: str | None) -> Iterable[str]:
     """Returns the run directories, and the names of their runs, of which each stands for the newest."""
+    from fwk.cli.run.run_directory import own_name
+
     folders = [*_run_directories(None)]
-    return [*folders, *(found[1] for each in folders if (found := _OWN_NAME.fullmatch(each)))]
+    return [*folders, *filter(None, map(own_name, folders))]
 
 
 def _launch_files(_: str | None) -> Iterable[str]:

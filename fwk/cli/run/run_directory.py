@@ -104,8 +104,14 @@ def named(path: Path) -> Path:
     if str(path) != path.name or os.path.lexists(path):
         return path
     runs = Path.home() / RUNS
-    own = [folder for folder in runs.glob("*") if (found := _NAME.fullmatch(folder.name)) and found[1] == path.name]
+    own = [folder for folder in runs.glob("*") if own_name(folder.name) == path.name]
     return runs / path.name if os.path.isdir(runs / path.name) else max(own, default=path)
+
+
+def own_name(folder: str) -> str:
+    """Returns the own name of the run of a run directory; empty if the folder has another kind of name."""
+    found = _NAME.fullmatch(folder)
+    return found[1] if found else ""
 
 
 def in_use(path: Path) -> bool:

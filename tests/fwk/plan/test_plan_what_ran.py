@@ -1,7 +1,5 @@
 """The plan names the modules and the BLAS kernel that a run depends on."""
 
-import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
@@ -21,15 +19,13 @@ class Part(Component):
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder with a component's module and a module that it imports; both are imported."""
     (tmp_path / "steering_rules.py").write_text("GAIN = 1\n")
     (tmp_path / "steering.py").write_text("from steering_rules import GAIN\n")
     monkeypatch.syspath_prepend(tmp_path)
     import_module("steering")
-    yield tmp_path
-    for name in ("steering", "steering_rules"):
-        sys.modules.pop(name, None)
+    return tmp_path
 
 
 def plan_with(folder: Path) -> Plan:
