@@ -1,10 +1,15 @@
 // Shows the drawings of a view. Asks for a drawing only after the last drawing has come; a hidden page asks for nothing.
 // Shapes glide from drawing to drawing, so that motion is smooth however rarely drawings come. A glide takes the time
-// between two drawings and ends at the last one exactly; no shape is ever ahead of the drawings.
+// between two drawings and ends at the last one exactly; no shape is ever ahead of the drawings. Where the run lacks
+// processor time, pictures are as rare as their cost demands.
 const TRAIL_MS = 2000;
 const LEAST_PX = 3.7;
 const RETRY_MS = 1000;
-const PICTURE_MS = 30; // least time from picture to picture of a glide
+const PICTURE_MS = 45; // from picture to picture of a glide: more than 20 pictures a second
+const EARLY_MS = 4; // a picture may come so much earlier, rather than a whole refresh of the screen later
+const SHARE = 0.05; // of a processor that pictures may take from a run that lacks processor time
+const COSTS = 9; // pictures whose cost is known
+const DEAREST_MS = 500; // from picture to picture
 const LONGEST_MS = 1500; // glide
 const SAME_M = 0.003; // difference between lengths that are equal before positions are rounded
 
@@ -44,6 +49,12 @@ export function between({ from, to, turn }, part) {
   return made;
 }
 
+/** Returns the time from picture to picture: longer where the run lacks processor time and pictures are dear. */
+export function pictureTime(costs, scarce) {
+  const middle = [...costs].sort((a, b) => a - b)[costs.length >> 1] || 0;
+  return scarce ? Math.min(DEAREST_MS, Math.max(PICTURE_MS, middle / SHARE)) : PICTURE_MS;
+}
+
 export default {
   template: `<div class="fwk-canvas"><canvas tabindex="0" role="img" :aria-label="label"></canvas></div>`,
   props: { url: String, label: String, period: { type: Number, default: 50 }, hidden: { type: Array, default: () => [] },
@@ -63,7 +74,11 @@ export default {
     this.shapes = []; // as they are shown
     this.pairs = []; // of the glide
     this.periods = []; // of the last drawings
-    [this.came, this.pictured, this.pictures] = [0, 0, 0];
+    [this.came, this.pictureDue, this.pictures] = [0, 0, 0];
+    this.costs = []; // time that the last pictures took, in ms
+    this.scarce = false; // the run lacks processor time
+    this.painted = new MessageChannel();
+    this.painted.port1.onmessage = ({ data }) => (this.costs = [...this.costs, performance.now() - data].slice(-COSTS));
     [this.due, this.pace] = [0, this.period];
     const on = (name, handle, options) => this.canvas.addEventListener(name, handle, options);
     on("wheel", (e) => { e.preventDefault(); this.zoom(e.deltaY < 0 ? 1.15 : 1 / 1.15, e.offsetX, e.offsetY); },
@@ -74,7 +89,10 @@ export default {
     new ResizeObserver(() => { if (this.fitted) this.scale = 0; this.paint(); }).observe(this.canvas);
     this.ask();
   },
-  beforeUnmount() { this.open = false; clearTimeout(this.next); cancelAnimationFrame(this.frame); },
+  beforeUnmount() {
+    this.open = false;
+    clearTimeout(this.next); cancelAnimationFrame(this.frame); this.painted.port1.close();
+  },
   watch: { hidden() { this.paint(); } },
   methods: {
     async ask() {
@@ -85,6 +103,7 @@ export default {
       try {
         const answer = await fetch(`${this.url}&have=${this.have}&ground=${this.ground.name}`);
         this.pace = Math.max(this.period, Number(answer.headers.get("fwk-period-ms")));
+        this.scarce = this.pace > this.period;
         if (answer.ok) await this.take(answer);
         else this.pace = RETRY_MS; // the run has ended, or is not there yet
       } catch (error) { this.pace = RETRY_MS; }
@@ -134,20 +153,29 @@ export default {
         this.$emit("layers", layers);
       }
       if (drawing.headline !== this.headline) this.$emit("headline", (this.headline = drawing.headline));
-      this.advance();
+      if (this.pairs.some((each) => each.from)) this.wait(); // the glide begins with what is shown already
+      else this.advance();
+    },
+    /** Shows the next picture when it is due. */
+    wait() {
+      clearTimeout(this.next);
+      cancelAnimationFrame(this.frame);
+      const wait = this.pictureDue - EARLY_MS - performance.now();
+      this.next = setTimeout(() => (this.frame = requestAnimationFrame(this.advance)), wait);
     },
     /** Shows where the shapes are now, again and again until the glide has ended. */
     advance() {
       clearTimeout(this.next);
       cancelAnimationFrame(this.frame);
-      const now = performance.now();
-      const part = this.pairs.some((each) => each.from) ? Math.min(1, (now - this.began) / this.glide) : 1;
-      if (part < 1) this.next = setTimeout(() => (this.frame = requestAnimationFrame(this.advance)), PICTURE_MS / 2);
-      if (part < 1 && now < this.pictured + PICTURE_MS) return;
-      this.pictured = now;
+      const began = performance.now();
+      const part = this.pairs.some((each) => each.from) ? Math.min(1, (began - this.began) / this.glide) : 1;
+      const time = pictureTime(this.costs, this.scarce);
+      this.pictureDue = Math.max(this.pictureDue + time, began + time / 2);
       this.shapes = this.pairs.map((pair) => between(pair, part));
       this.paint();
       this.canvas.dataset.pictures = ++this.pictures;
+      this.painted.port2.postMessage(began); // comes when the browser has painted
+      if (part < 1) this.wait();
     },
     fit(width, height) {
       let box = this.drawing.bounds;

@@ -35,7 +35,9 @@ _DRAWING_AGE_S = 0.04
 _RECORDED_AGE_S = 1.0
 _IMAGE_AGE_S = 0.15
 _LAG_PERIOD_MS = 400
-"""Time from drawing to drawing while a run needs all processors."""
+"""Time from drawing to drawing while a run is behind its desired speed."""
+_FULL_SPEED_PERIOD_MS = 1000
+"""Time from drawing to drawing while a run goes as fast as possible."""
 _NO_STORE = {"cache-control": "no-store"}
 
 
@@ -63,8 +65,10 @@ def add_drawings(app: FastAPI, console: Console) -> None:
             return PlainTextResponse(str(error), 503, _NO_STORE)
         except LogError as error:
             return PlainTextResponse(str(error), 404, _NO_STORE)
-        glides = bool(clock["pace"]) and not clock["paused"] and not device  # a run at full speed wants the processors
-        return _answer(request, found, _LAG_PERIOD_MS if lags else 0, glides)
+        full_speed = not clock["pace"]
+        glides = not (full_speed or clock["paused"] or device)  # a run at full speed wants the processors
+        period_ms = 0 if not lags else _FULL_SPEED_PERIOD_MS if full_speed else _LAG_PERIOD_MS
+        return _answer(request, found, period_ms, glides)
 
     async def image(request: Request) -> Response:
         channel, frame = (request.query_params.get(key, "") for key in ("channel", "frame"))

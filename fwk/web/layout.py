@@ -54,9 +54,11 @@ _OTHER_TICK = """{
     history.replaceState(history.state, '', other(location.href));
     for (const link of document.querySelectorAll('a.fwk-link[href*="log="]')) link.href = other(link.href);
 }"""
-_TELL_HIDDEN = (
-    '<script>document.addEventListener("visibilitychange", () => emitEvent("visibility", document.hidden))</script>'
-)
+_TELL_HIDDEN = """<script>{
+    const tell = () => emitEvent("visibility", document.hidden);
+    document.addEventListener("visibilitychange", tell);
+    addEventListener("load", () => setTimeout(tell, 1000)); // a page that was opened behind others
+}</script>"""
 
 
 class Frame:

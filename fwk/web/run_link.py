@@ -2,13 +2,13 @@
 
 import asyncio
 import contextlib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
 from fwk.control import runs
-from fwk.control.address import gateway_address, supervisor_address
+from fwk.control.address import gateway_address, running, supervisor_address
 from fwk.control.client import Client, ControlError, RefusedError
 from fwk.lcm import envelope, messages
 from fwk.lcm.type_registry import use_types_of
@@ -34,21 +34,43 @@ class NotRunningError(ControlError):
 
 
 class Runs:
-    """All runs of this user on this machine."""
+    """All runs of this user on this machine.
 
-    def __init__(self, shared: Shared, look: Callable[[], dict[int, dict[str, Any]]] = runs.look) -> None:
+    Args:
+        shared: answers that browsers share.
+        look: asks all runs about themselves; on a busy machine a run may not answer in time.
+        ports: finds the bus ports of all runs that exist, whether or not they answer.
+    """
+
+    def __init__(
+        self,
+        shared: Shared,
+        look: Callable[[], dict[int, dict[str, Any]]] = runs.look,
+        ports: Callable[[], Collection[int]] = running,
+    ) -> None:
         self._shared = shared
         self._look = look
+        self._ports = ports
+        self._seen: dict[int, dict[str, Any]] = {}
         self._links: dict[str, RunLink] = {}
 
     async def all(self) -> dict[str, dict[str, Any]]:
         """Returns the descriptions of all runs: by name, or by port where several runs share a name."""
-        found = await self._shared.get("look", _LOOK_AGE_S, lambda: asyncio.to_thread(self._look))
+        found = await self._shared.get("look", _LOOK_AGE_S, lambda: asyncio.to_thread(self._all))
         names = [run.get("name") or run["plan"] for run in found.values()]
         return {
             name if names.count(name) == 1 else str(port): run
             for name, (port, run) in zip(names, found.items(), strict=True)
         }
+
+    def _all(self) -> dict[int, dict[str, Any]]:
+        """Returns the descriptions of all runs by port; a run that does not answer in time is as it was before."""
+        found = self._look()
+        silent = self._seen.keys() - found.keys()
+        if silent:
+            silent &= {*self._ports()}
+        self._seen = dict(sorted({**found, **{port: self._seen[port] for port in silent}}.items()))
+        return self._seen
 
     def link(self, name: str) -> "RunLink":
         """Returns the connection to the run of that name, whether or not it exists at the moment."""

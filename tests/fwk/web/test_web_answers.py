@@ -86,6 +86,23 @@ def test_runs_are_told_apart_by_name_or_by_port() -> None:
     asyncio.run(browser())
 
 
+def test_a_run_that_answers_late_still_runs() -> None:
+    looks = iter([{1: {"name": "red", "plan": "match"}, 2: {"name": "blue", "plan": "match"}}, {}, {}])
+    ports = iter([[1, 2], [2]])
+    now_us = 0
+
+    async def browser() -> None:
+        nonlocal now_us
+        found = Runs(Shared(lambda: now_us), lambda: next(looks), lambda: next(ports))
+        assert list(await found.all()) == ["red", "blue"]
+        now_us += 1_000_000
+        assert list(await found.all()) == ["red", "blue"]
+        now_us += 1_000_000
+        assert list(await found.all()) == ["blue"]
+
+    asyncio.run(browser())
+
+
 def test_a_view_without_draw_is_refused_at_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "half_lawn.py").write_text("from fwk.web import View\n\n\nclass Lawn(View):\n    title = 'Lawn'\n")

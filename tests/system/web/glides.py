@@ -35,6 +35,14 @@ GLIDES = """async (shapes) => {
 }"""
 """Returns the shapes half-way between two drawings."""
 
+PICTURE_TIMES = """async () => {
+    const own = performance.getEntriesByType('resource').find((each) => each.name.includes('canvas.js')).name;
+    const { pictureTime } = await import(own);
+    const dear = [20, 4, 5, 6, 90];
+    return [pictureTime(dear, false), pictureTime(dear, true), pictureTime([1, 1], true), pictureTime([], true),
+            pictureTime([900], true)];
+}"""
+"""Returns times between pictures: with time to spare, without, where pictures are cheap, unknown, very dear."""
 
 BEFORE = [
     {"k": "circle", "of": "a", "x": 0, "y": 0, "r": 1},

@@ -13,7 +13,7 @@ from fwk.control.client import Client
 from tests.harness.browser import Console
 from tests.harness.garden import ROWS, Garden, row
 from tests.programs.garden_system import CROWD
-from tests.system.web.glides import AFTER, BEFORE, CENTRE, GLIDES, HALF_WAY, WAIT_FOR_GLIDES
+from tests.system.web.glides import AFTER, BEFORE, CENTRE, GLIDES, HALF_WAY, PICTURE_TIMES, WAIT_FOR_GLIDES
 from tools.docs.web_pictures import take
 
 pytestmark = pytest.mark.system
@@ -58,6 +58,8 @@ def test_pause_step_and_speed_act_on_the_run(garden: Garden) -> None:
         speed.click()
         page.get_by_role("option", name=option).click()
         page.wait_for_function(f"async () => (await fetch({drawing!r})).headers.get('fwk-glides') === {glides!r}")
+        if option == "max":
+            assert page.request.get(f"{garden.console.url}{drawing}").headers["fwk-period-ms"] == "1000"
     expect(page.locator("[data-name=clock]")).to_contain_text(re.compile(r"x (1\.[5-9]|2)"))
 
 
@@ -242,6 +244,7 @@ def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
     canvas = page.locator("canvas")
     expect(canvas).to_have_attribute("data-frames", re.compile(r"[1-9]"))
     assert page.evaluate(GLIDES, [BEFORE, AFTER]) == HALF_WAY
+    assert page.evaluate(PICTURE_TIMES) == [45, 120, 45, 45, 500]
     scale = float(canvas.get_attribute("data-scale") or 0)
 
     def wait_for_scale(wanted: float) -> None:

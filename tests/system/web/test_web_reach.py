@@ -1,5 +1,6 @@
 """Browsers of other machines, and browsers that sleep."""
 
+import re
 import ssl
 import subprocess
 import urllib.error
@@ -68,3 +69,25 @@ def test_a_browser_that_slept_shows_the_run_again(garden: Garden) -> None:
     expect(page.locator("[data-name=clock]")).to_contain_text(f"tick {tick} ")
     frames = int(page.locator("canvas").get_attribute("data-frames") or 0)
     page.wait_for_function(f"() => Number(document.querySelector('canvas').dataset.frames) > {frames}")
+
+
+UNCHANGED = """() => {
+    const clock = document.querySelector('[data-name=clock]').innerText;
+    if (clock !== window.before) [window.before, window.since] = [clock, performance.now()];
+    return clock.startsWith('tick') && performance.now() > window.since + 2500;
+}"""
+"""Whether the clock of a page has stood still."""
+
+
+def test_a_page_that_is_opened_behind_others_asks_nothing(garden: Garden) -> None:
+    context = garden.browser.browser.new_context()
+    context.add_init_script("window.behind = true; Object.defineProperty(document, 'hidden', { get: () => behind })")
+    page = context.new_page()
+    page.goto(f"{garden.console.url}/view?run={garden.name}")
+    page.wait_for_function(UNCHANGED)
+    before = page.locator("[data-name=clock]").inner_text()
+    assert page.locator("canvas").get_attribute("data-frames") is None
+    page.evaluate("window.behind = false; document.dispatchEvent(new Event('visibilitychange'))")
+    expect(page.locator("[data-name=clock]")).not_to_have_text(before)
+    expect(page.locator("canvas")).to_have_attribute("data-frames", re.compile(r"\d"))
+    context.close()
