@@ -46,7 +46,16 @@ def missing_program(command: Sequence[str], folders: Sequence[str]) -> str:
     where = (
         "beside the launch file or in the folder above it" if "/" in word else "on the path; for a file write ./NAME"
     )
-    return f"no program '{word}' {where}"
+    return f"no program '{word}' {where}{_how_to_build(word, folders)}"
+
+
+def _how_to_build(word: str, folders: Sequence[str]) -> str:
+    """Returns what builds a program, as the end of a sentence; empty: no Makefile is in its folder, or above it."""
+    for place in (Path.cwd(), *map(Path, folders)):
+        for folder in Path(word).parents if "/" in word else ():
+            if (place / folder / "Makefile").is_file():
+                return f"; it may have to be built: make -C {os.path.relpath(place / folder)}"
+    return ""
 
 
 class ChildProcess:

@@ -12,6 +12,7 @@ from fwk.cli.run_options import Json
 from fwk.plan.files.launch_file import shown
 from fwk.scaffold.interface import KINDS, generate_types, new_interface
 from fwk.scaffold.new import new_component, new_launch, new_project
+from fwk.scaffold.programs import build_programs
 from fwk.scaffold.project import Project, project_at
 from fwk.scaffold.templates import kinds
 
@@ -72,10 +73,13 @@ def component(
         sort = asked(kind, f"Kind: {_KINDS}", "--kind", "stages")
         changes = new_component(found, chosen, sort, launch, namespace)
         file = found.launch_file(launch).name
-        build = ("make -C native",) if sort == "c" else ()
-        carry_out(changes, dry_run, force, as_json, (*build, f"fwk check {file}", f"fwk-launch {file}"))
-        if not dry_run:
-            generate_types(found)
+        carry_out(changes, dry_run, force, as_json, (f"fwk check {file}", f"fwk-launch {file}"))
+        if dry_run:
+            return
+        generate_types(found)
+        if sort == "c":
+            built = build_programs(found)
+            typer.echo(built, err=True) if as_json else say(built)
 
 
 @new.command("interface")

@@ -47,9 +47,9 @@ def go_on_live(recording: Recording, asked: BranchRequest, as_json: bool) -> Non
     classes = dict(_pair(text) for text in asked.classes)
     with_classes(recording, classes)
     branch = Branch(recording, classes)
+    settings = branch.check(asked.sets, asked.to_tick)  # a mistake is named before the replay, which takes long
     branch.run(asked.to_tick)
     branch.check_state()
-    settings = branch.check(asked.sets)
     log_path = asked.record or _new_log(recording)
     sink = begun_log(
         log_path, recording, asked.to_tick, branch.cameras_again, branch.in_envelopes, lambda text: notice(text)

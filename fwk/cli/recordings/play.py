@@ -130,8 +130,11 @@ class _Playing:
         Raises:
             PluginError: a plugin failed.
         """
+        if wait and self._bus.busy_listeners() is None:
+            self._say("waits until a program listens")
         while wait and self._bus.busy_listeners() is None and not self._controls.quits:
             self._sleep(monotonic_us() + _LOOK_US)
+        self._say("plays from here")
         self._player.resume(monotonic_us()) if not self._player.paused else None
         while not self._controls.quits and not (self._player.ended and not self._publisher.waiting):
             if not self._publisher.waiting:  # a tick begins when the one before has left
@@ -161,6 +164,12 @@ class _Playing:
             if self._controls.press(key, monotonic_us()):
                 self._publish(self._player.step(monotonic_us()))
             self._redraw_us = 0
+
+    def _say(self, what: str) -> None:
+        """Says on stderr what begins, where no status line does: in a pipe or a file."""
+        if not self._shows:
+            name = self._player.timeline.path.name
+            typer.echo(f"{name}: {self._controls.position()}: {what}; Ctrl-C ends", err=True)
 
     def _draw(self) -> None:
         self._redraw_us = monotonic_us() + _REDRAW_US

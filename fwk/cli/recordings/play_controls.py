@@ -44,15 +44,19 @@ class Controls:
 
     def line(self) -> str:
         """Returns the status line."""
-        player, timeline = self.player, self.player.timeline
+        player = self.player
         if self._typed is not None:
             return f"go to tick, time (12.5s) or bookmark: {self._typed}"
         if self.said:
             return self.said
+        return f"{self.position()}{', paused' if player.paused else ''}, {player.messages} messages   {KEYS}"
+
+    def position(self) -> str:
+        """Returns tick, time and speed."""
+        player, timeline = self.player, self.player.timeline
         where = f"tick {player.tick}, " if player.tick is not None else ""
-        pace = f"speed {speed_word(player.speed)}{', paused' if player.paused else ''}"
-        moment = f"{where}{timeline.seconds(player.time_us):.2f} of {timeline.length_s:.2f} s"
-        return f"{moment}, {pace}, {player.messages} messages   {KEYS}"
+        seconds = f"{timeline.seconds(player.time_us):.2f} of {timeline.length_s:.2f} s"
+        return f"{where}{seconds}, speed {speed_word(player.speed)}"
 
     def _type(self, key: str, now_us: int) -> None:
         assert self._typed is not None

@@ -9,7 +9,7 @@ from fwk.gateway.connections import Sink
 from fwk.lcm import envelope
 from fwk.model.channel_table import facts_in
 from fwk.model.names import LINES
-from fwk.model.plain_values import value_messages, value_of
+from fwk.model.plain_values import value_messages
 from fwk.model.tick_events import (
     ChannelsChanged,
     HostLost,
@@ -70,15 +70,15 @@ class Branch(LiveReplay):
         writers = {channel.name: channel.writer for channel in self._run_plan.channels}
         return [channel for channel in self._frames_after if writers[channel] in self._lives.chosen]
 
-    def check(self, sets: Sequence[str]) -> list[NewSettings]:
-        """Returns the components' new settings after the branch, from `NAME.SETTING=VALUE`.
+    def check(self, sets: Sequence[str], to_tick: int) -> list[NewSettings]:
+        """Returns the components' new settings after this tick, from `NAME.SETTING=VALUE`, without a replay.
 
         Raises:
             RecordingError: a setting does not exist, or a value does not fit.
         """
         settings = RunSettings(self._run_plan)
-        for component, changes in self._lives.settings.items():
-            settings.take(NewSettings(component, value_of(changes[-1].values), {}), "the recording")
+        for component, values in self.recording.settings_at(to_tick).items() if sets else ():
+            settings.take(NewSettings(component, values, {}), "the recording")
         try:
             return settings.check(sets)
         except RequestError as error:

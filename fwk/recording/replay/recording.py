@@ -1,8 +1,10 @@
 """A recording as the main loop saw it: ticks with their events, and the messages that each made visible."""
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from fwk.lcm.envelope import marked
 from fwk.lcm.event_log import Event
@@ -111,6 +113,20 @@ class Recording:
                     messages.setdefault((event.channel, header.tick, header.stage), []).append(event.data)
                 elif event.channel in types:  # skipped, it would count as lost and never be compared
                     raise RecordingError(f"{self.path}: damaged: {event.channel} has a message without a whole header")
+
+    def settings_at(self, tick: int) -> dict[int, Any]:
+        """Returns the settings that components were given until the end of a tick, by component; reads tick records
+        alone, up to a damaged one.
+        """
+        found: dict[int, Any] = {}
+        with suppress(*BROKEN):
+            for event in self._reader:
+                if event.channel == RECORD:
+                    record = read_record(event.data, self.plan, self.version)
+                    if record.tick > tick:
+                        break
+                    found |= {change.component: value_of(change.values) for change in record.settings}
+        return found
 
     def _of_today(self, event: Event) -> Event:
         try:

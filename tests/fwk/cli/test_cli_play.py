@@ -1,5 +1,6 @@
 """`fwk play`: keys, bad input, what lcm-logger hears, and a live component on a played log."""
 
+import json
 import signal
 from pathlib import Path
 
@@ -81,6 +82,15 @@ def test_bad_input_of_play_is_explained(tmp_path: Path, ports: PortBlock, words:
     done = CliRunner().invoke(app, [str(recording(tmp_path / "log")), "--url", ports.public_url, *words])
     assert (done.exit_code, done.stdout) == (2, "")
     assert reason in done.stderr
+
+
+def test_without_a_terminal_play_says_that_it_begins(tmp_path: Path, ports: PortBlock) -> None:
+    app = typer.Typer()
+    app.command()(play)
+    words = [str(recording(tmp_path / "log")), "--url", ports.public_url, "--speed", "max", "--from", "4", "--json"]
+    done = CliRunner().invoke(app, words)
+    assert done.stderr == "log: tick 4, 0.20 of 0.50 s, speed max: plays from here; Ctrl-C ends\n"
+    assert json.loads(done.stdout)["rounds"] == 1
 
 
 @pytest.mark.slow

@@ -124,7 +124,7 @@ def test_each_byte_of_an_answer_is_searched_once() -> None:
     assert JsonLines().length_of(bytearray(b"a\nb"), 2) == 0
 
 
-def test_programs_that_cannot_start_are_named(tmp_path: Path) -> None:
+def test_programs_that_cannot_start_are_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(ProgramError, match="'no-such-program -x' cannot be started: there is no such program"):
         bench_of("no-such-program", "-x")
     (tmp_path / "tool").write_text("")
@@ -132,6 +132,10 @@ def test_programs_that_cannot_start_are_named(tmp_path: Path) -> None:
     assert missing_program(["./tool"], [str(tmp_path)]) == f"'./tool' is not executable; type: chmod +x {tmp_path}/tool"
     assert missing_program(["./other"], []).startswith("no program './other' beside the launch file")
     assert missing_program(["sh", "./other"], []) == ""
+    (tmp_path / "native").mkdir()
+    (tmp_path / "native" / "Makefile").touch()
+    monkeypatch.chdir(tmp_path)
+    assert missing_program(["native/build/tool"], []).endswith("; it may have to be built: make -C native")
 
 
 WITH_FILES = """

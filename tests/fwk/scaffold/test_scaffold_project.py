@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pexpect
 import pytest
+from typer.testing import CliRunner
 
+from fwk.cli.project.new import new
 from fwk.scaffold.changes import write
 from fwk.scaffold.interface import generate_types
 from fwk.scaffold.new import new_component, new_project
@@ -87,6 +89,21 @@ def test_every_kind_passes_types_and_tests_runs_and_replays(
     finally:
         launched.end()
     replayed(project.root)
+
+
+def test_a_component_in_c_runs_at_once(
+    tmp_path: Path, needs: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    needs("cc", "make")
+    write(new_project("garden", tmp_path))
+    monkeypatch.chdir(tmp_path)
+    said = CliRunner().invoke(new, ["component", "counter", "--kind", "c"])
+    assert said.output.endswith("built with: make -C native\n")
+    check(Project(tmp_path), "fwk", "check", "garden.yaml")
+    monkeypatch.setenv("PATH", str(tmp_path))
+    said = CliRunner().invoke(new, ["component", "other", "--kind", "c"])
+    assert "not built: make: No such file or directory; install make and a C compiler" in said.output
+    assert said.exit_code == 0
 
 
 def test_missing_words_are_asked_for_on_a_terminal(tmp_path: Path) -> None:

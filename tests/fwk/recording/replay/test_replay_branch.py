@@ -4,8 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from pydantic import model_validator
 
-from fwk import Clock, Component, MainLoop, PluginControl, Reads, Writes
+from fwk import Clock, Component, Config, MainLoop, PluginControl, Reads, Writes
+from fwk.cli.recordings.branch import BranchRequest, go_on_live
 from fwk.lcm.messages import sequence_of
 from fwk.model.plan import Plan
 from fwk.model.tick_events import (
@@ -203,3 +205,41 @@ def test_a_main_loop_that_cannot_be_rebuilt_is_refused(tmp_path: Path) -> None:
     branched(given, to_tick=2)
     with pytest.raises(RecordingError, match="cannot go on live after tick 3: in tick 3 the main loop passes to a"):
         branched(given)
+
+
+class Limits(Config):
+    least: int = 0
+    most: int = 5
+
+    @model_validator(mode="after")
+    def _in_order(self) -> "Limits":
+        if self.least > self.most:
+            raise ValueError("least is more than most")
+        return self
+
+
+class Limited(Sensor):
+    config: Limits
+
+
+def test_settings_are_checked_without_a_replay(tmp_path: Path) -> None:
+    log = HandMadeLog(tmp_path / "log", plan_of({"r/sensor": Limited}))
+    for tick in (1, 2, 3):
+        log.tick(tick, [], settings={SENSOR: {"least": 0, "most": 9}} if tick == 2 else None)
+    log.replayed()
+    branch = Branch(Recording(tmp_path / "log"))
+    assert [new.values["least"] for new in branch.check(["r/sensor.least=7"], 2)] == [7]
+    for sets, tick, reason in (
+        ("r/sensor.leest=7", 2, "--set: r/sensor: no setting 'leest'; did you mean 'least'"),
+        ("r/sensor.least=7", 1, "least is more than most"),
+    ):
+        with pytest.raises(RecordingError, match=reason):
+            branch.check([sets], tick)
+
+
+def test_a_wrong_setting_is_refused_before_the_replay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    log, ran = recorded(tmp_path / "log"), []
+    monkeypatch.setattr(Branch, "run", lambda *_: ran.append("replay"))
+    with pytest.raises(RecordingError, match="no component 'r/sensors'; did you mean 'r/sensor'"):
+        go_on_live(log, BranchRequest(2, None, ["r/sensors.gain=1"]), as_json=False)
+    assert not ran
