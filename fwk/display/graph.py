@@ -52,6 +52,8 @@ class Graph:
     edges: tuple[Edge, ...]
     unread: tuple[Edge, ...] = ()
     """Channels of components that no component reads; their `reader` is empty."""
+    unwritten: tuple[Edge, ...] = ()
+    """Channels that components read and nobody writes; their `writer` is empty."""
 
     def around(self, patterns: Sequence[str]) -> "Graph":
         """Returns the part with these components and those that exchange messages with them."""
@@ -60,11 +62,17 @@ class Graph:
         shown = chosen.union(*((each.writer, each.reader) for each in edges))
         nodes = tuple(each for each in self.nodes if each.name in shown)
         unread = tuple(each for each in self.unread if each.writer in chosen)
-        return replace(self, nodes=nodes, edges=edges, unread=unread)._tidy()
+        unwritten = tuple(each for each in self.unwritten if each.reader in chosen)
+        return replace(self, nodes=nodes, edges=edges, unread=unread, unwritten=unwritten)._tidy()
 
     def column(self, name: str) -> list[Node]:
         """Returns the nodes of a column."""
         return [each for each in self.nodes if each.column == name]
+
+    def loose_ends(self, name: str) -> list[str]:
+        """Returns a line for each channel of a node that nobody reads or nobody writes."""
+        read = [f"<- {each.label} (no writer)" for each in self.unwritten if each.reader == name]
+        return [*read, *(f"-> {each.label} (no reader)" for each in self.unread if each.writer == name)]
 
     def lines(self) -> Iterator[str]:
         """Yields text: each column with its nodes, and for each node the channels that it reads and writes."""
@@ -78,7 +86,7 @@ class Graph:
                 written = dict.fromkeys(each.label for each in self.edges if each.writer == node.name)
                 yield from (f"    <- {each}" for each in read)
                 yield from (f"    -> {each}" for each in written)
-                yield from (f"    -> {each.label} (no reader)" for each in self.unread if each.writer == node.name)
+                yield from (f"    {each}" for each in self.loose_ends(node.name))
 
     def mermaid(self) -> Iterator[str]:
         """Yields a flowchart in the language of mermaid, with a subgraph for each column."""
@@ -90,6 +98,10 @@ class Graph:
             yield "  end"
         for edge in self.edges:
             yield f'  {numbers[edge.writer]} -->|"{_mermaid(edge.label)}"| {numbers[edge.reader]}'
+        for number, edge in enumerate(self.unread):
+            yield f'  {numbers[edge.writer]} -.- e{number}(["{_mermaid(edge.label)}"])'
+        for number, edge in enumerate(self.unwritten, len(self.unread)):
+            yield f'  e{number}(["{_mermaid(edge.label)}"]) -.- {numbers[edge.reader]}'
 
     def _tidy(self) -> "Graph":
         """Returns the graph without columns that have no node."""
@@ -137,11 +149,18 @@ def graph(
         for row in channels
         if row["writer"] in nodes and not row["readers"]
     ]
+    unwritten = [
+        Edge("", reader, row["channel"], row["type"], row.get("rate_hz"))
+        for row in channels
+        for reader in row["readers"]
+        if not row["writer"]
+    ]
     for row in channels:
         for reader in row["readers"] if row["writer"] else ():
             nodes.setdefault(row["writer"], Node(row["writer"], OUTSIDE))
             edges.append(Edge(row["writer"], reader, row["channel"], row["type"], row.get("rate_hz")))
-    return Graph(name, (OUTSIDE, *stages, CONTINUOUS), tuple(nodes.values()), tuple(edges), tuple(unread))._tidy()
+    columns = OUTSIDE, *stages, CONTINUOUS
+    return Graph(name, columns, tuple(nodes.values()), tuple(edges), tuple(unread), tuple(unwritten))._tidy()
 
 
 def _mermaid(text: str) -> str:

@@ -1,6 +1,5 @@
 """The graph of a system as an SVG drawing: a column for each stage, the channels as curves from left to right."""
 
-from collections import Counter
 from collections.abc import Iterator
 from xml.sax.saxutils import escape, quoteattr
 
@@ -8,6 +7,8 @@ from fwk.display.graph import Edge, Graph
 
 _COLUMN, _ROW, _HEIGHT, _MARGIN, _HEAD = 250, 34, 22, 20, 44
 """Distances in pixels: from column to column, from row to row, height of a box, around the drawing, above the boxes."""
+_LINE = 10
+"""Height of a line about a channel that nobody reads, or nobody writes, below the box of its component."""
 _DEPTH = 160
 """Height below the boxes for the curves from right to left."""
 _LETTER, _PADDING = 6.3, 14
@@ -17,7 +18,7 @@ _STYLE = (
     "svg{background:#fff}text{font:11px sans-serif;fill:#222}.head{font-weight:bold}rect{fill:#eef3fb;stroke:#5b7db1}"
     ".running rect{fill:#e6f5ea;stroke:#3f9b5a}.failed rect{fill:#fbe3e3;stroke:#b04a4a}"
     ".stopped rect,.loaded rect{fill:#eee;stroke:#999}.late rect,.held rect{fill:#fff1dc;stroke:#c07a10}"
-    ".rate{font-size:9px;fill:#555;text-anchor:middle}"
+    ".loose{font-size:8px;fill:#777}.rate{font-size:9px;fill:#555;text-anchor:middle}"
     ".back{stroke-dasharray:4 3}path{fill:none;stroke:#7a7a7a;stroke-opacity:.55}"
     "path:hover{stroke:#d05010;stroke-opacity:1;stroke-width:2}"
 )
@@ -26,15 +27,17 @@ _STYLE = (
 def svg(graph: Graph) -> str:
     """Returns the drawing; each curve has a tooltip with its channels, types and rates.
 
-    Up to sixty curves have their rates beside them.
+    Channels that nobody reads, or nobody writes, are named below the box of their component. Up to sixty curves have
+    their rates beside them.
     """
-    places = {
-        node.name: (_MARGIN + number * _COLUMN, _HEAD + row * _ROW)
-        for number, column in enumerate(graph.columns)
-        for row, node in enumerate(graph.column(column))
-    }
-    rows = max(Counter(node.column for node in graph.nodes).values(), default=0)
-    floor = _HEAD + _ROW * rows
+    places: dict[str, tuple[int, int]] = {}
+    floor = _HEAD
+    for number, column in enumerate(graph.columns):
+        y = _HEAD
+        for node in graph.column(column):
+            places[node.name] = _MARGIN + number * _COLUMN, y
+            y += _ROW + _LINE * len(graph.loose_ends(node.name))
+        floor = max(floor, y)
     width, height = 2 * _MARGIN + _COLUMN * len(graph.columns), floor + _DEPTH
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" width="{width}" height="{height}">',
@@ -89,6 +92,8 @@ def _boxes(graph: Graph, places: dict[str, tuple[int, int]]) -> Iterator[str]:
                 f'<rect x="{x}" y="{y}" width="{_width(node.name):g}" height="{_HEIGHT}" rx="4"/>'
                 f'<text x="{x + _PADDING // 2}" y="{y + 15}">{escape(node.name)}</text></g>'
             )
+            for line, text in enumerate(graph.loose_ends(node.name), start=1):
+                yield f'<text class="loose" x="{x}" y="{y + _HEIGHT + line * _LINE}">{escape(text)}</text>'
 
 
 def _width(name: str) -> float:

@@ -32,8 +32,8 @@ class Schedule:
 
     @property
     def stage_names(self) -> list[str]:
-        """Names of the stages of the holder's schedule."""
-        return [self._stages[stage] for stage in self.order]
+        """Names of the stages of the next tick, in their order."""
+        return [self._stages[stage] for _, stage in self.steps]
 
     @property
     def asked(self) -> bool:

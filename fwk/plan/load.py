@@ -17,6 +17,7 @@ from fwk.plan.files.launch_file import Files, find_launch_file, lay_over, read_f
 from fwk.plan.files.overrides import overrides
 from fwk.plan.files.templates import expand
 from fwk.plan.hosting import Hosting, share_out
+from fwk.plan.opened import opened
 from fwk.plan.resolve import Resolved, add_settings, check_clock, resolve
 from fwk.plan.run_section import (
     function_of,
@@ -50,6 +51,8 @@ class LaunchOptions:
     """Patterns of the components to run; empty: all."""
     without: Sequence[str] = ()
     """Patterns of the components to leave out."""
+    outside: Sequence[str] = ()
+    """Patterns of channels without a writer that programs outside write."""
     seed: int | None = None
     speed: float | None = None
     """Logical seconds per wall second; 0: as fast as possible."""
@@ -116,6 +119,8 @@ class _Loading:
         check_groups(asked, groups, places, problems)
         kept = set(chosen(names, options.only, options.without, problems))
         check_left_out(names, kept, granted, options.without, problems)
+        own = [each.asked.name for each in components]
+        outside |= opened(whole.channels, own, kept, options.outside, problems)
         shared = self._shared()
         choice = {"channels": options.record_channels, "exclude": options.record_exclude}
         recorded = record_of(files, whole.channels, choice, options.record_parts, problems)

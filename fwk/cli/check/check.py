@@ -37,13 +37,19 @@ def check(
     without: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="all but these components; repeatable")
     ] = None,
+    outside: Annotated[
+        list[str] | None,
+        typer.Option(metavar="CHANNEL", help="with --without: programs outside write this channel; repeatable"),
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Checks a launch file and everything it uses, and starts nothing.
 
     Exit codes: 0 the file can be run, 2 it cannot; then every mistake is listed with its place.
     """
-    options = LaunchOptions(sets=sets or (), hosting=hosting.value, only=only or (), without=without or ())
+    options = LaunchOptions(
+        sets=sets or (), hosting=hosting.value, only=only or (), without=without or (), outside=outside or ()
+    )
     try:
         plan = load_plan(file, options, notice)
     except PlanError as error:

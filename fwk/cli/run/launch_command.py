@@ -97,6 +97,13 @@ def launch(
     without: Annotated[
         list[str] | None, typer.Option(metavar="NAME...", help="all but these components; several names or repeated")
     ] = None,
+    outside: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="CHANNEL",
+            help="with --without: programs outside and fwk send write this channel, or pattern; repeatable",
+        ),
+    ] = None,
     run_name: Annotated[
         str | None,
         typer.Option(
@@ -150,6 +157,7 @@ def launch(
         hosting=hosting.value,
         only=tuple(only or ()),
         without=tuple(without or ()),
+        outside=tuple(outside or ()),
         seed=seed,
         speed=speed,
         bus_port=bus_port,

@@ -19,7 +19,11 @@ from fwk.plan.files.source import read_value
 
 def send(
     channel: Annotated[
-        str, typer.Argument(metavar="CHANNEL", help="a channel that the launch file names under 'outside:'")
+        str,
+        typer.Argument(
+            metavar="CHANNEL",
+            help="a channel that programs outside may write: 'outside:' of the launch file, or --outside",
+        ),
     ],
     fields: Annotated[
         list[str] | None,
@@ -44,9 +48,7 @@ def send(
         row = rows.get(channel)
         outside = [name for name, each in rows.items() if each["outside"]]
         if row is None or not row["outside"]:
-            who = f"{row['writer'] or 'no component'} writes it" if row else "no such channel"
-            right = hint(channel, outside) if outside else "name it under 'outside:' in the launch file"
-            raise MessageError(f"{channel}: {who}; {right}")
+            raise MessageError(f"{channel}: {_why_not(channel, row, outside)}")
         for folder in about["folders"]:
             use_types_of(Path(folder))
         data = messages.encode(made(row["type"], fields or []), channel)
@@ -61,6 +63,17 @@ def send(
     bus.close()
     sent = {"channel": channel, "type": row["type"], "bytes": len(data)}
     typer.echo(json.dumps(sent) if as_json else f"{channel}: {len(data)} bytes sent")
+
+
+def _why_not(channel: str, row: dict[str, Any] | None, outside: list[str]) -> str:
+    """Returns why a channel cannot be sent to, and what to do."""
+    if row is None:
+        return f"no such channel; {hint(channel, outside) if outside else 'fwk bb list shows all channels'}"
+    if "@" in channel:
+        return "it carries commands; send one with 'fwk call'"
+    without = f"--without {row['writer']} " if row["writer"] else ""
+    right = f"to write it yourself, start the run with {without}--outside {channel}, or name it under 'outside:'"
+    return f"{row['writer'] or 'no component'} writes it; {right} in the launch file"
 
 
 def made(type_name: str, fields: list[str]) -> Any:

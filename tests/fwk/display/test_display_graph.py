@@ -97,6 +97,16 @@ def test_mermaid_has_every_node_and_edge(made: Graph) -> None:
     assert sum("subgraph" in line for line in lines) == len(made.columns)
 
 
+@pytest.mark.parametrize("form", [svg, lambda made: "\n".join(made.mermaid()), lambda made: "\n".join(made.lines())])
+def test_every_form_has_channels_with_one_end(form: Callable[[Graph], str], made: Graph) -> None:
+    assert "a/gyro" in form(made)
+    components = [{"name": "x", "stages": ["think"], "state": "running"}]
+    row = {"channel": "x/lost", "type": "robot.imu_t", "writer": "", "readers": ["x"], "rate_hz": 0.0}
+    left = graph("run", ["think"], components, [row])
+    assert "x/lost 0.0 Hz" in form(left)
+    assert "x/lost 0.0 Hz" in form(left.around(["x"]))
+
+
 def boxes(made: Graph) -> list[str]:
     return [str(each.findtext(f"{SVG}text")) for each in Xml.fromstring(svg(made)).iter(f"{SVG}g")]
 

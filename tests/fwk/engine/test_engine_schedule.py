@@ -37,7 +37,7 @@ def ask(schedule: Schedule, tick: int, step: int, component: int, *stages: int) 
 
 def test_usual_schedule_has_the_stages_with_components(schedule: Schedule) -> None:
     assert schedule.steps == USUAL
-    assert (schedule.holder, schedule.holder_name, schedule.stage_names) == (NOBODY, "", [])
+    assert (schedule.holder, schedule.holder_name, schedule.stage_names) == (NOBODY, "", ["think", "act"])
 
 
 def test_the_first_gets_it_and_the_second_learns_the_holder(schedule: Schedule) -> None:

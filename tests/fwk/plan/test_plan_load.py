@@ -1,6 +1,7 @@
 """From a launch file to a plan: settings in layers, templates, processes, parts, own folders."""
 
 import json
+import re
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -248,6 +249,17 @@ def test_programs_outside_write_channels(load: Load) -> None:
     plan = load("components: {a/reader: {use: plan_parts:Reader}}\noutside: {a/odometry: robot.odometry_t}\n")
     assert plan.outside == {"a/odometry": "robot.odometry_t"}
     assert (plan.channels[0].name, plan.channels[0].writer, plan.channels[0].readers) == ("a/odometry", NOBODY, (0,))
+
+
+def test_programs_outside_stand_in_for_left_out_writers(load: Load, folder: Path) -> None:
+    plan = load(ROBOTS, without=["cyan1/wheels", "cyan1/pilot"], outside=["cyan1/[om]*"])
+    assert plan.outside == {"cyan1/motor_command": "robot.motor_command_t", "cyan1/odometry": "robot.odometry_t"}
+    for words, reason in (
+        ({"outside": ["cyan1/odometry"]}, "'cyan1/odometry' is written by cyan1/wheels; leave it out: --without cyan1"),
+        ({"outside": ["cyan1/odometri"]}, "--outside: no channel 'cyan1/odometri'; did you mean 'cyan1/odometry'?"),
+    ):
+        with pytest.raises(PlanError, match=re.escape(reason)):
+            load(ROBOTS, **words)
 
 
 def test_own_components_are_found_beside_or_above_the_file(folder: Path) -> None:

@@ -120,3 +120,16 @@ def test_fwk_send_is_an_outside_program(launch: Launch, tmp_path: Path, ports: P
     run.ticks_pass(3)
     recording = checked(run, run.end(), 1)
     assert recording.decoded("s/total")[-1].heading_rad == 2.5
+
+
+def test_fwk_send_stands_in_for_a_left_out_writer(launch: Launch, tmp_path: Path, ports: PortBlock) -> None:
+    write_files(tmp_path, outside_system(ports.public_url, SIMULATED))
+    run = Steered(launch(FILE, "--without", "s/obeys", "--outside", "s/*"), ports)
+    said = run.fwk("send", "r/total", "heading_rad=1.0", code=2)
+    assert "r/total: r/obeys writes it; to write it yourself, start the run with --without r/obeys --outside" in said
+    run.fwk("send", "s/total", "heading_rad=2.5")
+    run.launched.until_true(lambda: run.json("bb", "show", "s/total")["sequence"] == 1, "what was sent")
+    log = run.end()
+    (sent,) = Recording(log).decoded("s/total")
+    assert (sent.heading_rad, sent.header.writer) == (2.5, "outside")
+    assert "byte for byte" in run.fwk("replay", str(log), "--verify")
