@@ -3,7 +3,7 @@
 from collections.abc import Callable, Container
 
 from fwk.bus.network import DatagramSocket
-from fwk.bus.sockets import port_of, told
+from fwk.bus.sockets import LOOPBACK, told
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.lcm import envelope, messages, wire
 from fwk.lcm.messages import MessageError
@@ -89,7 +89,8 @@ class ChannelSocket(ChannelBuffer):
             datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
         except OSError:  # no datagram, or closed
             return False
-        if port_of(address) not in self._senders:
+        host, port = address
+        if port not in self._senders or host != LOOPBACK:
             self._complain(self.plan.name, f"datagram from {told(address)}, which is not the writer's; refused")
             return True
         if wire.is_short(datagram) and datagram.startswith(self._usual, 8) and len(datagram) >= self._least:
@@ -97,7 +98,7 @@ class ChannelSocket(ChannelBuffer):
             self.put(messages.sequence_of(data), data)
         else:
             try:
-                self._take_unusual(datagram, address[1])
+                self._take_unusual(datagram, port)
             except MessageError as error:
                 self._complain(self.plan.name, f"{error}; refused")
         return True

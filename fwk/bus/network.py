@@ -6,6 +6,7 @@ its `Network` and knows no other source of time, so the same code runs on UDP so
 recording.
 """
 
+import os
 import socket
 from collections.abc import Generator, Mapping
 from typing import Protocol, TypeVar
@@ -15,6 +16,8 @@ from fwk.bus.waiting import Source, Waiting
 from fwk.clock import monotonic_us
 
 T = TypeVar("T")
+
+_PIPE_BYTES = 1 << 16
 
 Steps = Generator[int, list[int], T]
 """A participant at work: yields a wall time in microseconds, receives the descriptors that are readable then."""
@@ -77,6 +80,7 @@ class UdpNetwork:
     def __init__(self, held: Mapping[int, socket.socket] | None = None) -> None:
         self._waiting = Waiting()
         self._held = held or {}
+        self._wakeup = -1
 
     now_us = staticmethod(monotonic_us)
 
@@ -97,12 +101,20 @@ class UdpNetwork:
         """Takes `source` out of the waits."""
         self._waiting.remove(source)
 
+    def watch_wakeup(self, descriptor: int) -> None:
+        """Lets signals end waits, each signal one: Python writes to the other end of this pipe at every signal."""
+        self._wakeup = descriptor
+        self.watch(descriptor)
+
     def run(self, steps: Steps[T]) -> T:
         """Runs a participant to its end and returns its result."""
         try:
             until_us = next(steps)
             while True:
-                until_us = steps.send(self._waiting.wait(until_us - monotonic_us()))
+                ready = self._waiting.wait(until_us - monotonic_us())
+                if self._wakeup in ready:  # while it is readable, it would end every further wait at once
+                    os.read(self._wakeup, _PIPE_BYTES)
+                until_us = steps.send(ready)
         except StopIteration as end:
             result: T = end.value
             return result

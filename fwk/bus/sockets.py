@@ -11,11 +11,6 @@ _IP_MULTICAST_ALL = 49  # not named by Python
 Address = tuple[str, int]
 
 
-def port_of(address: Address) -> int:
-    """Returns the port of a sender on this machine; 0 for senders elsewhere, whose ports mean nothing."""
-    return address[1] if address[0] == LOOPBACK else 0
-
-
 def told(address: Address) -> str:
     """Returns the origin of a datagram as text."""
     return f"port {address[1]}" if address[0] == LOOPBACK else f"{address[0]}, port {address[1]}"

@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from typing import NamedTuple
 
 from fwk.component.component import Component
 from fwk.component.declaration import declaration
@@ -26,14 +25,9 @@ Written = list[tuple[str, bytes]]
 """Messages in the order in which they were written, each with its channel."""
 
 
-class Ran(NamedTuple):
-    """Result of one step of a tick for the whole group."""
-
-    written: Written
-    next_us: int
-    """Logical time of the next tick, as a time source set it; -1: none did."""
-    busy_us: int
-    """Wall time that the iterations took."""
+Ran = tuple[Written, int, int]
+"""Result of one step of a tick for the whole group: what was written, the logical time of the next tick as a time
+source set it (-1: none did), and the wall time that the iterations took, in microseconds."""
 
 
 class ComponentGroup:
@@ -205,10 +199,11 @@ class ComponentGroup:
             end_us = self._now_us()
             self.metrics[name].times.add(end_us - start_us)
             start_us = end_us
-            next_us = max(next_us, runner.time_source.next_us)
+            if runner.is_time_source:
+                next_us = max(next_us, runner.time_source.next_us)
         if self._marker:
             self._mark(NOBODY)
-        return Ran(written, next_us, start_us - began_us)
+        return written, next_us, start_us - began_us
 
     def put_requests(self, names: Sequence[str], done: done_t) -> None:
         """Writes what the iterations of these components requested, and the frames that they lost, into a done."""

@@ -45,10 +45,9 @@ class InputView:
         seen, self._waiting = self._waiting, {}
         if self._catch_up.takes_part(tick):
             seen = {channel: messages[-1:] for channel, messages in seen.items()}
-        else:
+        if self._joined:
             for channel in self._joined & seen.keys():
                 seen[channel] = seen[channel][-1:]
-        if self._joined:
             seen = {channel: messages for channel, messages in seen.items() if messages}
             self._joined = set()
         return seen

@@ -79,7 +79,8 @@ class Runner:
         self._services: list[Serves[Any, Any] | Calls[Any, Any] | _Early] = []
         self.clock = Clock(section.period_us)
         self.time_source = TimeSource()
-        self._is_time_source = "time_source" in declaration.aspects.values()
+        self.is_time_source = "time_source" in declaration.aspects.values()
+        """Whether the component sets the logical time."""
         self.main_loop = MainLoop(name, section.stages)
         self.has_main_loop = "main_loop" in declaration.aspects.values()
         """Whether the component may take over the main loop."""
@@ -175,7 +176,7 @@ class Runner:
             for writer in self.writers.values():
                 writer._drop()
             raise
-        if self._is_time_source and (mistake := self.time_source._mistake(time_us)):
+        if self.is_time_source and (mistake := self.time_source._mistake(time_us)):
             self.log.warning(mistake)
         return self._written()
 

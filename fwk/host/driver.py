@@ -23,7 +23,7 @@ class HostDriver:
         held: Mapping[int, socket.socket] | None = None,
     ) -> None:
         self._network = UdpNetwork(held)
-        self._network.watch(stop.wakeup)
+        self._network.watch_wakeup(stop.wakeup)
         hooks = ProcessHooks(
             stopping=stop,
             make_runner=make_runner,

@@ -244,7 +244,7 @@ class Host:
         self.group.put_requests(names, done)
         if self.inputs.lost:
             done.lost = [lost_message(channel, sequence) for channel, sequence in self.inputs.new_losses()]
-        self._publish(ran.written, ran.next_us, ran.busy_us)
+        self._publish(*ran)
 
     def _publish(self, written: Written, next_us: int, busy_us: int) -> None:
         marks = self._outputs.publish(written)

@@ -1,6 +1,5 @@
 """A forked process: its title and limits; it dies with its parent, stops on request, and reports a crash."""
 
-import contextlib
 import ctypes
 import faulthandler
 import os
@@ -113,7 +112,7 @@ def lift_limit() -> None:
 
 
 class StopSignal:
-    """Becomes true when the process is asked to stop; `wakeup` is readable from then on."""
+    """Becomes true when the process is asked to stop; `wakeup` becomes readable at every signal that has a handler."""
 
     def __init__(self) -> None:
         self.wakeup, self._write = os.pipe()
@@ -125,9 +124,6 @@ class StopSignal:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the supervisor handles Ctrl-C
 
     def __call__(self) -> bool:
-        if self._set:
-            with contextlib.suppress(BlockingIOError):  # a readable wakeup would end every further wait at once
-                os.read(self.wakeup, 1024)
         return self._set
 
     def on_interrupt(self, ends: bool) -> None:

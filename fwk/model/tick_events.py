@@ -142,14 +142,13 @@ def events_message(events: Sequence[TickEvent]) -> tick_events_t:
     made = tick_events_t()
     made.kind = [_KIND_OF[type(event)] for event in events]
     made.n = len(events)
-    rows: dict[int, list[tuple[int, ...]]] = {}
-    for kind, event in zip(made.kind, events, strict=True):
-        rows.setdefault(kind, []).append(event)
+    present = set(made.kind)
     for kind, columns, name in _LISTS:
-        if kind in rows:
+        if kind in present:
+            rows = [event for its_kind, event in zip(made.kind, events, strict=True) if its_kind == kind]
             listed = getattr(made, name)
-            listed.n = len(rows[kind])
-            for column, values in zip(columns, zip(*rows[kind], strict=True), strict=True):
+            listed.n = len(rows)
+            for column, values in zip(columns, zip(*rows, strict=True), strict=True):
                 setattr(listed, column, list(values))
     return made
 

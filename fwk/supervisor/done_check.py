@@ -59,9 +59,9 @@ class DoneCheck:
             raise MessageError(f"report of the gateway with {mistake}")
 
     def _foreign_mark(self, message: done_t | recorded_t, may_write: set[int]) -> str:
-        if not may_write.issuperset(message.channel):
-            return f"a mark of channel {min(set(message.channel) - may_write)}, which it does not write"
         for channel, sequence in zip(message.channel, message.sequence, strict=True):
+            if channel not in may_write:
+                return f"a mark of channel {channel}, which it does not write"
             newest = self._newest(channel)
             if not 0 <= sequence <= newest + MESSAGES_MAX:
                 return f"mark {sequence} of channel {channel}, whose newest message is {newest}"

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Callable
 
 from fwk.bus import sync
-from fwk.bus.sockets import Address, port_of, told
+from fwk.bus.sockets import LOOPBACK, Address, told
 from fwk.lcm import wire
 from fwk.lcm.messages import MessageError
 from fwk.model.ports import Ports
@@ -38,8 +38,8 @@ class SyncReceiver:
                 self._complain("fwk/sync", f"{error}; refused")
 
     def _dispatch(self, datagram: bytes, address: Address) -> None:
-        source = port_of(address)
-        if source not in self._members:
+        host, source = address
+        if source not in self._members or host != LOOPBACK:
             raise MessageError(f"datagram from {told(address)}, which is not of this run")
         if datagram.startswith(sync.DONE_START, 8) and wire.is_short(datagram):
             self._take_done(datagram[8 + len(sync.DONE_START) :], source)

@@ -43,7 +43,7 @@ class TickSender:
         if not told:
             return
         ledger = self._core.ledger
-        since = min(host.answered_step for host in told)
+        since = min([host.answered_step for host in told])
         made = tick_t()
         made.version, made.run, made.tick, made.step = protocol_t.VERSION, self._core.run, tick.number, turn.step
         made.time_us, made.main_loop = tick.time_us, tick.main_loop
@@ -52,7 +52,8 @@ class TickSender:
         if len(told) < len(turn.hosts):
             made.absent = [host.index for host in turn.hosts if host not in told]
         changes = {change.number: change for host in told for change in host.changes}
-        put_changes(made, [changes[number] for number in sorted(changes)])
+        if changes:
+            put_changes(made, [changes[number] for number in sorted(changes)])
         self._sent = sync.encode_tick(made)
         self._core.sender.publish(sync.TICK, self._sent, self._core.ports.stage(turn.stage))
 

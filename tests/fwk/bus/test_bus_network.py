@@ -1,3 +1,5 @@
+import os
+
 from fwk.bus.network import Steps, UdpNetwork
 from fwk.bus.sockets import GROUP, LOOPBACK
 from tests.harness.runs import PortBlock
@@ -42,3 +44,21 @@ def test_unwatched_source_wakes_no_participant(ports: PortBlock) -> None:
     network.close()
     heard.close()
     sender.close()
+
+
+def test_signal_ends_one_wait_and_not_those_after_it() -> None:
+    network = UdpNetwork()
+    wakeup, written_by_python = os.pipe()
+    network.watch_wakeup(wakeup)
+    os.write(written_by_python, b"\x0a")  # a signal that a component handles itself, not a request to stop
+
+    def participant() -> Steps[list[list[int]]]:
+        woken = []
+        for _ in range(2):
+            woken.append((yield network.now_us() + 20 * MS))
+        return woken
+
+    assert network.run(participant()) == [[wakeup], []]
+    network.close()
+    os.close(wakeup)
+    os.close(written_by_python)
