@@ -108,10 +108,11 @@ class UdpNetwork:
 
     def run(self, steps: Steps[T]) -> T:
         """Runs a participant to its end and returns its result."""
+        wait = self._waiting.wait
         try:
             until_us = next(steps)
             while True:
-                ready = self._waiting.wait(until_us - monotonic_us())
+                ready = wait(until_us - monotonic_us())
                 if self._wakeup in ready:  # while it is readable, it would end every further wait at once
                     os.read(self._wakeup, _PIPE_BYTES)
                 until_us = steps.send(ready)

@@ -135,8 +135,8 @@ class Host:
 
     def _work(self) -> Steps[None]:
         """Answers ticks and fetches until the process is asked to stop."""
-        own = self._own.fileno()
-        while not self._stopping():
+        own, stopping, now_us = self._own.fileno(), self._stopping, self._now_us
+        while not stopping():
             for descriptor in (yield min(self._report_us, self._sender.due_us)):
                 if descriptor == own:
                     self._handle_own()
@@ -147,7 +147,7 @@ class Host:
                         yield from self._answer(tick, stage)
             if self._sender.due_us < NEVER_US:
                 self._sender.send_due()
-            if self._now_us() >= self._report_us:
+            if now_us() >= self._report_us:
                 self._report()
 
     def _finalize(self) -> Steps[None]:

@@ -16,6 +16,9 @@ from fwk.supervisor.loop_times import LoopTimes
 from fwk.supervisor.tick_log import TickLog
 from lcmtypes.core import done_t, recorded_t, taken_t
 
+# Kinds of dones; the member of a class takes longer to find, and a done asks for it five times.
+_STAGE, _ITERATION, _FINAL = done_t.STAGE, done_t.ITERATION, done_t.FINAL
+
 
 class Dones:
     """Takes each done that answers a tick of its host; refuses, counts and names impossible dones."""
@@ -75,11 +78,11 @@ class Dones:
         """Returns whether a done is of the host's present incarnation and of an unanswered iteration."""
         if done.incarnation != host.incarnation:  # messages of an ended process are void already
             return False
-        if done.kind == done_t.FINAL:
+        if done.kind == _FINAL:
             return self._counts_as_final(host, done)
         if host.continuous:
             return self._continuous.counts(host, done)
-        if done.kind != done_t.STAGE:
+        if done.kind != _STAGE:
             return False
         answered = (done.tick, done.step)
         if answered == host.late_with:
@@ -131,7 +134,7 @@ class Dones:
                 self._requests.ask(done.tick, sync.place_of(done), name, kind, request)
 
     def _note_answer(self, host: HostProcess, done: done_t) -> None:
-        if done.kind == done_t.FINAL:
+        if done.kind == _FINAL:
             host.finalizing = False
             self._tell_taken(done)
         elif host.late_with == (done.tick, done.step) and not host.continuous:
@@ -146,8 +149,8 @@ class Dones:
 
 def _event_of(done: done_t) -> FinalDone | IterationDone | StageDone:
     """Returns the event of a done that is taken."""
-    if done.kind == done_t.FINAL:
+    if done.kind == _FINAL:
         return FinalDone(done.host, done.tick)
-    if done.kind == done_t.ITERATION:
+    if done.kind == _ITERATION:
         return IterationDone(done.host, done.tick, done.iteration)
     return StageDone(done.host, done.tick, done.step)

@@ -27,9 +27,10 @@ class SyncReceiver:
 
     def drain(self) -> None:
         """Emits the dones and states that have arrived as events."""
+        receive = self._socket.recvfrom
         while True:
             try:
-                datagram, address = self._socket.recvfrom(wire.DATAGRAM_MAX)
+                datagram, address = receive(wire.DATAGRAM_MAX)
             except BlockingIOError:
                 return
             try:
