@@ -93,6 +93,11 @@ def find(chosen: str | int | None) -> int:
     return port
 
 
+def meant() -> list[int]:
+    """Returns the bus ports of the runs that a command may mean that names none: the user's own, else all."""
+    return sorted(_preferred(look(), ""))
+
+
 def _preferred(runs: dict[int, dict[str, Any]], wanted: str) -> dict[int, dict[str, Any]]:
     """Returns the user's own runs if one of them can be meant, else the runs of all users, which only root sees."""
     own = {port: run for port, run in runs.items() if run.get("owner") == os.geteuid()}

@@ -25,7 +25,7 @@ _fwk_complete() {
     COMPREPLY=($(command fwk __complete "${words[@]}" 2>/dev/null))
     local cut=${current%"${COMP_WORDS[COMP_CWORD]}"}
     [[ -n $cut ]] && COMPREPLY=("${COMPREPLY[@]#"$cut"}")
-    [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *= ]] && compopt -o nospace
+    [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *[=.] ]] && compopt -o nospace
     return 0
 }
 complete -o default -F _fwk_complete fwk fwk-launch
@@ -36,8 +36,8 @@ _fwk_complete() {
     local -a found
     found=(${(f)"$(command fwk __complete "${(@)words[1,CURRENT]}" 2>/dev/null)"})
     if (( ${#found} )); then
-        compadd -Q -S '' -- "${(M@)found:#*=}"
-        compadd -Q -- "${(@)found:#*=}"
+        compadd -Q -S '' -- "${(M@)found:#*[=.]}"
+        compadd -Q -- "${(@)found:#*[=.]}"
     else
         _files
     fi

@@ -34,7 +34,7 @@ def use_types_of_run(log: Path, types: Path) -> None:
         TypeGenerationError: an .lcm file of `types` has mistakes.
     """
     use_types_of(types)
-    plan = _plan_document(log)
+    plan = plan_document(log)
     for folder in plan.get("folders", ()):
         with suppress(TypeGenerationError, OSError):  # the project may have been changed, or removed
             use_types_of(Path(folder))
@@ -44,7 +44,7 @@ def use_types_of_run(log: Path, types: Path) -> None:
         use_types_of(types)
 
 
-def _plan_document(log: Path) -> dict[str, Any]:
+def plan_document(log: Path) -> dict[str, Any]:
     """Returns the plan that a recording begins with, as plain data, which takes far less time than a `Plan`.
 
     Raises:

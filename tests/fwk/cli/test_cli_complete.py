@@ -1,5 +1,6 @@
 """Completion of commands, options and values, with and without a running system."""
 
+import json
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -10,13 +11,21 @@ from typer.testing import CliRunner
 from fwk.cli.commands import app
 from fwk.cli.complete.candidates import complete
 from fwk.control import runs
-from fwk.control.client import ControlError
+from fwk.control.client import ControlError, RefusedError
 from fwk.control.settings import RunSettings
+from lcmtypes.core import plan_t
+from tests.fwk.recording.recording_made import write
 
 ANSWERS: dict[str, Any] = {
     "status": {"components": [{"name": "cyan1/agent"}, {"name": "cyan1/base"}, {"name": "world/referee"}]},
     "settings": {"settings": [{"component": "cyan1/base", "setting": "gain"}]},
-    "channels": {"channels": [{"channel": "cyan1/pose"}, {"channel": "house/pour@commands"}]},
+    "channels": {
+        "channels": [
+            {"channel": "cyan1/pose", "type": "soccer.pose_t", "outside": True},
+            {"channel": "house/pour@commands", "type": "robot.kick_command_t", "outside": False},
+        ]
+    },
+    "run": {"folders": []},
 }
 
 
@@ -57,6 +66,16 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str | None]:
         ("fwk bb show c", ["cyan1/pose"]),
         ("fwk call h", ["house/pour"]),
         ("fwk config set cyan1/b", ["cyan1/base.gain="]),
+        ("fwk send ", ["cyan1/pose"]),
+        ("fwk send cyan1/pose x_m=1 y", ["y_m="]),
+        ("fwk bb watch cyan1/pose --field head", ["heading_rad"]),
+        ("fwk plot ", ["cyan1/pose.", "house/pour@commands."]),
+        ("fwk plot cyan1/pose.x", ["cyan1/pose.x_m"]),
+        ("fwk new component arm --kind c", ["c", "continuous"]),
+        ("fwk new interface a.b --kind re", ["reply", "request"]),
+        ("fwk types x --lang c", ["c", "cpp"]),
+        ("fwk monitor --template im", ["imu"]),
+        ("fwk new project ", []),
         ("fwk config get cyan1/b", ["cyan1/base.gain"]),
         ("fwk status --run ", ["18000", "match"]),
         ("fwk-launch soccer.yaml --hosting ", ["process", "robot", "single"]),
@@ -72,6 +91,45 @@ def test_words_that_may_follow(asked: list[str | None], typed: str, found: list[
 def test_the_named_run_is_asked(asked: list[str | None]) -> None:
     complete(["fwk", "stop", "--run", "match", "c"])
     assert asked == ["match"]
+
+
+def test_several_runs_are_all_asked_if_none_is_named(asked: list[str | None], monkeypatch: pytest.MonkeyPatch) -> None:
+    def connect(port: int | str | None) -> Run:
+        if port is None:
+            raise RefusedError("several runs on this machine")
+        if port == 18000:
+            raise ControlError("does not answer")
+        return Run()
+
+    monkeypatch.setattr(runs, "supervisor", connect)
+    monkeypatch.setattr(runs, "look", lambda: {17700: {"name": "one"}, 18000: {"name": "two"}})
+    assert complete(["fwk", "stop", "w"]) == ["world/referee"]
+    monkeypatch.setenv(runs.RUN_VARIABLE, "three")
+    assert complete(["fwk", "stop", "w"]) == []
+
+
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        ("replay {log} --debug ", ["world/camera"]),
+        ("replay {log} --only w", ["world/camera"]),
+        ("replay {log} --with w", ["world/camera="]),
+        ("replay {log} --set ", ["world/camera.gain="]),
+        ("cut {log} --channels ", ["world/image", "world/imu"]),
+        ("play {log} --remap world/im", ["world/image=", "world/imu="]),
+        ("plot --from {log} world/im", ["world/image.", "world/imu."]),
+        ("plot world/imu.yaw --from {log} world/imu.yaw", ["world/imu.yaw_rate_rad_s"]),
+        ("cut {log}.none --channels ", []),
+    ],
+)
+def test_a_typed_recording_names_its_parts(tmp_path: Path, words: str, found: list[str]) -> None:
+    said = plan_t()
+    camera = {"name": "world/camera", "origins": {"gain": "default"}}
+    types = {"world/image": "core.frame_t", "world/imu": "robot.imu_t"}
+    channels = [{"name": name, "type_name": kind} for name, kind in types.items()]
+    said.json = json.dumps({"components": [camera], "channels": channels})
+    log = write(tmp_path / "log", [("fwk/plan", said.encode(), 0)])
+    assert complete(["fwk", *words.format(log=log).split(" ")]) == found
 
 
 def test_launch_files_and_recordings_are_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
