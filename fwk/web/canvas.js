@@ -109,7 +109,6 @@ export default {
       } catch (error) { this.pace = RETRY_MS; }
       setTimeout(this.ask, this.due + this.pace - performance.now());
     },
-    fitAgain() { this.scale = 0; this.shapes = []; this.trails.clear(); this.image = this.loaded = null; this.have = ""; },
     async load(picture) {
       const url = `${this.images}&channel=${encodeURIComponent(picture.camera)}&frame=${picture.frame}`;
       if (url === this.loaded) return;
@@ -177,14 +176,24 @@ export default {
       this.painted.port2.postMessage(began); // comes when the browser has painted
       if (part < 1) this.wait();
     },
-    fit(width, height) {
-      let box = this.drawing.bounds;
-      if (!box) {
-        const points = [...this.ground.shapes, ...this.drawing.shapes].flatMap((s) => s.p || [[s.x, s.y]]);
-        const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
-        box = points.length ? [Math.min(...xs) - 1, Math.min(...ys) - 1, Math.max(...xs) + 1, Math.max(...ys) + 1]
-                            : [-5, -5, 5, 5];
+    /** Returns what a fitted drawing shows: its bounds, otherwise all places that shapes have had. */
+    box() {
+      if (this.drawing.bounds) return this.drawing.bounds;
+      const points = [...this.ground.shapes, ...this.drawing.shapes].flatMap((s) => s.p || [[s.x, s.y]]);
+      const [xs, ys] = [points.map((p) => p[0]), points.map((p) => p[1])];
+      const [left, low, right, high] = this.places || [0, 0, 0, 0];
+      const beyond = !this.places || Math.min(...xs) < left || Math.min(...ys) < low
+                     || Math.max(...xs) > right || Math.max(...ys) > high;
+      if (points.length && beyond) {
+        const old = this.places || [Infinity, Infinity, -Infinity, -Infinity];
+        this.places = [Math.min(old[0], ...xs.map((x) => x - 1)), Math.min(old[1], ...ys.map((y) => y - 1)),
+                       Math.max(old[2], ...xs.map((x) => x + 1)), Math.max(old[3], ...ys.map((y) => y + 1))];
       }
+      return this.places || [-5, -5, 5, 5];
+    },
+    fit(width, height) {
+      const box = this.box();
+      this.fittedTo = box.join();
       this.scale = Math.min(width / (box[2] - box[0]), height / (box[3] - box[1]));
       this.middle = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
       this.fitted = true; // until it is zoomed or shifted
@@ -197,7 +206,7 @@ export default {
       if (this.canvas.width !== width * dots || this.canvas.height !== height * dots) {
         this.canvas.width = width * dots; this.canvas.height = height * dots;
       }
-      if (!this.scale) this.fit(width, height);
+      if (!this.scale || (this.fitted && !this.pressed && this.box().join() !== this.fittedTo)) this.fit(width, height);
       this.canvas.dataset.scale = String(Math.round(this.scale * 100) / 100);
       const pen = this.canvas.getContext("2d");
       pen.setTransform(1, 0, 0, 1, 0, 0);

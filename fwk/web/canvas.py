@@ -32,10 +32,6 @@ class Canvas(Element, component="canvas.js"):
         self._props.update({"url": url, "images": images})
         self.update()
 
-    def fit_again(self) -> None:
-        """Shows all of the next drawing, which is of another thing."""
-        self.run_method("fitAgain")
-
     def on_pick(self, take: Callable[[str], Any]) -> None:
         """Calls a function with the name of a chosen shape; empty: none."""
         self.on("pick", lambda event: take(event.args))

@@ -6,6 +6,7 @@ from typing import Any
 from fwk.web.instruments import CAMERA, Instrument, instrument_of
 from fwk.web.scene import Newest, Scene
 from fwk.web.view import View
+from fwk.web.words import seconds
 
 
 class DeviceView(View):
@@ -36,10 +37,19 @@ class DeviceView(View):
             scene.headline = f"{self._channel}: no instrument shows its type"
             return
         instrument.draw(message, scene)
+        scene.headline += _moment(message)
         if instrument is CAMERA:
             scene.picture(self._channel, message.frame, message.width_px, message.height_px)
             for view in self._sights:
                 view.sight(self._channel, newest, scene)
+
+
+def _moment(message: Any) -> str:
+    """Returns when a device measured, in logical time; empty for types that do not say it."""
+    header = getattr(message, "header", None)
+    if header is None or not hasattr(header, "time_us"):
+        return ""
+    return f" (tick {header.tick}, {seconds(getattr(message, 'capture_us', 0) or header.time_us)})"
 
 
 def devices_of(types: dict[str, Any]) -> dict[str, Instrument]:

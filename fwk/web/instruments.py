@@ -16,6 +16,8 @@ _SOFT = "#8796a5"
 _GOOD = "#43a047"
 _BEAMS_MAX = 2000
 _DIAL_STEPS = 12
+_ROW = (1.0, 1.5, 2.0, 3.0, 5.0, 7.5, 10.0, 15.0)
+"""Parts of a power of ten that end scales."""
 
 
 @dataclass(frozen=True)
@@ -42,13 +44,13 @@ def _draw_camera(frame: Any, scene: Scene) -> None:
 
 def _draw_laser(scan: Any, scene: Scene) -> None:
     """Draws the beams in the frame of the sensor, x to the right; the nearest one is marked."""
-    step = max(1, len(scan.ranges_m) // _BEAMS_MAX)
-    beams = [
+    valid = [
         (range_m, scan.angle_min_rad + number * scan.angle_step_rad)
         for number, range_m in enumerate(scan.ranges_m)
-        if number % step == 0 and scan.range_min_m <= range_m <= scan.range_max_m
+        if scan.range_min_m <= range_m <= scan.range_max_m
     ]
-    reach_m = min(scan.range_max_m, max((range_m for range_m, _ in beams), default=1.0) * 1.1)
+    beams = valid[:: math.ceil(len(valid) / _BEAMS_MAX) or 1]
+    reach_m = _rounded_up(max((range_m for range_m, _ in valid), default=1.0))
     scene.bounds = (-reach_m, -reach_m, reach_m, reach_m)
     for part in (0.25, 0.5, 0.75, 1.0):
         scene.circle(0.0, 0.0, part * reach_m, stroke=_SOFT, width_m=reach_m / 400)
@@ -57,27 +59,27 @@ def _draw_laser(scan: Any, scene: Scene) -> None:
     for beam in beams:
         scene.circle(*_polar(*beam), reach_m / 150, fill=_LINE)
     scene.line([(0.0, 0.0), (reach_m / 10, 0.0)], _MARK, reach_m / 100)
-    scene.headline = f"{len(scan.ranges_m)} beams, {len(beams)} valid" if step == 1 else f"{len(scan.ranges_m)} beams"
-    if beams:
-        range_m, angle_rad = min(beams)
+    scene.headline = f"{len(scan.ranges_m)} beams, {len(valid)} valid"
+    if valid:
+        range_m, angle_rad = min(valid)
         scene.circle(*_polar(range_m, angle_rad), reach_m / 50, stroke=_MARK, width_m=reach_m / 200)
-        scene.headline += f", nearest {range_m:.2f} m at {math.degrees(angle_rad):.0f}°"
+        scene.headline += f", nearest {range_m:.2f} m at {_degrees(angle_rad):.0f}°"
 
 
 def _draw_gps(fix: Any, scene: Scene) -> None:
-    """Draws two standard deviations around the fix, east to the right."""
+    """Draws two standard deviations around the fix, east to the right, in units of the ring."""
     kind = _constant(fix, "kind")
-    scene.headline = f"{fix.latitude_deg:.7f}°, {fix.longitude_deg:.7f}°"
+    scene.headline = "no fix" if kind == "none" else f"{fix.latitude_deg:.7f}°, {fix.longitude_deg:.7f}°"
     deviation_m = math.sqrt(max(0.0, fix.covariance_m2[0][0], fix.covariance_m2[1][1]))
-    reach_m = max(0.05, 3 * deviation_m) if math.isfinite(deviation_m) else 1.0
-    scene.bounds = (-1.3 * reach_m, -1.3 * reach_m, 1.3 * reach_m, 1.3 * reach_m)
-    _cross(scene, reach_m)
-    scene.circle(0.0, 0.0, reach_m / 40, fill=_MARK)
-    scene.ellipse(0.0, 0.0, fix.covariance_m2, _LINE)
-    height_m = reach_m / 12
-    scene.text(0.0, 1.15 * reach_m, "north", _SOFT, height_m)
-    scene.text(0.0, -1.1 * reach_m, f"ring {reach_m:.3g} m", _SOFT, height_m)
-    scene.text(0.0, -1.24 * reach_m, f"{kind}, {fix.satellites} satellites, {fix.altitude_m:.2f} m", _SOFT, height_m)
+    reach_m = _rounded_up(2 * deviation_m) if math.isfinite(deviation_m) and deviation_m > 0.0 else 1.0
+    scene.bounds = (-1.3, -1.3, 1.3, 1.3)
+    _cross(scene, 1.0)
+    if kind != "none":
+        scene.circle(0.0, 0.0, 0.025, fill=_MARK)
+        scene.ellipse(0.0, 0.0, [[part / reach_m**2 for part in row[:2]] for row in fix.covariance_m2[:2]], _LINE)
+    scene.text(0.0, 1.15, "north", _SOFT, 0.08)
+    scene.text(0.0, -1.1, f"ring {reach_m:.3g} m", _SOFT, 0.08)
+    scene.text(0.0, -1.24, f"{kind}, {fix.satellites} satellites, {fix.altitude_m:.2f} m", _SOFT, 0.08)
 
 
 def _draw_joints(state: Any, scene: Scene) -> None:
@@ -99,7 +101,7 @@ def _draw_joints(state: Any, scene: Scene) -> None:
                 scene.line(_arc(x_m, y_m, 0.75, position, position + _clipped(velocity, math.pi)), _MARK, 0.06)
         words = " ".join(f"{value:.3g}" for value in (position, velocity, effort) if math.isfinite(value))
         scene.text(x_m, y_m - 1.25, words or "not measured", _SOFT, 0.22)
-    scene.headline = f"{len(state.names)} joints: position, velocity, effort"
+    scene.headline = f"{len(state.names)} joints: position in rad or m, velocity in rad/s or m/s, effort in N m or N"
 
 
 def _draw_joystick(stick: Any, scene: Scene) -> None:
@@ -136,9 +138,15 @@ def _draw_imu(imu: Any, scene: Scene) -> None:
     along, across = getattr(imu, "ax_m_s2", math.nan), getattr(imu, "ay_m_s2", math.nan)
     longest = max(5.0, math.hypot(along, across)) if math.isfinite(along + across) else math.nan
     scene.line([(3.4, 0.0), (3.4 - across / longest, along / longest)], _MARK, 0.08)
-    scene.text(0.0, -1.4, f"heading {math.degrees(heading_rad):.1f}°, {imu.yaw_rate_rad_s:+.2f} rad/s", _SOFT, 0.2)
-    scene.text(3.4, -1.4, f"forward {along:+.2f}, left {across:+.2f} m/s²", _SOFT, 0.2)
-    scene.headline = "compass and acceleration; forward is up on the right"
+    parts = []
+    if math.isfinite(heading_rad):
+        parts.append(f"heading {math.degrees(heading_rad):.1f}°")
+    parts.append(f"turn {imu.yaw_rate_rad_s:+.2f} rad/s")
+    scene.text(0.0, -1.4, ", ".join(parts), _SOFT, 0.2)
+    if math.isfinite(along + across):
+        parts.append(f"forward {along:+.2f} m/s², left {across:+.2f} m/s²")
+        scene.text(3.4, -1.4, "forward is up", _SOFT, 0.2)
+    scene.headline = ", ".join(parts)
 
 
 def _draw_base(base: Any, scene: Scene) -> None:
@@ -157,7 +165,7 @@ def _draw_base(base: Any, scene: Scene) -> None:
     scene.line([(x_m, y_m), _polar(speed_m_s, towards_rad, x_m, y_m)], _MARK, 0.05)
     scene.line(_arc(x_m, y_m, 0.6, heading_rad, heading_rad + _clipped(base.omega_rad_s, 6.0)), _GOOD, 0.05)
     scene.headline = (
-        f"x {x_m:.2f} m, y {y_m:.2f} m, {math.degrees(heading_rad):.0f}°, "
+        f"x {x_m:.2f} m, y {y_m:.2f} m, {_degrees(heading_rad):.0f}°, "
         f"{speed_m_s:.2f} m/s, {base.omega_rad_s:+.2f} rad/s"
     )
 
@@ -172,6 +180,8 @@ def _draw_motion(motion: Any, scene: Scene) -> None:
     scene.headline = (
         f"forward {motion.vx_m_s:+.2f} m/s, left {motion.vy_m_s:+.2f} m/s, turn {motion.omega_rad_s:+.2f} rad/s"
     )
+    if not getattr(motion, "enabled", True):
+        scene.headline += ", motors off"
 
 
 def _polar(length_m: float, angle_rad: float, x_m: float = 0.0, y_m: float = 0.0) -> Point:
@@ -191,6 +201,19 @@ def _cross(scene: Scene, reach_m: float, x_m: float = 0.0) -> None:
 
 def _clipped(value: float, most: float) -> float:
     return max(-most, min(most, value)) if math.isfinite(value) else 0.0
+
+
+def _rounded_up(length_m: float) -> float:
+    """Returns the next length of a row, so that drawings keep their scale while figures vary."""
+    if not 0.0 < length_m < math.inf:
+        return 1.0
+    unit_m: float = 10.0 ** math.floor(math.log10(length_m))
+    return next(factor * unit_m for factor in _ROW if factor * unit_m >= length_m)
+
+
+def _degrees(angle_rad: float) -> float:
+    """Returns an angle from -180 to 180 degrees."""
+    return math.degrees(math.remainder(angle_rad, math.tau)) if math.isfinite(angle_rad) else math.nan
 
 
 def _item(values: Sequence[float], number: int) -> float:

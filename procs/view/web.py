@@ -44,10 +44,10 @@ class MatchView(View):
         if truth is None:
             return
         for robot in truth.robots:
-            _draw_robot(scene, robot)
-        _draw_ball(scene, truth)
-        for robot in truth.robots:
             _draw_mind(scene, newest, robot)
+        for robot in truth.robots:
+            _draw_robot(scene, robot)
+        _draw_ball(scene, truth)  # above what robots believe of it
 
     def sight(self, camera: str, newest: Newest, scene: Scene) -> None:
         """Draws the detections of a robot over an image of its camera."""

@@ -64,6 +64,7 @@ async def show_device(frame: Frame, channel: str) -> None:
     canvas.on_headline(headline.set_text)
     rows = await frame.do(frame.link.channels()) or []
     if frame.may_steer and drives(members) and any(row["channel"] == channel and row["outside"] for row in rows):
+        canvas.classes("fwk-driven")
         _pad(frame, channel, members)
 
 

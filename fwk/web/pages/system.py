@@ -86,8 +86,11 @@ def build(frame: Frame) -> None:
         )
 
     async def measure() -> None:
+        nonlocal shown_us
+        first = not usage
         pids = {each["pid"] for each in (await frame.link.status())["components"]}
         usage.update(await frame.console.usage(frame.run, pids))
+        shown_us = 0 if first else shown_us
 
     frame.on_status(show)
     frame.every(_USAGE_S, measure)

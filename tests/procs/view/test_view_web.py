@@ -55,6 +55,7 @@ def test_robots_and_ball_lie_where_they_truly_are() -> None:
     shapes = drawn(match())["shapes"]
     places = {shape["drag"]: (shape["x"], shape["y"]) for shape in shapes if "drag" in shape}
     assert places == {"cyan1": (1.0, 2.0), "ball": (3.0, -1.0)}
+    assert shapes[-1]["drag"] == "ball"  # above what robots believe of it
 
 
 def test_beliefs_targets_and_roles_have_layers_of_their_own() -> None:

@@ -258,6 +258,10 @@ def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
     canvas.hover()
     page.mouse.wheel(0, -100)
     wait_for_scale(1.15 * scale)
+    page.goto(f"{garden.console.url}/view?run={garden.name}&view=1")  # of everything, without fixed bounds
+    page.wait_for_function(
+        "() => { const c = document.querySelector('canvas'); return c?.dataset.scale < c.clientHeight / 5.8; }"
+    )
 
 
 def test_own_pages_are_offered_where_they_fit(garden: Garden) -> None:
