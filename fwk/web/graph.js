@@ -1,6 +1,15 @@
 // Shows the graph of a system, in a shadow tree, so that the style of the drawing does not reach the page.
+/** Lets Tab reach the components. */
+function reachable(drawing) {
+  for (const node of drawing.querySelectorAll("g")) {
+    node.setAttribute("tabindex", "0");
+    node.setAttribute("role", "button");
+  }
+  return drawing;
+}
+
 export default {
-  template: `<div class="fwk-graph" role="img" :aria-label="label" @click="choose"></div>`,
+  template: `<div class="fwk-graph" role="group" :aria-label="label" @click="choose" @keydown="key"></div>`,
   props: { url: String, label: String, period: Number },
   mounted() {
     this.shadow = this.$el.attachShadow({ mode: "open" });
@@ -15,7 +24,7 @@ export default {
       const answer = document.hidden ? null : await fetch(url).catch(() => null);
       const text = answer?.ok ? await answer.text() : "";
       if (url !== this.url || !this.$el.isConnected) return; // another question is under way, or the page has gone
-      if (text) this.show(new DOMParser().parseFromString(text, "image/svg+xml").documentElement, url);
+      if (text) this.show(reachable(new DOMParser().parseFromString(text, "image/svg+xml").documentElement), url);
       this.next = setTimeout(this.ask, this.period);
     },
     /** Replaces the drawing, or only its words and states, so that the tooltip under the mouse stays. */
@@ -30,6 +39,11 @@ export default {
         if (!each.children.length && each.textContent !== now.textContent) now.textContent = each.textContent;
       });
       this.shown = url;
+    },
+    key(event) {
+      if (event.key !== "Enter" && event.key !== " ") return;
+      this.choose(event);
+      event.preventDefault();
     },
     choose(event) {
       const node = event.composedPath().find((each) => each.tagName === "g");

@@ -63,7 +63,9 @@ def build(frame: Frame) -> None:
         rows = await link.channels()
         now = rates.measure(rows, monotonic_us())
         table.rows = [
-            {**row_of(row), "rate": f"{row.get('rate_hz', now.get(row['channel'], 0.0)):.1f}"} for row in rows
+            {**row_of(row), "rate": f"{rate_hz:.1f}" if rate_hz is not None else ""}
+            for row in rows
+            for rate_hz in [row.get("rate_hz", now.get(row["channel"]))]
         ]
 
     async def refresh_fields() -> None:

@@ -12,6 +12,7 @@ from fwk.web.plotting import Curves, FieldNameError, number_at, parted, recorded
 from fwk.web.recorded_link import RecordedLink
 
 _ASK_S = 0.1
+_INK = "#7b8794"  # readable on light and on dark pages
 _DRAW_S = 0.5
 
 
@@ -28,15 +29,17 @@ def build(frame: Frame) -> None:
         chart = ui.echart(
             {
                 "animation": False,
-                "legend": {"top": 0},
+                "legend": {"top": 0, "textStyle": {"color": _INK}},
                 "tooltip": {"trigger": "axis"},
                 "grid": {"left": 60, "right": 20, "top": 40, "bottom": 40},
-                "xAxis": {"type": "value", "scale": True, "name": "s"},
-                "yAxis": {"type": "value", "scale": True},
+                "xAxis": {"type": "value", "scale": True, "name": "s", "axisLabel": {"color": _INK}},
+                "yAxis": {"type": "value", "scale": True, "axisLabel": {"color": _INK}},
                 "series": [],
             }
         )
-        chart.classes("w-full").style("height: calc(100vh - 190px); min-height: 240px")
+        chart.classes("w-full").style("height: calc(100vh - 190px); min-height: 240px").props(
+            'role=img aria-label="curves"'
+        )
 
     def choose() -> None:
         fields[:] = [each.strip() for each in (chosen.value or "").split(",") if each.strip()]

@@ -28,6 +28,7 @@ def build(frame: Frame) -> None:
             save.set_visibility(frame.may_steer)
         with ui.row().classes("w-full items-start no-wrap-md"):
             tree = ui.tree([], label_key="label", on_select=lambda event: choose(event.value or ""))
+            tree.props('no-nodes-label="asking the run"')
             tree.classes("fwk-tree").props("data-name=tree")
             rows_area = ui.column().classes("fwk-settings")
 

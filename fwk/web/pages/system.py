@@ -196,4 +196,4 @@ async def _histogram(frame: Frame, name: str) -> None:
             "yAxis": {"type": "value"},
             "series": [{"type": "bar", "data": [count for _, count in rows]}],
         }
-    ).classes("w-full").style("height: 160px")
+    ).classes("w-full").style("height: 160px; flex: none").props('role=img aria-label="histogram"')
