@@ -17,14 +17,16 @@ class Crossbar:
         self._high_m = field.goal_height_m + field.post_diameter_m
         self._before_m = 0.0
 
-    def stop(self) -> None:
-        """Acts on the ball after each step."""
+    def stops(self, x_m: float, y_m: float) -> bool:
+        """Acts on the ball, which is now here, after each step; returns whether the bar sends it back."""
         ball = self._ball
-        (x_m, y_m), (vx_m_s, vy_m_s) = ball.body.position, ball.body.velocity
         before_m, self._before_m = self._before_m, x_m
         if not ball.z_m or abs(before_m) >= self._line_m or abs(x_m) < self._line_m or abs(y_m) > self._half_m:
-            return
-        if ball.z_m < self._high_m and ball.z_m + 2 * ball.radius_m > self._low_m:
-            ball.body.position = (before_m, y_m)
-            ball.body.velocity = (-_BOUNCE * vx_m_s, vy_m_s)
-            self._before_m = before_m
+            return False
+        if ball.z_m >= self._high_m or ball.z_m + 2 * ball.radius_m <= self._low_m:
+            return False
+        vx_m_s, vy_m_s = ball.body.velocity
+        ball.body.position = (before_m, y_m)
+        ball.body.velocity = (-_BOUNCE * vx_m_s, vy_m_s)
+        self._before_m = before_m
+        return True

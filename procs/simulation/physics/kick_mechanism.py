@@ -57,17 +57,23 @@ class Kicker:
         """Returns whether a kick is possible."""
         return now_us >= self._charged_from_us
 
-    def act(self, now_us: int, duration_s: float) -> Push | None:
-        """Handles or kicks the ball for one step; returns None without an effect on the ball."""
+    def act(self, now_us: int, duration_s: float, ball_near: bool) -> Push | None:
+        """Handles or kicks the ball for one step; returns None without an effect on the ball.
+
+        Args:
+            now_us: logical time at the beginning of the step.
+            duration_s: duration of the step.
+            ball_near: whether the ball may be in the mouth; a ball that is not near is not looked for.
+        """
         push = None
-        for command in self._line.due(now_us):
+        for command in self._line.due(now_us) if self._line.next_us <= now_us else ():
             self._dribble = command.dribble
             if command.speed_m_s > 0 and command.kick_id != self.kick_id and self.charged(now_us):
                 self.kick_id = command.kick_id
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + _RELEASE_US
                 push = self._fire(command.speed_m_s, command.elevation_rad)
-        if self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
+        if ball_near and self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
             push = Push(self.mouth.pull(duration_s), kicked=False)
         return push
 

@@ -20,13 +20,14 @@ class Mouth:
         self._ball = ball
         self._handling = handling
         self._pull_m_s2 = handling.pull_m_s2 * strength
-        self._far_m = robot.radius_m + ball.radius_m + handling.reach_m
+        self.far_m = robot.radius_m + ball.radius_m + handling.reach_m
+        """Farthest that the middle of a ball in the mouth can be from the robot's."""
 
     @property
     def holds_ball(self) -> bool:
         """True if the light barrier sees the ball in the mouth."""
         away = self._ball.body.position - self._robot.body.position
-        if self._ball.z_m > self._handling.highest_m or away.dot(away) > self._far_m**2:
+        if self._ball.z_m > self._handling.highest_m or away.dot(away) > self.far_m**2:
             return False
         x_m, y_m = self._ball_at()
         gap_m = x_m - self._robot.mouth_x_m - self._ball.radius_m

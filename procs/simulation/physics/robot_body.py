@@ -7,6 +7,7 @@ import pymunk
 from procs.model.kinematics import Velocity
 from procs.model.robot import RobotModel
 from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
+from procs.simulation.physics.bodies import State
 from procs.simulation.physics.drive import Drive
 
 _HULL_CORNERS = 16
@@ -47,16 +48,22 @@ class Robot:
         self.body.position, self.body.angle = (x_m, y_m), heading_rad
         self.body.velocity, self.body.angular_velocity = (0.0, 0.0), 0.0
 
-    def move(self, now_us: int, duration_s: float) -> None:
-        """Turns the motors and lets the wheels push during the coming step of the physics engine."""
+    def move(self, now_us: int, duration_s: float, state: State) -> tuple[float, float, float]:
+        """Turns the motors for the coming step of the physics engine.
+
+        Args:
+            now_us: logical time at the beginning of the step.
+            duration_s: duration of the step.
+            state: present state of the robot's body.
+
+        Returns:
+            Force of the wheels along x and y of the world frame in N, and their torque in Nm.
+        """
+        _, _, angle_rad, vx, vy, omega_rad_s = state
+        cos, sin = math.cos(angle_rad), math.sin(angle_rad)
         self.drive.turn_motors(now_us, duration_s)
-        cos, sin = math.cos(self.body.angle), math.sin(self.body.angle)
-        vx, vy = self.body.velocity
-        force_x, force_y, torque = self.drive.push(
-            Velocity(cos * vx + sin * vy, cos * vy - sin * vx, self.body.angular_velocity)
-        )
-        self.body.force = (cos * force_x - sin * force_y, sin * force_x + cos * force_y)
-        self.body.torque = torque
+        force_x, force_y, torque = self.drive.push(cos * vx + sin * vy, cos * vy - sin * vx, omega_rad_s)
+        return cos * force_x - sin * force_y, sin * force_x + cos * force_y, torque
 
 
 def _hull(radius_m: float, half_rad: float) -> list[tuple[float, float]]:

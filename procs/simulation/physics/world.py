@@ -11,6 +11,7 @@ from procs.model.field import Field, Point
 from procs.model.robot import PLAYERS, ROBOT, Player, RobotModel
 from procs.simulation.physics.arena import build_arena
 from procs.simulation.physics.ball_body import Ball
+from procs.simulation.physics.bodies import Bodies, State
 from procs.simulation.physics.contacts import Contacts
 from procs.simulation.physics.crossbar import Crossbar
 from procs.simulation.physics.drive import Drive
@@ -66,6 +67,9 @@ class World:
             self.kickers[name] = Kicker(mouth, self._physics.kicker, noise, rng)
         self._contacts = Contacts(self._space, list(self.robots.values()))
         self._judge = LineJudge(self._field, self.ball.radius_m)
+        self._bodies = Bodies(self._space)
+        self._in_order = [(name, robot, self.kickers[name]) for name, robot in self.robots.items()]
+        self._near_m2 = max([kicker.mouth.far_m for kicker in self.kickers.values()], default=0.0) ** 2
 
     @property
     def ball_in_field(self) -> bool:
@@ -101,36 +105,46 @@ class World:
         start_us = self.time_us
         touched: dict[str, Event] = {}
         events: list[Event] = []
+        states = self._bodies.states()
         for step in range(steps):
             self.time_us = start_us + duration_us * step // steps
-            events += self._step(duration_us / steps / 1e6, touched)
+            states = self._step(duration_us / steps / 1e6, states, touched, events)
         self.time_us = start_us + duration_us
         return sorted([*events, *touched.values(), *self._contacts.take_collisions()])
 
-    def _step(self, duration_s: float, touched: dict[str, Event]) -> list[Event]:
+    def _step(
+        self, duration_s: float, states: list[State], touched: dict[str, Event], events: list[Event]
+    ) -> list[State]:
+        """Moves the world on by one step; returns the new states of the ball and the robots, in this order."""
         pushes: dict[str, Push] = {}
-        for name, robot in self.robots.items():
-            robot.move(self.time_us, duration_s)
-            push = self.kickers[name].act(self.time_us, duration_s)
+        now_us, (ball_x_m, ball_y_m, *_) = self.time_us, states[0]
+        effects = [0.0, 0.0, 0.0]  # on the ball
+        for (name, robot, kicker), state in zip(self._in_order, states[1:], strict=True):
+            x_m, y_m = ball_x_m - state[0], ball_y_m - state[1]
+            effects += robot.move(now_us, duration_s, state)
+            push = kicker.act(now_us, duration_s, ball_near=x_m * x_m + y_m * y_m <= self._near_m2)
             if push is not None:
                 pushes[name] = push
+        self._bodies.push(effects)
         # All pushes act on the ball as it was before the step, so that the order of two rivals does not matter.
         for push in pushes.values():
             self.ball.body.velocity += push.change_m_s
             self.ball.vz_m_s += push.lift_m_s
-        events = [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
+        events += [self._ball_event(Kind.KICK, name) for name, push in pushes.items() if push.kicked]
         self.ball.rub(duration_s)
         self._space.step(duration_s)
         self.ball.fall(duration_s)
-        self._bar.stop()
+        states = self._bodies.states()
+        if self._bar.stops(*states[0][:2]):
+            states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
         if touching:
-            self.last_touch = min(touching, key=self._distance_to_ball)
             touched |= {robot: self._ball_event(Kind.TOUCH, robot) for robot in touching}
-        call = self._judge.judge(*self.ball.body.position, self.ball.z_m)
+            self.last_touch = touching.pop() if len(touching) == 1 else min(touching, key=self._distance_to_ball)
+        call = self._judge.judge(*states[0][:2], self.ball.z_m)
         if call is not None:
             events.append(self._ball_event(call, self.last_touch))
-        return events
+        return states
 
     def _ball_event(self, kind: Kind, robot: str) -> Event:
         return Event(kind, robot, "", *self.ball.body.position, self.ball.speed_m_s)

@@ -1,0 +1,66 @@
+"""Measures the physics of a match alone: `python -m tools.bench.physics` prints its speed."""
+
+import argparse
+import math
+import time
+
+import numpy as np
+
+from procs.model.kinematics import Velocity, wheels_of
+from procs.model.robot import PLAYERS, ROBOT
+from procs.simulation.physics.kick_mechanism import KickerCommand
+from procs.simulation.physics.realism import noise_of
+from procs.simulation.physics.settings import PhysicsSettings
+from procs.simulation.physics.world import World
+
+_TICK_US = 50_000
+_STEPS_S = (0.005, 0.002)
+_SPEED_M_S, _TURN_RAD_S, _KICK_M_S = 2.0, 2.0, 6.0
+_CHASER = 2  # number of the robot of each team that wants the ball
+
+
+def command(world: World, tick: int) -> None:
+    """Lets one robot of each team chase the ball and kick it once a second; the others drive in circles."""
+    for name, robot in world.robots.items():
+        chases = PLAYERS[name].number == _CHASER
+        away = world.ball.body.position - robot.body.position
+        towards_rad = math.atan2(away.y, away.x) - robot.body.angle if chases else 0.0
+        turn_rad_s = math.sin(towards_rad) if chases else _TURN_RAD_S
+        wish = Velocity(_SPEED_M_S * math.cos(towards_rad), _SPEED_M_S * math.sin(towards_rad), turn_rad_s)
+        robot.drive.command(wheels_of(wish, ROBOT.wheel_distance_m), world.time_us)
+        kick_m_s = _KICK_M_S if chases and tick % 20 == 0 else 0.0
+        world.kickers[name].command(KickerCommand(tick, kick_m_s, dribble=chases), world.time_us)
+
+
+def seconds_of(step_s: float, match_s: float) -> float:
+    """Returns the processor time of a match of ten robots in steps of `step_s`."""
+    rng, noise = np.random.default_rng(1), noise_of("realistic", {})
+    world = World(list(PLAYERS), rng, physics=PhysicsSettings(step_s=step_s), noise=noise)
+    took_s = 0.0
+    for tick in range(round(match_s * 1e6 / _TICK_US)):
+        command(world, tick)
+        began_s = time.process_time()
+        world.advance(_TICK_US)
+        took_s += time.process_time() - began_s
+        if not world.ball_in_field:
+            world.place_ball(0.0, 0.0)
+    return took_s
+
+
+def main() -> None:
+    """Prints the least processor time of each size of step."""
+    words = argparse.ArgumentParser(description=__doc__)
+    words.add_argument("--seconds", type=float, default=20.0, help="duration of a match; default 20")
+    words.add_argument("--rounds", type=int, default=5, help="matches of each size of step; the fastest counts")
+    asked = words.parse_args()
+    for step_s in _STEPS_S:
+        took_s = min(seconds_of(step_s, asked.seconds) for _ in range(asked.rounds))
+        steps = asked.seconds / step_s
+        print(
+            f"steps of {step_s * 1000:g} ms: {asked.seconds / took_s:.1f} times real time, "
+            f"{took_s / steps * 1e6:.1f} us a step"
+        )
+
+
+if __name__ == "__main__":
+    main()
