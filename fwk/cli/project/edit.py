@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -37,10 +36,10 @@ def open_source(component: str) -> "tuple[Project, Source]":
     Raises:
         ScaffoldError: there is no such component, or the library that edits is not installed.
     """
-    if find_spec("libcst") is None:
-        raise ScaffoldError("editing components needs libcst; type: pip install 'fwk[new]'")
-    from fwk.scaffold.source import Source, find_source
-
+    try:
+        from fwk.scaffold.source import Source, find_source
+    except ImportError as error:  # missing, or broken
+        raise ScaffoldError("editing components needs libcst; type: pip install 'fwk[new]'") from error
     project = project_at(Path.cwd())
     return project, Source(*find_source(project, component))
 

@@ -307,7 +307,7 @@ def test_commands_print_the_difference_and_do_it_once(tmp_path: Path, monkeypatc
     assert "still used: " in typed(remove, "setting", "sensor", "noise_m")
     assert "is not a port; write NAME:TYPE" in typed(add, "writes", "sensor", "ball", code=2)
     assert "is not a setting; write NAME:TYPE=VALUE" in typed(add, "setting", "sensor", "x:int", code=2)
-    monkeypatch.setattr("fwk.cli.project.edit.find_spec", lambda name: None)
+    monkeypatch.setitem(sys.modules, "fwk.scaffold.source", None)  # a library that is missing, or broken
     assert "pip install 'fwk[new]'" in typed(add, *words, code=2)
     for module, kind in (("ports", "reads"), ("settings", "setting")):
         monkeypatch.setitem(sys.modules, f"fwk.scaffold.{module}", None)  # they import the missing library
