@@ -7,12 +7,14 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any
 
+from fwk.clock import monotonic_us
 from fwk.control import runs
 from fwk.control.address import gateway_address, running, supervisor_address
 from fwk.control.client import Client, ControlError, RefusedError
 from fwk.lcm import envelope, messages
 from fwk.lcm.type_registry import use_types_of
 from fwk.lcm.typegen import TypeGenerationError
+from fwk.web.pace import PaceMeter
 from fwk.web.shared import Shared
 
 _LOOK_AGE_S = 1.0
@@ -24,9 +26,6 @@ _SHOW_AGE_S = 0.2
 _TIMES_AGE_S = 1.5
 _FRAME_AGE_S = 0.04
 _TIMEOUT_S = 3.0
-_LAG_AGE_S = 2.0
-_LAG = 0.9
-"""Share of its desired speed below which a run lags."""
 
 
 class NotRunningError(ControlError):
@@ -96,6 +95,7 @@ class RunLink:
         self._raw: dict[str, bytes] = {}
         self._raw_of = 0  # process of the run that `_raw` belongs to
         self._typed: set[str] = set()
+        self._pace = PaceMeter()
 
     async def about(self) -> dict[str, Any]:
         """Returns the description of the run.
@@ -120,8 +120,8 @@ class RunLink:
 
     async def lags(self) -> bool:
         """Tells whether the run needs all processors: it is behind its desired speed, or runs as fast as possible."""
-        clock, status = await self.clock(), await self.status(_LAG_AGE_S)
-        return not clock["paused"] and (not clock["pace"] or status["speed"] < _LAG * clock["pace"])
+        self._pace.note(await self.clock(), monotonic_us())
+        return self._pace.lags
 
     async def times(self) -> dict[str, Any]:
         """Returns histograms of the times of ticks, stages and components."""

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from fwk.web.extensions import ExtensionError, Extensions
+from fwk.web.pace import PaceMeter
 from fwk.web.run_link import NotRunningError, Runs
 from fwk.web.shared import Shared
 
@@ -101,6 +102,36 @@ def test_a_run_that_answers_late_still_runs() -> None:
         assert list(await found.all()) == ["blue"]
 
     asyncio.run(browser())
+
+
+def lags(*answers: tuple[float, float, float, bool]) -> bool:
+    """Tells whether a run lags that has said these: at a time in seconds its logical time, desired speed, and pause."""
+    meter = PaceMeter()
+    for now_s, time_s, pace, paused in answers:
+        said = {"time_us": round(time_s * 1e6), "pace": pace, "paused": paused}
+        meter.note(said, round(now_s * 1e6))
+        meter.note(said, round(now_s * 1e6) + 900_000)  # a page asks again and gets the answer that is kept
+    return meter.lags
+
+
+@pytest.mark.parametrize(
+    ("answers", "expected"),
+    [
+        ([], False),
+        ([(0, 0, 1, False), (0.5, 0.1, 1, False)], False),
+        ([(0, 0, 1, False), (2, 1.85, 1, False)], False),
+        ([(0, 0, 1, False), (2, 1.75, 1, False)], True),
+        ([(0, 0, 1, False), (3.5, 3.5, 1, False), (4, 3.8, 1, False)], False),  # a tick or two late
+        ([(0, 0, 1, False), (9, 1, 1, False), (13, 5, 1, False)], False),  # it was late once
+        ([(0, 0, 2, False), (2, 2, 2, False)], True),
+        ([(0, 0, 2, False), (2, 2, 2, False), (3, 3, 0.5, False)], False),  # it is asked for less now
+        ([(0, 0, 0, False)], True),
+        ([(0, 0, 1, False), (2, 0.5, 1, True)], False),
+        ([(0, 9, 1, False), (2, 0, 1, False)], False),  # it has started again
+    ],
+)
+def test_a_run_lags_that_is_behind_for_seconds(answers: list[Any], expected: bool) -> None:
+    assert lags(*answers) == expected
 
 
 def test_a_view_without_draw_is_refused_at_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
