@@ -38,7 +38,7 @@ class Order:
     before: int = 0
     """Searches backwards: the iteration to stop at is the last one before this one where `condition` holds; 0: no."""
     came_from: int = 0
-    """Iteration at which a search began."""
+    """Iteration at which the order was given; 0: before the first one."""
     breakpoints: list[tuple[str, int, bool, str | None]] = field(default_factory=list)
 
 
@@ -141,8 +141,7 @@ class Travel:
             work(self._begin)
             while self._order.before:  # the search reached the end of the recording
                 self._end_search()
-            if self._order.condition:
-                print(f"fwk: the recording ends without an iteration where {self._order.condition}", flush=True)
+            self._end_forward()
         except bdb.BdbQuit:
             return LEFT
         except ComponentFailedError as failure:
@@ -171,7 +170,7 @@ class Travel:
         """Goes on to the next iteration where a condition holds; returns a problem."""
         problem = self._compile(condition) or (_ENDED if self._failed else "")
         if not problem:
-            self._order = Order(condition=condition)
+            self._order = Order(condition=condition, came_from=self.iterations)
         return problem
 
     def search_back(self, condition: str) -> str:
@@ -184,6 +183,7 @@ class Travel:
     def _go(self, order: Order) -> str:
         """Carries out an order that lies before the present iteration, or after it."""
         if order.iteration > self.iterations and order.tick > self.tick:
+            order.came_from = self.iterations
             self._order = order
             return _ENDED if self._failed else ""
         return self._go_back(order, lambda each: each.iterations < order.iteration and each.tick <= order.tick)
@@ -261,6 +261,15 @@ class Travel:
             self._go_back(earlier, lambda each: each.iterations < first - 1)
         print(f"fwk: no earlier iteration where {order.condition}", flush=True)
         self._order = Order(iteration=order.came_from)
+
+    def _end_forward(self) -> None:
+        """Ends an order that the end of the recording has left undone: goes back to where it was given."""
+        order = self._order
+        if order.condition or order.tick != _NOTHING:
+            what = f"where {order.condition}" if order.condition else f"in tick {order.tick} or after it"
+            print(f"fwk: the recording ends without an iteration {what}", flush=True)
+        if order.came_from:
+            self._go_back(Order(iteration=order.came_from), lambda each: each.iterations < order.came_from)
 
     def _stop(self) -> None:
         """Starts tracing, with a stop at the first line of the running iteration."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from fwk.clock import monotonic_us
-from tests.harness.runs import played
+from tests.harness.runs import fwk, played
 from tests.harness.terminals import Terminal
 from tests.programs.orchestra import orchestra
 
@@ -56,8 +56,10 @@ def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
     stopped.ask("n")
     stopped.ask("back")
     assert where(stopped) == (19, 18)
-    stopped.type("until self.clock.tick > 999")
-    stopped.child.expect("fwk: the recording ends without an iteration where self.clock.tick > 999")
+    for command, what in (("until self.clock.tick > 999", "where self.clock.tick > 999"), ("goto 999", "in tick 999")):
+        assert f"fwk: the recording ends without an iteration {what}" in stopped.ask(command)
+        assert where(stopped) == (19, 18), "a travel that fails leads back"
+    stopped.type("c")
     stopped.child.expect("equal: ")
     assert stopped.end() == 0
 
@@ -78,6 +80,11 @@ def test_impossible_travels_are_explained(recorded: Path) -> None:
     stopped.type("q")
     stopped.child.expect("left in tick 3")
     assert stopped.end() == 0
+
+
+def test_a_replay_that_ends_before_its_first_stop_says_so(recorded: Path) -> None:
+    said = fwk(recorded, "replay", "log.lcm", "--debug", "e/player", "--from-tick", "99")
+    assert "fwk: the recording ends without an iteration in tick 99 or after it" in said
 
 
 def test_breakpoints_survive_a_travel(recorded: Path) -> None:
