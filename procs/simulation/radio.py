@@ -6,6 +6,7 @@ from pydantic import Field
 from fwk import Clock, Component, Config, Each, Reads, Writes
 from lcmtypes.soccer import team_inbox_t, team_message_t
 from procs.model.realism import Realism, chosen
+from procs.model.units import US_PER_S
 from procs.simulation.radio_links import PRESETS, RadioLinks
 
 
@@ -17,7 +18,7 @@ class RadioConfig(Config):
     loss: float | None = Field(default=None, ge=0.0, le=1.0)
     """Probability that a message does not reach a mate, independent for each mate; 1 switches the radio off."""
     delay_s: float | None = Field(default=None, ge=0.0)
-    """Time from sending to arrival, besides the tick that every message takes."""
+    """Time from sending to arrival; a robot reads what has arrived when its next tick begins."""
     delay_jitter_s: float | None = Field(default=None, ge=0.0)
     """Largest further delay of a message."""
     outages_1_min: float | None = Field(default=None, ge=0.0)
@@ -47,14 +48,15 @@ class Radio(Component):
         self._links: RadioLinks[team_message_t] = RadioLinks(list(self.inboxes), self.rng)
 
     def loop(self) -> None:
-        """Sends the messages of this tick, delivers those that have arrived."""
+        """Sends the messages of this tick, and delivers those that arrive until the next, in which robots read them."""
         settings = chosen(PRESETS[self.config.realism], self.config)
         self._links.pass_time(self.clock.now_us, settings)
         for robot, said in self.messages.items():
             for message in said.fresh:
                 size_bytes = len(message.encode()) if settings.bandwidth_bit_s else 0
                 self._links.send(robot, message, self.clock.now_us, settings, size_bytes)
-        for robot, arrived in self._links.receive(self.clock.now_us).items():
+        read_us = self.clock.now_us + round(self.clock.period_s * US_PER_S)
+        for robot, arrived in self._links.receive(read_us).items():
             inbox = self.inboxes[robot]
             inbox.value.messages = arrived
             inbox.write()

@@ -56,14 +56,14 @@ _FREE_1_S = np.array(
 """Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
 _CONTACT_1_S = np.array(
     (
-        (0.0, 0.1, 0.0, 3.0, 2.0),
-        (0.3, 0.0, 0.0, 6.0, 4.0),
-        (0.0, 1.5, 0.0, 6.0, 4.0),
-        (0.3, 1.0, 0.5, 0.0, 4.0),
+        (0.0, 0.1, 0.0, 1.5, 0.8),
+        (0.3, 0.0, 0.0, 3.0, 1.6),
+        (0.0, 1.5, 0.0, 3.0, 1.6),
+        (0.3, 1.0, 0.5, 0.0, 1.6),
         (0.0, 0.0, 0.0, 0.0, 0.0),
     )
 )
-"""The same with a robot near."""
+"""The same with a robot or a wall within reach."""
 _AFTER_HIT = np.array((0.0, 0.02, 0.83, 0.15, 0.0))
 _FIRST = np.array((0.3, 0.3, 0.15, 0.2, 0.05))
 
@@ -114,8 +114,10 @@ class BallFilter:
         Args:
             duration_s: the step.
             rolling_m_s2: deceleration of the rolling ball.
-            contact: a robot, a post or a wall is near the ball.
+            contact: a robot, a post or a wall may touch the ball.
         """
+        if contact and self._free_s > 0.0:
+            self._rolls_below_m_s = 0.0  # a robot that was not at the ball may have hit it
         self._free_s = 0.0 if contact else self._free_s + duration_s
         self._mix(self._moves(duration_s, contact))
         x, p = self._x, self._p
@@ -171,7 +173,7 @@ class BallFilter:
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
         )
         self._become(Mode.SLIDES)
-        self._rolls_below_m_s = ROLLING_SHARE * speed_m_s
+        self._rolls_below_m_s, self._free_s = ROLLING_SHARE * speed_m_s, 0.0
 
     def _become(self, mode: Mode) -> None:
         self._weights = np.full(_MODES, _LEAST)
@@ -192,7 +194,7 @@ class BallFilter:
             slides = True
         elif sliding_m_s < _ROLLS_BELOW_M_S2 * self._free_s:
             slides = False
-        return _passes(duration_s, contact, slow, slides)
+        return _passes(duration_s, contact, slow, slides, self._rolls_below_m_s > 0.0)
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
@@ -206,19 +208,25 @@ class BallFilter:
 
 
 @lru_cache(maxsize=128)
-def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None) -> Floats:
+def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None, kicked: bool) -> Floats:
     """Returns the probabilities (old, new) of passing from model to model; cached.
 
     Args:
         duration_s: the step.
-        contact: a robot or a wall is near the ball.
+        contact: a robot or a wall may touch the ball.
         slow: a rolling ball is about to rest.
-        slides: whether a ball after a known kick is still too fast to roll; None without a known kick.
+        slides: whether a ball that was hit is still too fast to roll; None if that is not known.
+        kicked: the kick is known.
     """
     rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
     rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
     if slides is not None:
         rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
+        likely, unlikely = (Mode.SLIDES, Mode.ROLLS) if slides else (Mode.ROLLS, Mode.SLIDES)
+        rates_1_s[Mode.HANDLED, likely] += rates_1_s[Mode.HANDLED, unlikely]
+        rates_1_s[Mode.HANDLED, unlikely] = 0.0
+        if slides and kicked:
+            rates_1_s[Mode.ROLLS, Mode.SLIDES] = 15.0
     leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
     stays = np.exp(-leaves_1_s * duration_s)
     moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]

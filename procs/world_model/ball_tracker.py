@@ -105,15 +105,16 @@ class BallTracker:
         rank = _BY_OWN_CAMERA if sighting.own else _BY_MATE
         self._take(rank, sighting.age_s, lambda track: track.see(sighting, self._steps[-1][1].rolling_m_s2))
 
-    def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
-        """Takes a ball in the own mouth; other sightings do not count at the same time.
+    def hold(self, robot: str, state: Floats, covariance: Floats, age_s: float = 0.0) -> None:
+        """Takes a ball in a mouth of the team; earlier sightings do not count any more.
 
         Args:
             robot: name of the robot.
             state: (4) of the ball: x, y, vx, vy, world frame.
-            covariance: (4, 4) that the own pose and velocity add to it.
+            covariance: (4, 4) that the robot's pose and velocity add to it.
+            age_s: time since the mouth was looked at.
         """
-        self._take(_HELD, 0.0, lambda track: track.hold(robot, state, covariance))
+        self._take(_HELD, age_s, lambda track: track.hold(robot, state, covariance))
 
     def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.

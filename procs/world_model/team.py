@@ -1,15 +1,16 @@
 """The newest message of each team mate about itself."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from lcmtypes.soccer import pass_agreement_t
-from procs.model.frames import Floats
+from procs.model.frames import Floats, wrap
 
 _LEAST_M = 0.02  # deviation of a position whose sender claims less
 _DRIFT_M_S = 0.5  # growth of that deviation while the mate drives on unseen
+_TURNING_S = 0.25  # messages further apart do not tell the speed of turning
 _EXTRAPOLATED_S = 0.5  # longest extrapolation of a velocity
 
 _UNIT = np.eye(2)
@@ -38,6 +39,8 @@ class Mate:
     """The ball was in its mouth at `told_s`."""
     agreement: pass_agreement_t = field(default_factory=pass_agreement_t)
     """Its agreement about a pass."""
+    omega_rad_s: float = 0.0
+    """Speed of turning between its last two messages."""
 
     def position_at(self, time_s: float) -> Floats:
         """Returns the probable position (2) at a time near `told_s`."""
@@ -74,13 +77,20 @@ class Team:
     def __init__(self) -> None:
         self._mates: dict[str, Mate] = {}
 
-    def tell(self, mate: Mate) -> bool:
-        """Takes a mate's message; returns False if a newer one is known, as radio may change the order."""
+    def tell(self, mate: Mate) -> Mate | None:
+        """Takes a mate's message.
+
+        Returns the mate with its speed of turning; None if a newer message is known, as radio may change the order.
+        """
         known = self._mates.get(mate.name)
-        if known is not None and known.told_s >= mate.told_s:
-            return False
+        if known is not None:
+            passed_s = mate.told_s - known.told_s
+            if passed_s <= 0.0:
+                return None
+            if passed_s <= _TURNING_S and known.localized and mate.localized:
+                mate = replace(mate, omega_rad_s=wrap(mate.heading_rad - known.heading_rad) / passed_s)
         self._mates[mate.name] = mate
-        return True
+        return mate
 
     def localized(self, now_s: float, timeout_s: float) -> list[Mate]:
         """Returns the mates, by name, that know their place and sent a message within the time-out."""

@@ -3,10 +3,12 @@
 import numpy as np
 
 from lcmtypes.soccer import team_message_t
-from procs.model.frames import wrap
+from procs.model.frames import Floats, wrap
 from procs.model.geometry import plausible
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate
+
+_MATE_M_S = 0.3  # deviation of the velocity of a mate's mouth, whose turning is that of its last two messages
 
 
 def mate_of(message: team_message_t, now_s: float) -> Mate | None:
@@ -39,17 +41,25 @@ def ball_of(message: team_message_t) -> Seen:
     return Seen.of([(message.ball_x_m, message.ball_y_m)], [message.ball_covariance_m2], [0.0])
 
 
-def held_ball_of(message: team_message_t, mate: Mate, mouth_m: float) -> Seen:
-    """Returns the ball (0 or 1) in the sender's mouth, world frame; `mouth_m` is from its middle to the ball's."""
-    return mouth_of(mate, mouth_m, mate.told_s) if message.ball_held else Seen.NOTHING
-
-
 def mouth_of(mate: Mate, mouth_m: float, time_s: float) -> Seen:
     """Returns the place of a ball in a mate's mouth at a time near its message; none if the mate is lost."""
     if not mate.localized:
         return Seen.NOTHING
     ahead_m = mouth_m * np.array((np.cos(mate.heading_rad), np.sin(mate.heading_rad)))
     return Seen.of([mate.position_at(time_s) + ahead_m], [mate.covariance_m2 + np.eye(2) * 0.03**2], [0.0])
+
+
+def held_by(mate: Mate, mouth_m: float) -> tuple[Floats, Floats]:
+    """Returns the state (4) of the ball in a mate's mouth at `told_s`, and its covariance (4, 4).
+
+    The ball moves and turns with the mate; `mouth_m` is from its middle to the ball's.
+    """
+    offset_m = mouth_m * np.array((np.cos(mate.heading_rad), np.sin(mate.heading_rad)))
+    turning_m_s = mate.omega_rad_s * np.array((-offset_m[1], offset_m[0]))
+    covariance = np.zeros((4, 4))
+    covariance[:2, :2] = mate.covariance_m2
+    covariance[2:, 2:] = np.eye(2) * _MATE_M_S**2
+    return np.concatenate((mate.position_m + offset_m, mate.velocity_m_s + turning_m_s)), covariance
 
 
 def obstacles_of(message: team_message_t) -> Seen:

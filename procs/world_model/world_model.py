@@ -28,17 +28,18 @@ from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
+from procs.world_model.contact import may_touch
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
 from procs.world_model.seen import Seen
 from procs.world_model.team import Mate, Places, Team
-from procs.world_model.told import ball_of, held_ball_of, mate_of, mouth_of, obstacles_of
+from procs.world_model.told import ball_of, held_by, mate_of, mouth_of, obstacles_of
 from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
 _HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
-_TOUCH_M = 0.9  # a robot this near to the ball may touch it within a tick
+_NEAR_M = 0.9  # the wall or an opponent this near to the ball may touch it
 
 
 class WorldModelConfig(Config):
@@ -129,7 +130,7 @@ class WorldModel(Component):
         told = []
         for message in (message for inbox in self.team_inbox.fresh for message in inbox.messages):
             mate = mate_of(message, now_s)
-            if mate is not None and mate.name != self._robot and self._team.tell(mate):
+            if mate is not None and mate.name != self._robot and (mate := self._team.tell(mate)):
                 told.append((message, mate))
         return told if self.config.use_team_sight else []
 
@@ -146,7 +147,7 @@ class WorldModel(Component):
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told)
-        contact = self._in_contact(view, mates)
+        contact = self._in_contact(view, mates, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls())
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
@@ -159,8 +160,9 @@ class WorldModel(Component):
         for message, mate in told:
             seen = ball_of(message).widened(config.team_correlation, 1.0)
             self._see(mate.name, seen, self._age_s(message.ball_capture_us or message.header.time_us))
-            held = held_ball_of(message, mate, self._mouth_m)
-            self._see(mate.name, held, self.clock.since_s(message.header.time_us))
+            told_s = self.clock.since_s(message.header.time_us)
+            if mate.holds_ball and mate.localized and told_s <= _STALE_S:
+                self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
     def _walls(self) -> Walls:
         """Returns how far the middle of the ball can get: to the wall, or to the net of a goal."""
@@ -172,20 +174,19 @@ class WorldModel(Component):
             goal_half_width_m=field.goal_width_m / 2,
         )
 
-    def _in_contact(self, view: OwnView, mates: list[Mate]) -> bool:
-        """Returns whether a robot, or the wall around the field, is near the ball."""
+    def _in_contact(self, view: OwnView, mates: list[Mate], passed_s: float) -> bool:
+        """Returns whether a robot, or the wall around the field, may touch the ball in a tick."""
         if not self._ball.known:
             return False
-        field = self.config.field
-        ball_x_m, ball_y_m, *_ = self._ball.track.state.tolist()
-        wall_m = field.half_width_m + field.border_m - _TOUCH_M
-        if abs(ball_x_m) > field.half_length_m - _TOUCH_M or abs(ball_y_m) > wall_m:
+        field, track = self.config.field, self._ball.track
+        ball_x_m, ball_y_m, *_ = track.state.tolist()
+        wall_m = field.half_width_m + field.border_m - _NEAR_M
+        if abs(ball_x_m) > field.half_length_m - _NEAR_M or abs(ball_y_m) > wall_m:
             return True
-        robots_m = [mate.position_at(self.clock.now_s).tolist() for mate in mates]
+        robots = [np.array((*mate.position_at(self.clock.now_s), *mate.velocity_m_s)) for mate in mates]
         if view.localized:
-            robots_m.append(view.pose[:2].tolist())
-        robots_m.extend(self._opponents.states[:, :2].tolist())
-        return any(abs(x_m - ball_x_m) + abs(y_m - ball_y_m) < _TOUCH_M for x_m, y_m in robots_m)
+            robots.append(np.array((*view.pose[:2], *view.velocity_m_s)))
+        return may_touch(track, np.array((*robots, *self._opponents.states)).reshape(-1, 4), self._mouth_m, passed_s)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
         """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""
@@ -240,7 +241,7 @@ class WorldModel(Component):
         if self._ball.known and len(self._opponents.sure):
             away_m = self._opponents.states[self._opponents.sure, :2] - self._ball.track.state[:2]
             nearest_m = float(np.hypot(away_m[:, 0], away_m[:, 1]).min())
-            if nearest_m >= _TOUCH_M:
+            if nearest_m >= _NEAR_M:
                 return ""
             covariance = self._ball.track.covariance
             if nearest_m < self._mouth_m + 2 * math.sqrt(covariance[0, 0] + covariance[1, 1]):
@@ -253,8 +254,9 @@ class WorldModel(Component):
         Half a tick early is nearer to the period than half a tick late. A tick without a frame of the camera waits one
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
-        if self.team_message.value.kick_us == self.clock.now_us:
-            return True  # mates have to know of a kick at once
+        caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
+        if caught_or_lost or self.team_message.value.kick_us == self.clock.now_us:
+            return True  # mates have to know at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
         if not self.ball_percept.refreshed:

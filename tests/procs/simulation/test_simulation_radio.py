@@ -56,7 +56,17 @@ def test_message_arrives_as_it_was_sent() -> None:
     bench.iterate(5)
     (inbox,) = bench.port("inboxes", "cyan5").sent
     assert (inbox.n, inbox.messages[0].header.tick, inbox.messages[0].header.time_us) == (1, 4, 200_000)
-    assert inbox.header.tick == 6
+    assert inbox.header.tick == 5, "a robot reads it in tick 6, 0.1 s after tick 4"
+
+
+@pytest.mark.parametrize(("delay_s", "ticks"), [(0.0, 1), (0.02, 1), (0.05, 1), (0.06, 2), (0.1, 2)])
+def test_robots_read_in_the_first_tick_after_arrival(delay_s: float, ticks: int) -> None:
+    bench = radio(delay_s=delay_s)
+    say(bench, "cyan1")
+    sent = bench.tick + 1
+    bench.iterate(5)
+    (inbox,) = bench.port("inboxes", "cyan2").sent
+    assert inbox.header.tick + 1 - sent == ticks
 
 
 @pytest.mark.slow
@@ -86,7 +96,7 @@ def test_delay_lies_between_the_least_and_the_jitter_on_top() -> None:
         say(bench, "cyan1")
         bench.iterate()
     delays_s = [
-        (sent.header.time_us - message.header.time_us) / 1e6
+        (sent.header.time_us - message.header.time_us) / 1e6 + 0.05  # robots read in the tick after the inbox
         for sent in bench.port("inboxes", "cyan2").sent
         for message in sent.messages
     ]

@@ -131,6 +131,27 @@ def test_ball_that_an_opponent_hit_is_known_to_slide() -> None:
     assert np.mean(weights) > 0.8
 
 
+def test_kicked_ball_slides_although_the_kicker_is_near() -> None:
+    """For two ticks the kicker might touch the ball again; the known speed still tells that the ball slides."""
+    errors, weights = [], []
+    for seed in range(6):
+        eyes = [Eye(f"r{i}", at, 10 * seed + i) for i, at in enumerate([(-2.0, 1.0), (2.0, -2.0)])]
+        tracker = BallTracker()
+        for frame, state in enumerate(hit((3.8, 0.8), 20, 32)):
+            if frame == 20:
+                tracker.kick(np.array((3.7, 0.7)))
+            tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2, contact=frame <= 22)
+            for number, eye in enumerate(eyes):
+                sighting = eye.look(state[:2], own=number == 0) if (frame + number) % 2 else None
+                if sighting is not None:
+                    tracker.see(sighting)
+            if frame > 25:
+                errors.append(tracker.track.state - state)
+                weights.append(tracker.track.weights[Mode.SLIDES])
+    assert np.mean(weights) > 0.8
+    assert rms(np.array(errors)[:, 2:]) < 0.2
+
+
 def test_free_ball_that_is_not_seen_is_hardly_expected_to_be_hit() -> None:
     tracker, eye = BallTracker(), Eye("a", (0, 0), 3, recognised=1.0)
     for frame, state in enumerate(rolling((-2.0, 1.0), (1.5, 0.3), 66)):

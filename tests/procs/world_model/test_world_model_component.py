@@ -429,6 +429,40 @@ def test_mates_covariance_is_the_one_that_it_states() -> None:
     assert deviations_m[1] > 0.4
 
 
+def test_ball_in_the_mouth_of_a_turning_mate_turns_with_it() -> None:
+    """A mate turns at 3 rad/s with the ball; its messages come every 0.1 s, and no camera sees the ball."""
+    robot, turning_rad_s = Robot("cyan1", (0.0, 0.0, 0.0), seed=1), 3.0
+    errors_m_s = []
+    for tick in range(14):
+        heading_rad = turning_rad_s * (robot.bench.time_us + 50_000) / 1e6
+        robot.sense(None, [])
+        if tick % 2:
+            message = team_message_t()
+            message.robot, message.localized, message.ball_held = "cyan2", True, True
+            message.header.time_us = robot.bench.time_us + 50_000
+            message.x_m, message.heading_rad = 3.0, math.remainder(heading_rad, math.tau)
+            message.pose_covariance = np.diag((1e-4, 1e-4, 1e-4)).tolist()
+            robot.bench.port("team_inbox").put(messages=[message])
+        robot.bench.iterate()
+        if tick > 4:
+            speed_m_s, ball = 0.33 * turning_rad_s, robot.world.ball
+            true_m_s = -speed_m_s * math.sin(heading_rad), speed_m_s * math.cos(heading_rad)
+            errors_m_s.append(math.dist((ball.vx_m_s, ball.vy_m_s), true_m_s))
+    assert max(errors_m_s) < 0.3
+
+
+def test_ball_that_was_caught_or_lost_is_told_at_once() -> None:
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
+    told = robot.bench.port("team_message").sent
+    for tick in range(20):
+        held = 7 <= tick < 12
+        robot.sense(np.array((0.33, 0.0)), [], held=held)
+        robot.bench.iterate()
+        if tick in (7, 12):
+            assert told[-1].header.time_us == robot.bench.time_us
+            assert told[-1].ball_held == held
+
+
 def test_kick_is_sent_at_once_and_only_once() -> None:
     robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1)
     for _ in range(5):
