@@ -6,7 +6,11 @@ from procs.model.kinematics import STANDSTILL, Velocity, wheels_of
 
 
 class Ramp:
-    """Follows a wanted velocity (robot frame) as fast as the limits allow, without leaving its direction."""
+    """Follows a wanted velocity (robot frame) as fast as the limits allow, without leaving its direction.
+
+    The limits hold over the ground: a robot that turns while it drives straight on changes its velocity in its own
+    frame, but does not accelerate.
+    """
 
     def __init__(
         self,
@@ -28,22 +32,21 @@ class Ramp:
         """The velocity to command for the next `duration_s`. Non-finite values count as standstill."""
         if not all(map(math.isfinite, wanted)):
             wanted = STANDSTILL
+        omega = min(self._omega_rad_s, max(-self._omega_rad_s, wanted.omega_rad_s))
+        turn_limit = self._angular_acceleration_rad_s2 * duration_s
+        omega = self.velocity.omega_rad_s + min(turn_limit, max(-turn_limit, omega - self.velocity.omega_rad_s))
+        turn_rad = (self.velocity.omega_rad_s + omega) / 2 * duration_s
+        cos, sin = math.cos(turn_rad), math.sin(turn_rad)
+        before_x = cos * self.velocity.vx_m_s + sin * self.velocity.vy_m_s
+        before_y = cos * self.velocity.vy_m_s - sin * self.velocity.vx_m_s
         speed_m_s = math.hypot(wanted.vx_m_s, wanted.vy_m_s)
         scale = min(1.0, self._speed_m_s / speed_m_s) if speed_m_s else 1.0
-        change_x = wanted.vx_m_s * scale - self.velocity.vx_m_s
-        change_y = wanted.vy_m_s * scale - self.velocity.vy_m_s
+        change_x, change_y = wanted.vx_m_s * scale - before_x, wanted.vy_m_s * scale - before_y
         slower = speed_m_s * scale < math.hypot(self.velocity.vx_m_s, self.velocity.vy_m_s)
         limit_m_s = (self._braking_m_s2 if slower else self._acceleration_m_s2) * duration_s
         change_m_s = math.hypot(change_x, change_y)
         share = min(1.0, limit_m_s / change_m_s) if change_m_s else 1.0
-        omega = min(self._omega_rad_s, max(-self._omega_rad_s, wanted.omega_rad_s))
-        turn_limit = self._angular_acceleration_rad_s2 * duration_s
-        turn = min(turn_limit, max(-turn_limit, omega - self.velocity.omega_rad_s))
-        self.velocity = Velocity(
-            self.velocity.vx_m_s + change_x * share,
-            self.velocity.vy_m_s + change_y * share,
-            self.velocity.omega_rad_s + turn,
-        )
+        self.velocity = Velocity(before_x + change_x * share, before_y + change_y * share, omega)
         return self.velocity
 
 

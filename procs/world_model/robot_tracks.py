@@ -8,7 +8,7 @@ from procs.model.estimation import linear_sum_assignment
 from procs.model.frames import Flags, Floats, Indices
 from procs.world_model.batch import corrected, drift, innovation, inverted
 
-_ACCELERATION_M_S2 = 2.5
+_NOISE_M2_S3 = 1.25  # spectral density of the acceleration: robots change their velocity by 1.1 m/s in a second
 _UNKNOWN_SPEED_M_S = 1.5
 _GATE = 9.2  # chi-square, 2 degrees of freedom, 99 %
 _FARTHEST_M = 1.5
@@ -141,7 +141,7 @@ def without_known(
 def _noise(duration_s: float) -> Floats:
     """Returns the process noise (4, 4) of a robot that accelerates at random; cached."""
     noise = np.zeros((4, 4))
-    place, both, velocity = _ACCELERATION_M_S2**2 * np.array((duration_s**4 / 4, duration_s**3 / 2, duration_s**2))
+    place, both, velocity = _NOISE_M2_S3 * np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
     noise[_AXES, _AXES] = place, place, velocity, velocity
     noise[0, 2] = noise[2, 0] = noise[1, 3] = noise[3, 1] = both
     return noise

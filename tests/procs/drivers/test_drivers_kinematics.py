@@ -1,5 +1,6 @@
 """Wheels, odometry and ramp: exact motions of a base on three omnidirectional wheels."""
 
+import cmath
 import math
 
 import pytest
@@ -70,7 +71,9 @@ def test_ramp_never_changes_faster_than_its_limits(wanted: list[Velocity]) -> No
     for wish in wanted:
         before = limits.velocity
         after = limits.advance(wish, 0.05)
-        change_m_s = math.hypot(after.vx_m_s - before.vx_m_s, after.vy_m_s - before.vy_m_s)
+        turn_rad = (before.omega_rad_s + after.omega_rad_s) / 2 * 0.05
+        over_ground = cmath.rect(1.0, turn_rad) * complex(after.vx_m_s, after.vy_m_s)
+        change_m_s = abs(over_ground - complex(before.vx_m_s, before.vy_m_s))
         assert change_m_s <= 4.0 * 0.05 + 1e-9
         assert math.hypot(after.vx_m_s, after.vy_m_s) <= 3.0 + 1e-9
         assert abs(after.omega_rad_s - before.omega_rad_s) <= 10.0 * 0.05 + 1e-9
@@ -87,3 +90,18 @@ def test_motion_above_the_limit_is_slowed_as_a_whole() -> None:
     assert max(map(abs, wheels_of(possible, 0.2))) == pytest.approx(2.0)
     assert possible.vx_m_s == pytest.approx(possible.vy_m_s)
     assert within_wheel_limit(Velocity(0.5, 0.0, 0.0), 2.0, 0.2) == Velocity(0.5, 0.0, 0.0)
+
+
+def test_robot_that_turns_keeps_its_velocity_over_the_ground() -> None:
+    """At 3 m/s and 4 rad/s the velocity in the robot's frame turns by 12 m/s2, which is no acceleration."""
+    limits, heading_rad = ramp(), 0.0
+    for _ in range(60):
+        limits.advance(Velocity(3.0, 0.0, 0.0), 0.05)
+    for _ in range(20):
+        before_rad_s = limits.velocity.omega_rad_s
+        turned_rad = min(4.0, before_rad_s + 10.0 * 0.05)
+        heading_rad += (before_rad_s + turned_rad) / 2 * 0.05
+        wanted = cmath.rect(3.0, -heading_rad)
+        limits.advance(Velocity(wanted.real, wanted.imag, 4.0), 0.05)
+        driven = cmath.rect(1.0, heading_rad) * complex(limits.velocity.vx_m_s, limits.velocity.vy_m_s)
+        assert driven == pytest.approx(3.0 + 0.0j, abs=1e-9)

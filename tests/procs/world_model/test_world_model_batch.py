@@ -44,8 +44,7 @@ def test_tracks_equal_filters_of_the_library() -> None:
     rng = np.random.default_rng(3)
     tracks, motion, spread = RobotTracks(), np.eye(4), np.eye(2) * 0.05**2
     motion[0, 2] = motion[1, 3] = 0.05
-    push = np.array((0.05**2 / 2, 0.05))
-    noise = np.kron(np.outer(push, push), np.eye(2)) * 2.5**2
+    noise = np.kron(np.array(((0.05**3 / 3, 0.05**2 / 2), (0.05**2 / 2, 0.05))), np.eye(2)) * 1.25
     state, covariance = np.zeros(4), np.diag((0.05**2, 0.05**2, 1.5**2, 1.5**2))
     tracks.see(np.zeros((1, 2)), spread[None])
     for step in range(1, 20):

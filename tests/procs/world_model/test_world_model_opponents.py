@@ -1,5 +1,7 @@
 """Tracks of other robots: accuracy, association, ghosts, and the exclusion of mates."""
 
+import math
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -35,6 +37,23 @@ def test_crossing_robots_keep_their_tracks_and_noise_is_halved() -> None:
     assert len(tracks.sure) == 3
     assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.12
     assert np.sqrt(np.mean(np.square(errors[15:]))) < 0.75 * np.sqrt(np.mean(np.square(raw)))
+
+
+def test_track_follows_a_robot_that_brakes_and_turns_round() -> None:
+    """A robot drives at 2.5 m/s, brakes at 3 m/s2 and drives back; it is seen ten times a second."""
+    rng, tracks = np.random.default_rng(2), RobotTracks()
+    x_m, vx_m_s, behind_m = -2.0, 2.5, []
+    for tick in range(60):
+        if tick >= 20:
+            vx_m_s = max(-2.5, vx_m_s - 3.0 * 0.05)
+        x_m += vx_m_s * 0.05
+        tracks.predict(0.05, 1.0)
+        if tick % 2:
+            seen_m = np.array((x_m, 0.0)) + 0.04 * rng.standard_normal(2)
+            tracks.see(seen_m[None], np.eye(2)[None] * 0.04**2)
+        if tick >= 24:
+            behind_m.append(abs(tracks.states[0, 0] - x_m))
+    assert np.sqrt(np.mean(np.square(behind_m))) < 0.07
 
 
 def test_ghost_seen_once_is_never_reported() -> None:
@@ -77,7 +96,7 @@ def test_track_covariance_is_not_too_small() -> None:
         tracks = RobotTracks()
         state = np.array((0.0, 0.0, *rng.uniform(-1, 1, 2)))
         for _ in range(40):
-            push = 2.5 * rng.standard_normal(2)
+            push = math.sqrt(1.25 / PERIOD_S) * rng.standard_normal(2)
             state[:2] += state[2:] * PERIOD_S + push * PERIOD_S**2 / 2
             state[2:] += push * PERIOD_S
             tracks.predict(PERIOD_S, 1.0)
