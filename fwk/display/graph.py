@@ -51,7 +51,7 @@ class Graph:
     nodes: tuple[Node, ...]
     edges: tuple[Edge, ...]
     unread: tuple[Edge, ...] = ()
-    """Channels of components that no component reads; their `reader` is empty."""
+    """Channels that somebody writes and no component reads; their `reader` is empty."""
     unwritten: tuple[Edge, ...] = ()
     """Channels that components read and nobody writes; their `writer` is empty."""
 
@@ -147,8 +147,10 @@ def graph(
     unread = [
         Edge(row["writer"], "", row["channel"], row["type"], row.get("rate_hz"))
         for row in channels
-        if row["writer"] in nodes and not row["readers"]
+        if row["writer"] and not row["readers"]
     ]
+    for edge in unread:
+        nodes.setdefault(edge.writer, Node(edge.writer, OUTSIDE))
     unwritten = [
         Edge("", reader, row["channel"], row["type"], row.get("rate_hz"))
         for row in channels

@@ -101,6 +101,8 @@ def test_mermaid_has_every_node_and_edge(made: Graph) -> None:
 def test_every_form_has_channels_with_one_end(form: Callable[[Graph], str], made: Graph) -> None:
     assert "a/gyro" in form(made)
     components = [{"name": "x", "stages": ["think"], "state": "running"}]
+    alone = {"channel": "y/alone", "type": "robot.imu_t", "writer": "programs outside", "readers": []}
+    assert "y/alone" in form(graph("run", ["think"], components, [alone]))
     row = {"channel": "x/lost", "type": "robot.imu_t", "writer": "", "readers": ["x"], "rate_hz": 0.0}
     left = graph("run", ["think"], components, [row])
     assert "x/lost 0.0 Hz" in form(left)
