@@ -157,9 +157,9 @@ def _draw_base(base: Any, scene: Scene) -> None:
         across_m, along_m = math.floor(x_m) + number, math.floor(y_m) + number
         scene.line([(across_m, y_m - 4), (across_m, y_m + 4)], _SOFT, 0.01)
         scene.line([(x_m - 4, along_m), (x_m + 4, along_m)], _SOFT, 0.01)
-    corners = [_polar(0.35, heading_rad + turn, x_m, y_m) for turn in (0.0, 2.3, math.pi, -2.3)]
+    corners = [_polar(0.35, heading_rad + turn, x_m, y_m) for turn in (0.0, 2.65, -2.65)]
     scene.circle(x_m, y_m, 0.06, fill=_LINE, trail="base")
-    scene.polygon([corners[0], corners[1], corners[3]], fill=_LINE)
+    scene.polygon(corners, fill=_LINE)
     speed_m_s = math.hypot(base.vx_m_s, base.vy_m_s)
     towards_rad = heading_rad + math.atan2(base.vy_m_s, base.vx_m_s)
     scene.line([(x_m, y_m), _polar(speed_m_s, towards_rad, x_m, y_m)], _MARK, 0.05)
