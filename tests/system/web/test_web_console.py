@@ -242,7 +242,7 @@ def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
     canvas = page.locator("canvas")
     expect(canvas).to_have_attribute("data-frames", re.compile(r"[1-9]"))
     assert page.evaluate(GLIDES, [BEFORE, AFTER]) == HALF_WAY
-    assert page.evaluate(PICTURE_TIMES) == [45, 120, 45, 45, 500]
+    assert page.evaluate(PICTURE_TIMES) == [45, 240, 45, 45, 500]
     scale = float(canvas.get_attribute("data-scale") or 0)
 
     def wait_for_scale(wanted: float) -> None:
@@ -258,7 +258,7 @@ def test_a_view_is_zoomed_by_keys_and_wheel(garden: Garden) -> None:
     wait_for_scale(1.15 * scale)
     page.goto(f"{garden.console.url}/view?run={garden.name}&view=1")  # of everything, without fixed bounds
     page.wait_for_function(
-        "() => { const c = document.querySelector('canvas'); return c?.dataset.scale < c.clientHeight / 5.8; }"
+        "() => { const c = document.querySelector('canvas'); return c && c.dataset.scale < c.clientHeight / 5.8; }"
     )
 
 
