@@ -1,6 +1,7 @@
 """`fwk send CHANNEL FIELD=VALUE...`: writes a message into a run from outside."""
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,10 +12,13 @@ from fwk.cli.run_options import BAD_INPUT, FAILED, Json, RunChoice, asking
 from fwk.control import runs
 from fwk.control.requests import refuse_deep_nesting
 from fwk.lcm import messages
+from fwk.lcm.lcm_file import INTEGERS
 from fwk.lcm.messages import MessageError
 from fwk.lcm.type_registry import use_types_of
 from fwk.model.errors import Problems, hint
 from fwk.plan.files.source import read_value
+
+_NUMBERS = {*INTEGERS, "float", "double"}
 
 
 def send(
@@ -106,9 +110,27 @@ def made(type_name: str, fields: list[str]) -> Any:
 
 
 def _fitting(value: Any, kind: str, path: str) -> Any:
+    """Returns a value as a message holds it; truth values are no numbers, and numbers no truth values.
+
+    Raises:
+        MessageError: the value does not fit the type of its field.
+    """
+    if kind in _NUMBERS and any(isinstance(each, bool) for each in _flat(value)):
+        raise MessageError(f"{path} is {json.dumps(value)}; it should be a number ({kind})")
+    if kind == "boolean" and not all(isinstance(each, bool) for each in _flat(value)):
+        raise MessageError(f"{path} is {json.dumps(value)}; it should be true or false")
     if kind == "byte" and isinstance(value, list):
         try:
             return bytes(value)
         except (ValueError, TypeError) as error:
             raise MessageError(f"{path}: bytes are numbers from 0 to 255") from error
     return value
+
+
+def _flat(value: Any) -> Iterator[Any]:
+    """Yields the single values of a list of any depth, or the value itself."""
+    if isinstance(value, list):
+        for each in value:
+            yield from _flat(each)
+    else:
+        yield value

@@ -21,6 +21,8 @@ LEFT = "left"
 """Result of a replay whose debugger was left."""
 SNAPSHOT_COST_S = 0.2
 """CPU time of the replay between two snapshots."""
+PROGRESS_S = 1.0
+"""CPU time between two lines that say where a travel is."""
 _NOTHING = 1 << 62
 _ENDED = "the component has failed; nothing comes after this iteration"
 
@@ -108,6 +110,7 @@ class Travel:
         self._found = 0  # last iteration where the condition of a search holds
         self._begun_s = -SNAPSHOT_COST_S  # CPU time at the newest snapshot
         self._cost_s = 0.0  # CPU time of the replay until then
+        self._told_s = 0.0  # CPU time of the replay at the last line of progress
         self._class: Any = getattr(import_module(component.module), component.class_name)
         self._line = first_line_of_loop(component)
         self._pdb = TravelPdb(self)
@@ -204,6 +207,9 @@ class Travel:
         """Begins a tick: leaves a snapshot behind if the last one is long ago."""
         self.tick = tick
         cost_s = _cpu_s() - self._begun_s
+        if self._cost_s + cost_s >= self._told_s + PROGRESS_S:
+            self._told_s = self._cost_s + cost_s
+            self._show(f"replaying tick {tick}")
         if cost_s < SNAPSHOT_COST_S or self._order.before or threading.active_count() > self._threads:
             return
         self._cost_s += cost_s
@@ -273,6 +279,7 @@ class Travel:
 
     def _stop(self) -> None:
         """Starts tracing, with a stop at the first line of the running iteration."""
+        self._show("")
         print(f"fwk: tick {self.tick}", flush=True)
         debugger = self._pdb
         debugger.reset()
@@ -281,6 +288,11 @@ class Travel:
         debugger.set_continue()
         sys.breakpointhook = lambda *_, **__: debugger.set_trace(sys._getframe(1))
         sys.settrace(debugger.trace_dispatch)
+
+    def _show(self, progress: str) -> None:
+        """Shows on a terminal where a long travel is, in a line that the next output replaces."""
+        if sys.stderr.isatty():
+            print(f"\r\x1b[K{progress}", end="", file=sys.stderr, flush=True)
 
     def _compile(self, condition: str) -> str:
         """Compiles a condition, and tries it in the present iteration; returns a problem."""

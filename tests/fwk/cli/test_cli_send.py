@@ -25,6 +25,8 @@ def test_fields_are_set_by_name_and_others_are_zero() -> None:
         (["vx_m_s"], "'vx_m_s' is not FIELD=VALUE"),
         (["vx_m_s=[1"], "'vx_m_s=[1' is not FIELD=VALUE"),
         (["a.b=1"], "has no field 'a.b'"),
+        (["vx_m_s=true"], "vx_m_s is true; it should be a number (double)"),
+        (["enabled=1"], "enabled is 1; it should be true or false"),
     ],
 )
 def test_values_that_do_not_fit_are_named(fields: list[str], error: str) -> None:

@@ -64,6 +64,15 @@ def test_the_debugger_goes_back_and_forward_in_time(recorded: Path) -> None:
     assert stopped.end() == 0
 
 
+def test_a_long_travel_says_where_it_is(recorded: Path) -> None:
+    stopped = debugged(recorded, "e/player", "--from-tick", "3")
+    said = stopped.ask("until self.clock.tick == 20 or not sum(range(10_000_000))")
+    assert re.search(r"replaying tick \d+", said)
+    assert "fwk: tick 20\r\n" in said
+    stopped.type("q")
+    assert stopped.end() == 0
+
+
 def test_impossible_travels_are_explained(recorded: Path) -> None:
     stopped = debugged(recorded, "e/player", "--from-tick", "3")
     for command, reason in (
