@@ -1,6 +1,7 @@
 """Measures the physics of a match alone: `python -m tools.bench.physics` prints its speed."""
 
 import argparse
+import itertools
 import math
 import time
 
@@ -19,10 +20,10 @@ _SPEED_M_S, _TURN_RAD_S, _KICK_M_S = 2.0, 2.0, 6.0
 _CHASER = 2  # number of the robot of each team that wants the ball
 
 
-def command(world: World, tick: int) -> None:
-    """Lets one robot of each team chase the ball and kick it once a second; the others drive in circles."""
+def command(world: World, tick: int, fight: bool) -> None:
+    """Lets all robots drive in circles; in a fight, one of each team chases the ball and kicks it once a second."""
     for name, robot in world.robots.items():
-        chases = PLAYERS[name].number == _CHASER
+        chases = fight and PLAYERS[name].number == _CHASER
         away = world.ball.body.position - robot.body.position
         towards_rad = math.atan2(away.y, away.x) - robot.body.angle if chases else 0.0
         turn_rad_s = math.sin(towards_rad) if chases else _TURN_RAD_S
@@ -32,13 +33,13 @@ def command(world: World, tick: int) -> None:
         world.kickers[name].command(KickerCommand(tick, kick_m_s, dribble=chases), world.time_us)
 
 
-def seconds_of(step_s: float, match_s: float) -> float:
-    """Returns the processor time of a match of ten robots in steps of `step_s`."""
+def seconds_of(step_s: float, match_s: float, fight: bool) -> float:
+    """Returns the processor time of ten robots in steps of `step_s`; in a fight two of them are at the ball."""
     rng, noise = np.random.default_rng(1), noise_of("realistic", {})
     world = World(list(PLAYERS), rng, physics=PhysicsSettings(step_s=step_s), noise=noise)
     took_s = 0.0
     for tick in range(round(match_s * 1e6 / _TICK_US)):
-        command(world, tick)
+        command(world, tick, fight)
         began_s = time.process_time()
         world.advance(_TICK_US)
         took_s += time.process_time() - began_s
@@ -53,12 +54,11 @@ def main() -> None:
     words.add_argument("--seconds", type=float, default=20.0, help="duration of a match; default 20")
     words.add_argument("--rounds", type=int, default=5, help="matches of each size of step; the fastest counts")
     asked = words.parse_args()
-    for step_s in _STEPS_S:
-        took_s = min(seconds_of(step_s, asked.seconds) for _ in range(asked.rounds))
-        steps = asked.seconds / step_s
+    for step_s, fight in itertools.product(_STEPS_S, (False, True)):
+        took_s = min(seconds_of(step_s, asked.seconds, fight) for _ in range(asked.rounds))
         print(
-            f"steps of {step_s * 1000:g} ms: {asked.seconds / took_s:.1f} times real time, "
-            f"{took_s / steps * 1e6:.1f} us a step"
+            f"steps of {step_s * 1000:g} ms, {'two robots fight for the ball' if fight else 'nobody is at the ball'}: "
+            f"{asked.seconds / took_s:.1f} times real time, {took_s / (asked.seconds / step_s) * 1e6:.1f} us a step"
         )
 
 

@@ -73,8 +73,8 @@ class Kicker:
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + _RELEASE_US
                 push = self._fire(command.speed_m_s, command.elevation_rad)
-        if ball_near and self._dribble and now_us >= self._handling_from_us and self.mouth.holds_ball:
-            push = Push(self.mouth.pull(duration_s), kicked=False)
+        if ball_near and self._dribble and now_us >= self._handling_from_us and (place := self.mouth.held_ball()):
+            push = Push(self.mouth.pull(place, duration_s), kicked=False)
         return push
 
     def charge(self, now_us: int) -> float:

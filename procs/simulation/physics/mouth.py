@@ -26,20 +26,30 @@ class Mouth:
     @property
     def holds_ball(self) -> bool:
         """True if the light barrier sees the ball in the mouth."""
+        return self.held_ball() is not None
+
+    def held_ball(self) -> pymunk.Vec2d | None:
+        """Returns the place of the ball in the robot frame in m, if it is in the mouth; otherwise None."""
         away = self._ball.body.position - self._robot.body.position
         if self._ball.z_m > self._handling.highest_m or away.dot(away) > self.far_m**2:
-            return False
-        x_m, y_m = self._ball_at()
-        gap_m = x_m - self._robot.mouth_x_m - self._ball.radius_m
-        return gap_m <= self._handling.reach_m and abs(y_m) <= self._handling.half_width_m and x_m > 0
+            return None
+        place = self._robot.body.world_to_local(self._ball.body.position)
+        gap_m = place.x - self._robot.mouth_x_m - self._ball.radius_m
+        held = gap_m <= self._handling.reach_m and abs(place.y) <= self._handling.half_width_m and place.x > 0
+        return place if held else None
 
-    def pull(self, duration_s: float) -> pymunk.Vec2d:
+    def pull(self, place: pymunk.Vec2d, duration_s: float) -> pymunk.Vec2d:
         """Draws the ball to the middle of the mouth with limited force, for one step.
 
-        Returns the change of the ball's velocity in m/s, for the world to apply; the recoil has reached the robot.
+        Args:
+            place: place of the ball as `held_ball` returns it.
+            duration_s: duration of the step.
+
+        Returns:
+            Change of the ball's velocity in m/s, for the world to apply; the recoil has reached the robot.
         """
         robot, handling = self._robot.body, self._handling
-        x_m, y_m = self._ball_at()
+        x_m, y_m = place
         wanted_x_m = self._robot.mouth_x_m + self._ball.radius_m + _GAP_M
         approach = pymunk.Vec2d(wanted_x_m - x_m, -y_m) / handling.centring_s
         mouth_velocity = robot.velocity_at_local_point((x_m, y_m))
@@ -60,6 +70,3 @@ class Mouth:
     def _recoil(self, change: pymunk.Vec2d) -> pymunk.Vec2d:
         self._robot.body.apply_impulse_at_world_point(-self._ball.mass_kg * change, self._ball.body.position)
         return change
-
-    def _ball_at(self) -> pymunk.Vec2d:
-        return self._robot.body.world_to_local(self._ball.body.position)
