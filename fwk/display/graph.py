@@ -51,9 +51,9 @@ class Graph:
     nodes: tuple[Node, ...]
     edges: tuple[Edge, ...]
     unread: tuple[Edge, ...] = ()
-    """Channels that somebody writes and no component reads; their `reader` is empty."""
+    """Channels that have a writer and no reader; their `reader` is empty."""
     unwritten: tuple[Edge, ...] = ()
-    """Channels that components read and nobody writes; their `writer` is empty."""
+    """Channels that have readers and no writer; their `writer` is empty."""
 
     def around(self, patterns: Sequence[str]) -> "Graph":
         """Returns the part with these components and those that exchange messages with them."""
@@ -70,7 +70,7 @@ class Graph:
         return [each for each in self.nodes if each.column == name]
 
     def loose_ends(self, name: str) -> list[str]:
-        """Returns a line for each channel of a node that nobody reads or nobody writes."""
+        """Returns a line for each channel of a node that has no reader or no writer."""
         read = [f"<- {each.label} (no writer)" for each in self.unwritten if each.reader == name]
         return [*read, *(f"-> {each.label} (no reader)" for each in self.unread if each.writer == name)]
 

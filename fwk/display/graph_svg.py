@@ -8,7 +8,7 @@ from fwk.display.graph import Edge, Graph
 _COLUMN, _ROW, _HEIGHT, _MARGIN, _HEAD = 250, 34, 22, 20, 44
 """Distances in pixels: from column to column, from row to row, height of a box, around the drawing, above the boxes."""
 _LINE = 10
-"""Height of a line about a channel that nobody reads, or nobody writes, below the box of its component."""
+"""Height of a line about a channel without reader or writer, below the box of its component."""
 _DEPTH = 160
 """Height below the boxes for the curves from right to left."""
 _LETTER, _PADDING = 6.3, 14
@@ -27,7 +27,7 @@ _STYLE = (
 def svg(graph: Graph) -> str:
     """Returns the drawing; each curve has a tooltip with its channels, types and rates.
 
-    Channels that nobody reads, or nobody writes, are named below the box of their component. Up to sixty curves have
+    Channels without reader or writer are named below the box of their component. Up to sixty curves have
     their rates beside them.
     """
     places: dict[str, tuple[int, int]] = {}

@@ -1,5 +1,6 @@
-"""Texts of pages: figures as people read them."""
+"""Texts of pages: figures as people read them, and words that people type."""
 
+import shlex
 from typing import Any
 
 from fwk.clock import US_PER_S
@@ -44,3 +45,12 @@ def _word(value: Any) -> str:
         shown = ", ".join(_word(item) for item in value[:16])
         return f"[{shown}{f', ... ({len(value)})' if len(value) > 16 else ''}]"
     return str(value)
+
+
+def options_of(typed: str) -> list[str]:
+    """Returns the options of a command for settings that were typed in one line; quotes keep a value with spaces.
+
+    Raises:
+        ValueError: a quote is not closed.
+    """
+    return [word for each in shlex.split(typed) for word in ("--set", each)]

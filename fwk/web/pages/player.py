@@ -17,7 +17,7 @@ from fwk.web.job_panel import JobPanel
 from fwk.web.layout import Frame
 from fwk.web.lines import Lines
 from fwk.web.recorded_link import RecordedLink
-from fwk.web.words import rows_of, size
+from fwk.web.words import options_of, rows_of, size
 
 _DRAW_S = 0.1
 _SHOW_S = 0.3
@@ -99,7 +99,11 @@ class Player:
             other.set_options(await others_of(self._frame, name))
 
         def go_on_live() -> None:
-            sets = [word for each in (changes.value or "").split() for word in ("--set", each)]
+            try:
+                sets = options_of(changes.value or "")
+            except ValueError as error:
+                ui.notify(f"settings: {error}; quote a value with spaces: 'NAME.SETTING=[1, 2]'", type="warning")
+                return
             words = ["fwk", "replay", name, "--to-tick", str(self._link.tick), "--then-live", *sets]
             panel.start(words, find_branch)
 
