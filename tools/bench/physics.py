@@ -56,8 +56,9 @@ def main() -> None:
     asked = words.parse_args()
     for step_s, fight in itertools.product(_STEPS_S, (False, True)):
         took_s = min(seconds_of(step_s, asked.seconds, fight) for _ in range(asked.rounds))
+        play = "two robots fight for the ball" if fight else "no robot is at the ball"
         print(
-            f"steps of {step_s * 1000:g} ms, {'two robots fight for the ball' if fight else 'nobody is at the ball'}: "
+            f"steps of {step_s * 1000:g} ms, {play}: "
             f"{asked.seconds / took_s:.1f} times real time, {took_s / (asked.seconds / step_s) * 1e6:.1f} us a step"
         )
 
