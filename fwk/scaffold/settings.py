@@ -12,6 +12,7 @@ from fwk.scaffold.changes import ScaffoldError
 from fwk.scaffold.class_lines import (
     annotated,
     attributes,
+    code_of,
     is_empty,
     is_text,
     lines_of,
@@ -90,6 +91,7 @@ def remove_setting(source: Source, name: str) -> list[str]:
     source.replace(class_, with_lines(class_, without(lines_of(class_), name, with_text=True)))
     if "Field(" in value_of(source, there):
         remove_unused(source, "fwk.Field")
+    _remove_made(source)
     return uses(source, f"{_CONFIG}.{name}")
 
 
@@ -129,13 +131,13 @@ def _ensure_settings(source: Source) -> None:
     if _settings(source) is not None:
         return
     base = add_import(source, "fwk", "Config")
-    name = f"{source.class_name}Config"
+    name = _made_name(source)
     if name in source.classes() or name in source.imported():
         raise ScaffoldError(
             f"{source.path.name} has a '{name}' that {source.class_name} does not use; declare config: {name}"
         )
     component = source.component()
-    text = f'class {name}({base}):\n{_INDENT}"""Settings of {source.class_name}."""\n'
+    text = f"class {name}({base}):\n{_INDENT}{_made_docstring(source)}\n"
     made = cst.ensure_type(cst.parse_statement(text, config=source.module.config_for_parsing), cst.ClassDef)
     made = made.with_changes(leading_lines=component.leading_lines)
     below = [cst.EmptyLine(indent=False)] * 2
@@ -144,3 +146,26 @@ def _ensure_settings(source: Source) -> None:
     lines = with_line(source, lines_of(component), f"{_CONFIG}: {name}")
     changed = with_lines(component, lines).with_changes(leading_lines=below)
     source.module = source.module.with_changes(body=[*body[:place], made, changed, *body[place + 1 :]])
+
+
+def _remove_made(source: Source) -> None:
+    """Removes the class of settings if it is as empty as `_ensure_settings` made it, and nothing else names it."""
+    class_, component = _settings(source), source.component()
+    name = _made_name(source)
+    if class_ is None or class_.name.value != name or source.module.code.count(name) != 2:
+        return
+    if [code_of(source, each) for each in lines_of(class_)] != [_made_docstring(source)]:
+        return
+    changed = with_lines(component, without(lines_of(component), _CONFIG))
+    source.replace(component, changed.with_changes(leading_lines=class_.leading_lines))
+    made = source.classes()[name]
+    source.module = source.module.with_changes(body=[each for each in source.module.body if each is not made])
+    remove_unused(source, "fwk.Config")
+
+
+def _made_name(source: Source) -> str:
+    return f"{source.class_name}Config"
+
+
+def _made_docstring(source: Source) -> str:
+    return f'"""Settings of {source.class_name}."""'

@@ -210,6 +210,28 @@ def test_settings_come_and_go_with_their_docstrings(tmp_path: Path) -> None:
     ast.parse(source.module.code)
 
 
+@pytest.mark.parametrize(
+    "lines", ['    stage = "think"\n', '    stage = "think"\n\n    ball: Reads[ball_t]\n\n    def loop(self): ...\n']
+)
+def test_the_last_setting_goes_with_the_class_made_for_it(tmp_path: Path, lines: str) -> None:
+    text = f"from fwk import Component, Reads\n\n\nclass Tracker(Component):\n{lines}"
+    source = source_of(tmp_path, text)
+    requests = [SettingRequest("gain", "float", "0.3", "Weight."), SettingRequest("near_m", "float", "1.0")]
+    for request in requests:
+        add_setting(source, request)
+    for request in requests:
+        assert remove_setting(source, request.name) == []
+    assert source.module.code == text
+
+
+def test_a_class_of_settings_that_others_name_stays(tmp_path: Path) -> None:
+    source = source_of(tmp_path, "from fwk import Component\n\n\nclass Tracker(Component):\n    pass\n")
+    add_setting(source, SettingRequest("gain", "float", "0.3"))
+    source = source_of(tmp_path, f"{source.module.code}\n\nDEFAULT = TrackerConfig()\n")
+    remove_setting(source, "gain")
+    assert "class TrackerConfig(Config):" in source.module.code and "config: TrackerConfig" in source.module.code
+
+
 def test_a_class_of_settings_is_made_once(tmp_path: Path) -> None:
     text = 'from fwk import Component\n\n\nclass Tracker(Component):\n    stage = "think"\n'
     source = source_of(tmp_path, text)
