@@ -59,6 +59,8 @@ class MemoryHost:
         self._ports = Ports.of(assignment.plan)
         self._run = assignment.run
         self._index = assignment.host
+        self._own_port = self._ports.host(assignment.host)
+        self._gateway_port = self._ports.host(self._ports.gateway)
         self._ledger = ledger
         self._step = -1  # step of the ledger when a tick last carried the marks
         self._settings: list[settings_change_t] = []  # changes that the next tick carries
@@ -194,10 +196,6 @@ class MemoryHost:
         self._told = max((change.number for change in tick.channels), default=self._told)
         self._put(sync.TICK, sync.encode_tick(tick), address, self._ports.supervisor)
 
-    @property
-    def _own_port(self) -> int:
-        return self._ports.host(self._index)
-
     def _result(self, final: bool = False) -> tuple[Written, done_t]:
         """Resumes the host until it sends a done that it has not sent before."""
         self._written, self._done = [], None
@@ -240,7 +238,7 @@ class MemoryHost:
             return False
         if (port, sequence_of(data)) in self._missing:
             return True
-        return self._put(name, data, (GROUP, port), self._ports.host(self._ports.gateway))
+        return self._put(name, data, (GROUP, port), self._gateway_port)
 
     def _put(self, channel: bytes, data: bytes, address: Address, port: int) -> bool:
         return self._network.put(wire.in_one(_NUMBER, channel, data), address, port)
@@ -272,7 +270,7 @@ class MemoryHost:
         taken = taken_t()
         taken.run, taken.taker, taken.kind = self._run, self._ports.gateway, done_t.FINAL
         taken.incarnation = leaving.incarnation
-        self._put(sync.TAKEN, taken.encode(), (LOOPBACK, self._own_port), self._ports.host(self._ports.gateway))
+        self._put(sync.TAKEN, taken.encode(), (LOOPBACK, self._own_port), self._gateway_port)
 
     def _take_done(self, done: done_t) -> None:
         this = (done.kind, done.tick, done.step, done.iteration)
@@ -284,4 +282,4 @@ class MemoryHost:
         gone = gone_t()
         gone.run, gone.channel = self._run, fetch.channel
         gone.first_sequence, gone.last_sequence = fetch.first_sequence, fetch.last_sequence
-        self._put(b"fwk/gone", gone.encode(), (LOOPBACK, self._own_port), self._ports.host(self._ports.gateway))
+        self._put(b"fwk/gone", gone.encode(), (LOOPBACK, self._own_port), self._gateway_port)

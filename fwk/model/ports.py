@@ -1,6 +1,7 @@
 """UDP port numbers of a run."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 from fwk.model.plan import Plan
 
@@ -32,7 +33,7 @@ class Ports:
         """Returns the port of the ticks of a stage."""
         return self.base + 1 + index
 
-    @property
+    @cached_property
     def record(self) -> int:
         """Port of tick records, to the gateway."""
         return self.base + 1 + STAGES_MAX
@@ -47,7 +48,7 @@ class Ports:
         """Port of the supervisor's status."""
         return self.record + 2
 
-    @property
+    @cached_property
     def supervisor(self) -> int:
         """The port that the supervisor sends from."""
         return self.record + 3
@@ -68,7 +69,11 @@ class Ports:
 
     def channel(self, index: int) -> int:
         """Returns the port of a channel's messages."""
-        return self.host(self.hosts + 1) + index
+        return self._first_channel + index
+
+    @cached_property
+    def _first_channel(self) -> int:
+        return self.host(self.hosts + 1)
 
     @property
     def end(self) -> int:
