@@ -229,7 +229,8 @@ def test_a_class_of_settings_that_others_name_stays(tmp_path: Path) -> None:
     add_setting(source, SettingRequest("gain", "float", "0.3"))
     source = source_of(tmp_path, f"{source.module.code}\n\nDEFAULT = TrackerConfig()\n")
     remove_setting(source, "gain")
-    assert "class TrackerConfig(Config):" in source.module.code and "config: TrackerConfig" in source.module.code
+    assert "class TrackerConfig(Config):" in source.module.code
+    assert "config: TrackerConfig" in source.module.code
 
 
 def test_a_class_of_settings_is_made_once(tmp_path: Path) -> None:
