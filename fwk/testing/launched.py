@@ -34,7 +34,7 @@ def settings_in(file: str, component: str) -> dict[str, Any]:
 def system_of(
     file: str, wanted: Callable[[str], bool] = bool, seed: int = 1, **changes: dict[str, Any]
 ) -> MemorySystem:
-    """Builds the components of a launch file whose names are `wanted`, with the settings of the file.
+    """Builds the components of a launch file whose names are `wanted`, in one host, with the settings of the file.
 
     `changes` are further settings by the component's own name: `camera={"flicker": 0.1}`.
     """
@@ -47,6 +47,7 @@ def system_of(
         period_s=launch_plan(file).period_us / 1e6,
         stages=launch_plan(file).stages,
         turns={each.name: (each.every, each.offset) for each in found},
+        hosting="single",
     )
 
 

@@ -20,9 +20,10 @@ from fwk.host.memory_host import MemoryHost
 from fwk.lcm import envelope, messages
 from fwk.model.channel_table import change_message
 from fwk.model.names import LINES
-from fwk.model.plan import ComponentPlan
+from fwk.model.plan import NOBODY, ChannelPlan, ComponentPlan, Plan
 from fwk.model.requests import channel_request_of
 from fwk.model.sections import LogPlan
+from fwk.plan.hosting import Hosting, share_out
 from fwk.testing.plans import plan_of
 from lcmtypes.core import done_t, header_t, log_t
 
@@ -30,11 +31,12 @@ T = TypeVar("T")
 
 
 class MemorySystem:
-    """Components in lockstep, each in a host of its own: the same `Host` as in a process, driven by a loop in memory.
+    """Components in lockstep, in the same `Host` objects as in processes, driven by a loop in memory.
 
     `MemorySystem({"cyan1/base": Base, ...}, settings={"cyan1/base": {...}})`, then `tick()`. The messages are those
     of the same components in processes. A test writes the channels of `outside`, given with their types, with
-    `come_in`. `turns` are `every` and `offset` of components, where they differ from the class.
+    `come_in`. `turns` are `every` and `offset` of components, where they differ from the class. `hosting` means the
+    same as for `fwk-launch`: messages between components of one host are not packed, so `single` is the fastest.
 
     Raises:
         ValueError: the components do not fit together.
@@ -50,6 +52,7 @@ class MemorySystem:
         stages: tuple[str, ...] = DEFAULT_STAGES,
         outside: Mapping[str, type[messages.Message]] | None = None,
         turns: Mapping[str, tuple[int, int]] | None = None,
+        hosting: Hosting = "process",
     ) -> None:
         for name, kind in components.items():
             if "plugins" in declaration(kind).aspects.values():
@@ -58,6 +61,7 @@ class MemorySystem:
             components,
             settings,
             channels,
+            _groups(components, hosting),
             period_s=period_s,
             stages=stages,
             seed=seed,
@@ -73,36 +77,45 @@ class MemorySystem:
         self._plan = plan
         self._types = {channel.name: messages.type_named(channel.type_name) for channel in plan.channels}
         self._indices = {channel.name: channel.index for channel in plan.channels}
-        self._readers = {channel.index: set(channel.readers) for channel in plan.channels}
+        self._receivers = {channel.index: _receivers(plan, channel) for channel in plan.channels}
         self._newest: dict[int, bytes] = {}
         self._ledger = Visibility(plan)
         self._schedule = Schedule(plan)
         self._grants = ChannelGrants(plan)
         self._changes = 0
         self._next_us = -1  # logical time of the next tick, as the time source set it last
-        self._time_source = [
-            each.index
+        # Host and step of the components that set the time.
+        self._time_source = {
+            (each.host, stage)
             for each in plan.components
             if "time_source" in declaration(components[each.name]).aspects.values()
-        ]
+            for stage in each.stages
+        }
         self._due_us: dict[int, int] = {}  # of the continuous components
         rings = {channel.name: Ring.create(channel.name) for channel in plan.channels if channel.images}
         for component in plan.components:
             self._grants.came(component.index, 1)
         self._hosts = [
             MemoryHost(
-                Assignment(plan, component.index, 0, Start(1, {}, {}), rings),
+                Assignment(plan, host.index, 0, Start(1, {}, {}), rings),
                 self._ledger,
                 self.logged.append,
                 lambda component: components[component.name],
             )
-            for component in plan.components
+            for host in plan.hosts
+        ]
+        self._in_stage = [
+            [
+                host.index
+                for host in plan.hosts
+                if any(stage in plan.components[each].stages for each in host.components)
+            ]
+            for stage in range(len(stages))
         ]
         for host in self._hosts:
             self._call(host.init)
         self.runners: dict[str, Runner] = {
-            component.name: host.runners[component.name]
-            for component, host in zip(plan.components, self._hosts, strict=True)
+            component.name: self._hosts[component.host].runners[component.name] for component in plan.components
         }
 
     def tick(self, times: int = 1) -> None:
@@ -124,11 +137,7 @@ class MemorySystem:
             late = [self._iterate_on(component) for component in self._due()]
             for step, stage in self._schedule.steps:
                 self._ledger.begin()
-                ran = [
-                    self._iterate(component, step, stage)
-                    for component in self._plan.components
-                    if stage in component.stages
-                ]
+                ran = [self._iterate(host, step, stage) for host in self._in_stage[stage]]
                 for written in ran:
                     self._publish(written)
             for written in late:
@@ -156,26 +165,29 @@ class MemorySystem:
                 found.append(component)
         return found
 
-    def _iterate(self, component: ComponentPlan, step: int, stage: int) -> Written:
-        host = self._hosts[component.index]
-        tick = host.compose(self.ticks, step, self.now_us, self._schedule.holder)
-        return self._taken(component, *self._call(lambda: host.tick(tick, stage)))
+    def _iterate(self, host: int, step: int, stage: int) -> Written:
+        memory = self._hosts[host]
+        tick = memory.compose(self.ticks, step, self.now_us, self._schedule.holder)
+        written, done = self._call(lambda: memory.tick(tick, stage))
+        if (host, stage) in self._time_source:
+            self._next_us = done.next_time_us
+        self._take_requests(done)
+        return written
 
     def _iterate_on(self, component: ComponentPlan) -> Written:
-        host = self._hosts[component.index]
+        host = self._hosts[component.host]
         host.tell(host.compose(self.ticks, 0, self.now_us, self._schedule.holder))
-        return self._taken(component, *self._call(host.iterate))
+        written, done = self._call(host.iterate)
+        self._take_requests(done)
+        return written
 
-    def _taken(self, component: ComponentPlan, written: Written, done: done_t) -> Written:
-        """Takes a done: the time of the next tick, and the requests of the component."""
-        if component.index in self._time_source:
-            self._next_us = done.next_time_us
+    def _take_requests(self, done: done_t) -> None:
+        """Takes what components asked for in a done: the main loop, dynamic channels."""
         for request in done.main_loop:
             self._schedule.ask(done.tick, place_of(done), request)
-        if done.channels:
-            asked = [channel_request_of(request) for request in done.channels]
-            self._grants.ask(done.tick, place_of(done), component.name, asked)
-        return written
+        for asked in done.channels:
+            name = self._plan.components[asked.component].name
+            self._grants.ask(done.tick, place_of(done), name, [channel_request_of(asked)])
 
     def _publish(self, written: Written) -> None:
         """Makes messages visible from the next step of the tick on."""
@@ -184,8 +196,8 @@ class MemorySystem:
             self.sent[channel].append(data)
             self._newest[index] = data
             self._ledger.publish(index, messages.sequence_of(data))
-            for reader in self._readers[index]:
-                self._hosts[reader].put(index, data)
+            for receiver in self._receivers[index]:
+                self._hosts[receiver].put(index, data)
 
     def _decide(self) -> None:
         """Decides the requests for dynamic channels at the boundary."""
@@ -199,14 +211,14 @@ class MemorySystem:
                 opened = fact.channel
                 self._types[opened.name] = messages.type_named(opened.type_name)
                 self.sent.setdefault(opened.name, [])
-                self._readers.setdefault(opened.index, set())
+                self._receivers.setdefault(opened.index, set())
                 if fact.kind == "write":
                     self._indices[opened.name] = opened.index
                 elif fact.kind == "read":
-                    self._readers[opened.index].add(fact.component)
-        for component in self._plan.components:
-            if component.opens:
-                self._hosts[component.index].decide(change, self._newest)
+                    self._receivers[opened.index].add(self._plan.components[fact.component].host)
+        for host in self._plan.hosts:
+            if any(self._plan.components[each].opens for each in host.components):
+                self._hosts[host.index].decide(change, self._newest)
 
     @staticmethod
     def _call(work: Callable[[], T]) -> T:
@@ -215,3 +227,16 @@ class MemorySystem:
             return work()
         except ComponentFailedError as failure:
             raise failure.__cause__ or failure from None
+
+
+def _groups(components: Mapping[str, type[Component]], hosting: Hosting) -> list[list[str]]:
+    """Returns the names of the components of each host; a continuous component has its own."""
+    names = list(components)
+    alone = {name for name, kind in components.items() if declaration(kind).rate_hz is not None}
+    return [[names[each] for each in host.components] for host in share_out(names, hosting, {}, alone=alone)]
+
+
+def _receivers(plan: Plan, channel: ChannelPlan) -> set[int]:
+    """Returns the hosts that get the messages of a channel from elsewhere: all of its readers but the writer's own."""
+    readers = {plan.components[reader].host for reader in channel.readers}
+    return readers - ({plan.components[channel.writer].host} if channel.writer != NOBODY else set())

@@ -1,6 +1,6 @@
 """CPU time of each component in a tick: python -m tools.bench.components soccer.yaml [--ticks 100].
 
-All components of a launch file run in one process and in memory, where the work of one does not slow down the next as
+All components of a launch file run in one host in memory, where the work of one does not slow down the next as
 it does between processes. What is left of the whole is the framework's own: visibility, inputs, messages in memory.
 """
 
