@@ -1,9 +1,11 @@
 """Places of the robots without the ball, relative to the ball; attack frame."""
 
 import math
+from collections.abc import Iterable, Sequence
 
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.path import Disc, find_way
+from procs.behaviour.view import Robot
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import ahead, bearing_rad, between, clamp
 from procs.referee.restarts import State
@@ -19,6 +21,8 @@ _APART_M = 1.0
 """Least distance of two robots at a set piece."""
 _TURNS_RAD = [sign * 0.15 * step for step in range(1, 21) for sign in (1, -1)]
 _SHOOTER_X_M, _SHOOTER_Y_M = 7.0, 2.5  # a mate there can shoot
+_BESIDE_FIELD_M = 0.3  # a robot at the side of the field may stand so far outside
+_BODIES_M = 0.6  # least distance of the middles of two robots
 _STEP_M = 1.5  # far enough ahead that the robot does not brake
 _SHOT_M, _BESIDE_SHOT_M = 8.0, 1.2
 """Distance from which a mate with the ball shoots, and distance of the others from the way to the goal's middle."""
@@ -125,15 +129,30 @@ def allowed(place: Point, game: Game, field: Field) -> Point:
     return place
 
 
-def next_step(own: Point, place: Point, game: Game) -> Point:
-    """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece."""
+def next_step(own: Point, place: Point, game: Game, field: Field, others: Iterable[Robot] = ()) -> Point:
+    """Returns the place, or a place on a way there that keeps the distance to the ball of a set piece.
+
+    A robot that is too near to the ball goes to the nearest place at the distance that the arena, the areas and the
+    other robots leave free.
+    """
     if game.free_play:
         return place
     circle = Disc(game.spot, _keep_off_m(game) - 0.1)
     if math.dist(own, game.spot) < circle.radius_m:
-        return ahead(game.spot, bearing_rad(game.spot, own), circle.radius_m + 0.1)
+        return _way_out(own, game, field, circle.radius_m + 0.1, [other.place for other in others])
     way = find_way(own, place, [circle])
     return place if way.length_m <= math.dist(own, place) else ahead(own, way.direction_rad, min(way.length_m, _STEP_M))
+
+
+def _way_out(own: Point, game: Game, field: Field, distance_m: float, taken: Sequence[Point]) -> Point:
+    straight_rad = bearing_rad(game.spot, own)
+    for turn_rad in (0.0, *_TURNS_RAD):
+        place = ahead(game.spot, straight_rad + turn_rad, distance_m)
+        inside = field.in_field(*place, _BESIDE_FIELD_M)
+        allowed_there = game.state is State.PENALTY or not _in_area(place, field)
+        if inside and allowed_there and all(math.dist(place, other) > _BODIES_M for other in taken):
+            return place
+    return ahead(game.spot, straight_rad, distance_m)
 
 
 def _in_area(place: Point, field: Field) -> bool:

@@ -43,7 +43,8 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     goal_rad = bearing_rad(game.spot, field.goal_centre(1.0))
     if not takes:
         place = Point(game.spot.x_m - _BEHIND_M * number_of(view.own.name), 0.5 * game.spot.y_m)
-        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game)
+        others = (*view.mates, *view.opponents)
+        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if game.stopped:
         return ATTACKER, Order("goto", formation.taker_place(game.spot, goal_rad), goal_rad, "take set piece")

@@ -13,7 +13,7 @@ from procs.behaviour.velocity_obstacles import safe_velocity
 from procs.model.ball import BALL
 from procs.model.field import Field, Point
 from procs.model.geometry import plausible, wrap_rad
-from procs.model.robot import ROBOT
+from procs.model.robot import ROBOT, number_of
 
 _FORWARD = 0.8  # cosine of the largest angle between a change of velocity towards the ball and the heading
 
@@ -48,6 +48,7 @@ class Navigator(Component):
     navigator_state: Writes[navigator_state_t]
 
     def init(self) -> None:
+        self._number = number_of(self.name.rpartition("/")[0])
         self._before = STANDSTILL  # commanded, world frame
         self._direction_rad: float | None = None
 
@@ -96,7 +97,7 @@ class Navigator(Component):
         self._command(wanted, pose.heading_rad)
 
     def _give_way(self, wanted: Velocity, place: Point, model: world_model_t) -> Velocity:
-        movers = obstacles.movers(model, self.config.limits.latency_s)
+        movers = obstacles.movers(model, self.config.limits.latency_s, self._number)
         now_m_s = Point(self._before.vx_m_s, self._before.vy_m_s)
         velocity = safe_velocity(
             Point(wanted.vx_m_s, wanted.vy_m_s), now_m_s, place, movers, APART_M, self.config.limits.acceleration_m_s2

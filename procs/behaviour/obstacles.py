@@ -9,7 +9,7 @@ from procs.behaviour.velocity_obstacles import Mover
 from procs.model.ball import BALL
 from procs.model.field import SIDES, Field, Point
 from procs.model.geometry import clamp, plausible
-from procs.model.robot import ROBOT
+from procs.model.robot import ROBOT, number_of
 
 _ROBOT_M = ROBOT.radius_m
 _BALL_M = BALL.radius_m
@@ -20,6 +20,9 @@ _BALL_MARGIN_M = 0.1
 _FORESIGHT_S = 0.8
 _MEETING_M_S = 3.0  # two robots that drive towards each other get closer about so fast
 _NEAR_M = 6.0  # further obstacles do not matter yet
+_PASSING_M = 0.1  # room beside a robot that is passed ...
+_UNSURE_M = 0.15  # ... and at most so much more for the deviation of its place
+_DRIVES_M_S = 0.3  # a slower mate plays the ball or stays at its place, and does not give way
 
 
 def discs(model: world_model_t, field: Field, avoid_robots: bool, avoid_ball: bool) -> list[Disc]:
@@ -45,17 +48,26 @@ def reachable(place: Point, field: Field) -> Point:
     return Point(x_m, y_m)
 
 
-def movers(model: world_model_t, latency_s: float) -> list[Mover]:
-    """Returns the other robots where they will be when the robot begins to follow its next command."""
+def movers(model: world_model_t, latency_s: float, own_number: int = 0) -> list[Mover]:
+    """Returns the other robots where they will be when the robot begins to follow its next command.
+
+    Of two mates the one with the higher number gives way.
+    """
     return [
         Mover(
             Point(robot.x_m + robot.vx_m_s * latency_s, robot.y_m + robot.vy_m_s * latency_s),
             Point(robot.vx_m_s, robot.vy_m_s),
-            gives_way=bool(robot.name),
+            gives_way=number_of(robot.name) > own_number and math.hypot(robot.vx_m_s, robot.vy_m_s) > _DRIVES_M_S,
+            margin_m=_PASSING_M + _deviation_m(robot),
         )
         for robot in (*model.mates, *model.opponents)
         if plausible(robot.x_m, robot.y_m, robot.vx_m_s, robot.vy_m_s)
     ]
+
+
+def _deviation_m(robot: robot_estimate_t) -> float:
+    (xx_m2, _), (_, yy_m2) = robot.covariance_m2
+    return min(_UNSURE_M, math.sqrt(max(0.0, xx_m2, yy_m2)))
 
 
 def _robots(estimates: Iterable[robot_estimate_t], own: Point) -> list[Disc]:

@@ -134,10 +134,10 @@ class Tactics:
     def _set_piece(self, view: View, game: Game, job: Job, holds_ball: bool) -> Order:
         if job.role != ATTACKER:
             place = self._helper_place(view, game, job)
-            return self._stand(view, formation.next_step(view.own.place, place, game), "take position")
+            return self._stand(view, self._next_step(view, place, game), "take position")
         if game.whose is not Whose.OURS:
             place = formation.first_opponent_place(game, self.field)
-            return self._stand(view, formation.next_step(view.own.place, place, game), "keep distance")
+            return self._stand(view, self._next_step(view, place, game), "keep distance")
         if self.passing.said.passer:  # the ball is on its way, but not yet in play
             return self._go_for_ball(view)
         taker = Robot(view.own.name, game.spot, view.own.heading_rad)
@@ -158,6 +158,9 @@ class Tactics:
         if holds_ball:
             return self._play_ball(view)
         return Order("get_ball", game.spot, way_rad, "take set piece")
+
+    def _next_step(self, view: View, place: Point, game: Game) -> Point:
+        return formation.next_step(view.own.place, place, game, self.field, (*view.mates, *view.opponents))
 
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""

@@ -1,28 +1,40 @@
-"""Chooses a velocity that runs into no other robot: reciprocal velocity obstacles.
+"""Chooses a velocity that runs into no other robot: velocity obstacles with acceleration limits.
 
-After J. van den Berg, M. Lin, D. Manocha, "Reciprocal velocity obstacles for real-time multi-agent navigation", ICRA
-2008: velocities around the wanted one are rated by their difference from it and by the time to the first collision.
-Two additions: a velocity counts as what the robot can reach of it in a moment, as in a dynamic window (Fox, Burgard,
-Thrun, 1997), and a gentle touch is allowed, because robots that fight for the ball touch each other.
+After P. Fiorini, Z. Shiller, "Motion planning in dynamic environments using velocity obstacles", IJRR 1998: velocities
+around the wanted one are rated by their difference from it and by the time to the first collision. The way to each
+velocity is that of a robot which accelerates within its limit (J. van den Berg, J. Snape, S. Guy, D. Manocha,
+"Reciprocal collision avoidance with acceleration-velocity obstacles", ICRA 2011). Of two mates one evades: halves of an
+evasion, as in reciprocal velocity obstacles, are too small when one of the two believes something else. A gentle touch
+is allowed, because robots that fight for the ball touch each other.
 """
 
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from procs.model.field import Point
+from procs.model.frames import Floats
 
 _HORIZON_S = 1.6
 _REACTION_S = 0.35
-"""In this time the robot changes its velocity as far as its acceleration allows; others keep theirs."""
+"""A robot that touches another already is judged by its velocity after this time."""
+_LATE_S = 0.4
+"""The robot evades one that gives way only if they would collide so soon."""
 _SOONEST_S = 0.15
 _TOUCH_M_S = 0.6
 """Closing speed of a touch that does no harm."""
 _WEIGHT_S = 1.2
 """Cost of a collision of 1 m/s in 1 s, as a difference from the wanted velocity in m/s."""
-_SPEED_SHARES = (1.0, 0.6, 0.25)
-_TURNS_RAD = (0.35, -0.35, 0.8, -0.8, 1.4, -1.4, 2.2, -2.2)
 _LEAST_M_S = 1.0
+_FASTEST_M_S = 4.0
+_SPEED_SHARES = (1.0, 0.6, 0.25)
+_TURNS_RAD = (0.0, 0.35, -0.35, 0.8, -0.8, 1.4, -1.4, 2.2, -2.2, math.pi)
+_CHANGES = [(share * math.cos(turn), share * math.sin(turn)) for share in _SPEED_SHARES for turn in _TURNS_RAD]
+_TIMES_S = np.concatenate([np.arange(1, 9) * 0.05, np.arange(5, 17) * 0.1])
+_LATE = int(np.searchsorted(_TIMES_S, _LATE_S + 1e-9))
+_REACTED = int(np.searchsorted(_TIMES_S, _REACTION_S - 1e-9))
 
 
 class Mover(NamedTuple):
@@ -31,7 +43,9 @@ class Mover(NamedTuple):
     place: Point
     velocity_m_s: Point
     gives_way: bool
-    """A mate: its navigator makes half of the evasion, so the own robot makes the other half only."""
+    """A mate that has agreed to evade, because its rank is lower."""
+    margin_m: float = 0.0
+    """Further distance to keep, because the place is not known well."""
 
 
 def safe_velocity(
@@ -42,58 +56,70 @@ def safe_velocity(
     `now_m_s` is the present velocity, `apart_m` the distance of the middles of two robots that touch, and
     `change_m_s2` the limit of the acceleration.
     """
-    near = [mover for mover in movers if math.dist(mover.place, place) < apart_m + 4.0 * _HORIZON_S]
-    change_m_s = change_m_s2 * _REACTION_S
-    best, best_cost = wanted_m_s, _danger(wanted_m_s, now_m_s, place, near, apart_m, change_m_s)
-    if best_cost == 0.0:
-        return best
-    for velocity in _candidates(wanted_m_s):
-        cost = math.dist(velocity, wanted_m_s)
-        if cost < best_cost:
-            cost += _danger(velocity, now_m_s, place, near, apart_m, change_m_s)
-            if cost < best_cost:
-                best, best_cost = velocity, cost
-    return best
+    near = [mover for mover in movers if math.dist(mover.place, place) < apart_m + _FASTEST_M_S * _HORIZON_S]
+    if not near:
+        return wanted_m_s
+    others = _Others(near, place, now_m_s, apart_m)
+    if others.dangers(np.array([wanted_m_s]), change_m_s2)[0] == 0.0:
+        return wanted_m_s
+    candidates = _candidates(wanted_m_s, now_m_s)
+    costs = np.sqrt(((candidates - wanted_m_s) ** 2).sum(axis=1)) + others.dangers(candidates, change_m_s2)
+    return Point(*candidates[int(costs.argmin())].tolist())
 
 
-def _candidates(wanted_m_s: Point) -> list[Point]:
-    speed_m_s, way_rad = max(_LEAST_M_S, math.hypot(*wanted_m_s)), math.atan2(wanted_m_s.y_m, wanted_m_s.x_m)
-    turned = [
-        Point(share * speed_m_s * math.cos(way_rad + turn_rad), share * speed_m_s * math.sin(way_rad + turn_rad))
-        for share in _SPEED_SHARES
-        for turn_rad in (0.0, *_TURNS_RAD, math.pi)
-    ]
-    return [*turned, Point(0.0, 0.0)]
+def _candidates(wanted_m_s: Point, now_m_s: Point) -> Floats:
+    speed_m_s = max(_LEAST_M_S, math.hypot(*wanted_m_s))
+    scale = speed_m_s / max(1e-9, math.hypot(*wanted_m_s))
+    x, y = (wanted_m_s.x_m * scale, wanted_m_s.y_m * scale) if scale < 1e6 else (speed_m_s, 0.0)
+    turned = [(x * cos - y * sin, x * sin + y * cos) for cos, sin in _CHANGES]
+    return np.array([wanted_m_s, *turned, now_m_s, (0.0, 0.0)])
 
 
-def _danger(
-    velocity: Point, now: Point, place: Point, movers: Sequence[Mover], apart_m: float, change_m_s: float
-) -> float:
-    """Returns the cost of the worst collision that the velocity leads to; 0 without one."""
-    dvx, dvy = velocity.x_m - now.x_m, velocity.y_m - now.y_m
-    share = min(1.0, change_m_s / max(math.hypot(dvx, dvy), 1e-9))
-    vx, vy = now.x_m + share * dvx, now.y_m + share * dvy
-    worst = 0.0
-    for mover in movers:
-        factor = 2.0 if mover.gives_way else 1.0
-        closing_x = factor * vx - (factor - 1.0) * now.x_m - mover.velocity_m_s.x_m
-        closing_y = factor * vy - (factor - 1.0) * now.y_m - mover.velocity_m_s.y_m
-        to_x, to_y = mover.place.x_m - place.x_m, mover.place.y_m - place.y_m
-        away_m = math.hypot(to_x, to_y)
-        towards = to_x * closing_x + to_y * closing_y
-        if towards <= 0.0:
-            continue
-        if away_m <= apart_m:
-            time_s, impact_m_s = 0.0, towards / max(away_m, 1e-6)
-        else:
-            squared = closing_x * closing_x + closing_y * closing_y
-            root = towards * towards - squared * (away_m * away_m - apart_m * apart_m)
-            if root <= 0.0:
-                continue
-            time_s = (towards - math.sqrt(root)) / squared
-            impact_m_s = math.sqrt(root) / apart_m
-        if time_s < _HORIZON_S and impact_m_s > _TOUCH_M_S:
-            worst = max(
-                worst, _WEIGHT_S * (impact_m_s - _TOUCH_M_S) * (1.0 / max(time_s, _SOONEST_S) - 1.0 / _HORIZON_S)
-            )
-    return worst
+class _Others:
+    """The robots nearby on their ways during the next moments; axes: velocity, time, robot."""
+
+    def __init__(self, movers: Sequence[Mover], place: Point, now_m_s: Point, apart_m: float) -> None:
+        self._now = np.array(now_m_s)
+        to = np.array([mover.place for mover in movers]) - place
+        velocity = np.array([mover.velocity_m_s for mover in movers])
+        self._yields = np.array([mover.gives_way for mover in movers])
+        away = np.sqrt((to**2).sum(axis=1))
+        wide = apart_m + np.array([mover.margin_m for mover in movers])
+        apart = np.minimum(wide, np.maximum(apart_m, away - 0.02))
+        self._closing = self._now - velocity
+        self._gap_x = to[:, 0] - self._closing[:, 0] * _TIMES_S[:, None]
+        self._gap_y = to[:, 1] - self._closing[:, 1] * _TIMES_S[:, None]
+        self._apart_m2 = apart**2
+        self._touching = away <= apart
+        self._touches = bool(self._touching.any())
+
+    def dangers(self, velocities: Floats, change_m_s2: float) -> Floats:
+        """Returns the cost of the worst collision that each velocity (n, 2) leads to; 0 without one."""
+        change = velocities - self._now
+        speeds = np.sqrt((change**2).sum(axis=1))
+        ramp_s = np.maximum(speeds / change_m_s2, 1e-9)[:, None]
+        share = np.minimum(_TIMES_S / ramp_s, 1.0)  # of the change that has been made (velocity, time)
+        way_s = np.where(share < 1.0, _TIMES_S * share / 2, _TIMES_S - ramp_s / 2)
+        gap_x = self._gap_x - (change[:, :1] * way_s)[:, :, None]
+        gap_y = self._gap_y - (change[:, 1:] * way_s)[:, :, None]
+        away_m2 = gap_x * gap_x + gap_y * gap_y
+        hits = away_m2 <= self._apart_m2
+        hits[:, _LATE:, self._yields] = False
+        if self._touches:
+            hits[:, :_REACTED, self._touching] = False
+            hits[:, _REACTED, self._touching] = True
+        if not hits.any():
+            return np.zeros(len(velocities))
+        first = hits.argmax(axis=1)  # (velocity, robot)
+        row, robot = np.nonzero(hits.any(axis=1))
+        step = first[row, robot]
+        closing_x = self._closing[robot, 0] + change[row, 0] * share[row, step]
+        closing_y = self._closing[robot, 1] + change[row, 1] * share[row, step]
+        x, y = gap_x[row, step, robot], gap_y[row, step, robot]
+        towards = (x * closing_x + y * closing_y) / np.sqrt(np.maximum(away_m2[row, step, robot], 1e-9))
+        time_s = np.where(self._touching[robot], 0.0, _TIMES_S[step])
+        urgency = 1.0 / np.maximum(time_s, _SOONEST_S) - 1.0 / _HORIZON_S
+        cost = _WEIGHT_S * np.maximum(0.0, towards - _TOUCH_M_S) * urgency
+        worst = np.zeros(len(velocities))
+        np.maximum.at(worst, row, cost)
+        return worst

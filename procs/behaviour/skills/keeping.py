@@ -64,13 +64,17 @@ class KeepLine(StateMachine):
     def _block(self, scene: Scene) -> Step:
         reach_m = _reach_m(scene.field)
         y_m = clamp(crossing_m(scene) or 0.0, -reach_m, reach_m)
-        return self._stand(scene, Point(_line_x_m(scene.field), y_m))
+        return self._stop_shot(scene, Point(_line_x_m(scene.field), y_m))
 
-    def _stand(self, scene: Scene, place: Point, end_speed_m_s: float = 0.0) -> Step:
+    def _stand(self, scene: Scene, place: Point) -> Step:
         heading_rad = bearing_rad(place, scene.view.ball.place) if scene.view.ball.known else 0.0
-        away = math.dist(place, scene.view.own.place) > _ON_GUARD_M
-        drive = Drive(place, clamp(heading_rad, -1.3, 1.3), scene.speed_m_s, end_speed_m_s, avoid_robots=away)
-        return Step(drive, dribble=scene.holds_ball)
+        return Step(Drive(place, clamp(heading_rad, -1.3, 1.3), scene.speed_m_s), dribble=scene.holds_ball)
+
+    def _stop_shot(self, scene: Scene, place: Point, end_speed_m_s: float = 0.0) -> Step:
+        """Drives straight to the way of a shot, whoever is near; a keeper far from its goal drives around robots."""
+        step, away = self._stand(scene, place), math.dist(place, scene.view.own.place) > _ON_GUARD_M
+        assert step.drive
+        return step._replace(drive=step.drive._replace(end_speed_m_s=end_speed_m_s, avoid_robots=away))
 
     STATES = (
         State(
@@ -131,12 +135,12 @@ class KeepGoal(KeepLine):
 
     def _meet(self, scene: Scene) -> Step:
         assert self._save
-        return self._stand(scene, self._save.place)
+        return self._stop_shot(scene, self._save.place)
 
     def _dive(self, scene: Scene) -> Step:
         assert self._save
         way_rad = bearing_rad(scene.view.own.place, self._save.place)
-        step = self._stand(scene, ahead(self._save.place, way_rad, _BEYOND_M), _SPEED_M_S)
+        step = self._stop_shot(scene, ahead(self._save.place, way_rad, _BEYOND_M), _SPEED_M_S)
         assert step.drive
         return step._replace(drive=step.drive._replace(heading_rad=scene.view.own.heading_rad, avoid_robots=False))
 

@@ -114,7 +114,7 @@ def test_path_to_a_position_leads_around_a_set_pieces_ball(own: Point) -> None:
     place = Point(-2.0, -5.0)
     distances_m = [math.dist(own, game.spot)]
     for _ in range(400):
-        step = formation.next_step(own, place, game)
+        step = formation.next_step(own, place, game, FIELD)
         way_m = math.dist(own, step)
         share = min(1.0, 0.1 / way_m) if way_m else 1.0
         own = Point(own.x_m + share * (step.x_m - own.x_m), own.y_m + share * (step.y_m - own.y_m))
@@ -123,6 +123,22 @@ def test_path_to_a_position_leads_around_a_set_pieces_ball(own: Point) -> None:
     outside = next(index for index, distance_m in enumerate(distances_m) if distance_m > 3.0)
     assert outside < 40
     assert min(distances_m[outside:]) > 3.0
+
+
+def test_robot_at_the_wall_leaves_the_ball_along_the_line() -> None:
+    game = Game(State.THROW_IN, stopped=True, whose=Whose.THEIRS, spot=Point(9.55, 6.9))
+    step = formation.next_step(Point(11.65, 7.65), Point(5.0, 3.0), game, FIELD)
+    assert math.dist(step, game.spot) > 3.0
+    assert FIELD.in_field(*step, 0.5)
+
+
+def test_robot_before_its_keeper_leaves_the_ball_beside_it() -> None:
+    game = Game(State.FREE_KICK, stopped=True, whose=Whose.THEIRS, spot=Point(-7.4, -0.4))
+    keeper = robot("cyan1", -10.55, -0.1)
+    step = formation.next_step(Point(-9.65, -0.35), Point(-4.0, 3.0), game, FIELD, (keeper,))
+    assert math.dist(step, game.spot) > 3.0
+    assert math.dist(step, keeper.place) > 0.56
+    assert not FIELD.in_penalty_area(*step, -1.0)
 
 
 def test_defenders_stand_between_ball_and_penalty_area() -> None:

@@ -15,8 +15,8 @@ def driven(start: Point, target: Point, others: list[Mover], seconds: float = 3.
     place, now, least_m = start, REST, math.inf
     for tick in range(round(seconds * 20)):
         movers = [
-            Mover(Point(x + vx * tick / 20, y + vy * tick / 20), Point(vx, vy), yields)
-            for (x, y), (vx, vy), yields in others
+            other._replace(place=Point(*(at + speed * tick / 20 for at, speed in zip(*other[:2], strict=True))))
+            for other in others
         ]
         way = math.dist(place, target)
         speed = min(2.5, 3.0 * way)
@@ -41,9 +41,53 @@ def test_free_way_leaves_the_wanted_velocity() -> None:
     ids=["standing", "oncoming", "crossing"],
 )
 def test_robot_arrives_without_a_collision(place: tuple[float, float], velocity: tuple[float, float]) -> None:
-    end, least_m = driven(REST, Point(4.5, 0.0), [Mover(Point(*place), Point(*velocity), gives_way=False)], 4.0)
+    end, least_m = driven(REST, Point(4.5, 0.0), [Mover(Point(*place), Point(*velocity), False, 0.1)], 4.0)
     assert least_m > 0.5
     assert math.dist(end, (4.5, 0.0)) < 0.3
+
+
+def hardest(first: tuple[Point, Point], second: tuple[Point, Point], apart_m: float = 0.5) -> float:
+    """Drives two mates, of which the second gives way; returns the closing speed of their collision, else 0."""
+    ways, velocities = [first, second], [REST, REST]
+    places = [start for start, _ in ways]
+    for _ in range(60):
+        chosen = []
+        for own, other in ((0, 1), (1, 0)):
+            target, way_m = ways[own][1], math.dist(places[own], ways[own][1])
+            speed = min(2.5, 3.0 * way_m) / max(way_m, 1e-9)
+            wanted = Point(speed * (target.x_m - places[own].x_m), speed * (target.y_m - places[own].y_m))
+            mover = Mover(places[other], velocities[other], gives_way=own == 0, margin_m=0.1)
+            chosen.append(safe_velocity(wanted, velocities[own], places[own], [mover], APART_M, 3.0))
+        for own, safe in enumerate(chosen):
+            now = velocities[own]
+            share = min(1.0, 0.15 / max(math.dist(now, safe), 1e-9))
+            now = Point(now.x_m + share * (safe.x_m - now.x_m), now.y_m + share * (safe.y_m - now.y_m))
+            velocities[own], place = now, places[own]
+            places[own] = Point(place.x_m + now.x_m / 20, place.y_m + now.y_m / 20)
+        away_m = math.dist(*places)
+        if away_m < apart_m:
+            to_x, to_y = (two - one for one, two in zip(*places, strict=True))
+            one, two = velocities
+            return ((one.x_m - two.x_m) * to_x + (one.y_m - two.y_m) * to_y) / away_m
+    return 0.0
+
+
+def test_mates_whose_ways_cross_do_not_collide() -> None:
+    hits = []
+    for degrees in range(20, 341, 20):
+        angle = math.radians(degrees)
+        start = Point(-2.5 * math.cos(angle), -2.5 * math.sin(angle))
+        for late_m in (0.0, 0.3, 0.6):
+            target = Point(2.0 * math.cos(angle), 2.0 * math.sin(angle))
+            hits.append(hardest((Point(-2.5 - late_m, 0.0), Point(2.0, 0.0)), (start, target)))
+    assert max(hits) < 1.0
+
+
+def test_room_beside_a_robot_grows_with_its_uncertainty() -> None:
+    def passed_m(margin_m: float) -> float:
+        return driven(REST, Point(4.5, 0.0), [Mover(Point(2.0, 0.02), REST, gives_way=False, margin_m=margin_m)])[1]
+
+    assert passed_m(0.25) > passed_m(0.1) + 0.03
 
 
 def test_robot_beside_another_may_leave() -> None:
