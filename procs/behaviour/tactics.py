@@ -27,6 +27,7 @@ _PASSED_M_S = 1.5
 _SETTLED_S = 0.14  # a ball that was caught so long ago does not bounce off when the robot turns
 _FUMBLED_M = 0.4  # the ball of a set piece that is so far from its spot has been taken
 _NEAR_M = 1.0
+_LEAVING_M, _GENTLE_M_S = 1.5, 1.0  # while a rival is so near to the ball, the taker comes so slowly
 _BESIDE_M = (0.2, 0.8)  # a ball laid less far from the spot lies on it; one further away is put back
 KEEPER_OUT_M = 2.3
 """The goalkeeper comes so far before its line."""
@@ -154,7 +155,9 @@ class Tactics:
         if game.state is State.KICK_OFF:  # from the own half
             way_rad = clamp(way_rad, -_KICK_OFF_RAD, _KICK_OFF_RAD)
         if game.stopped:
-            return Order("goto", formation.taker_place(game.spot, way_rad), way_rad, "take set piece")
+            leaving = any(math.dist(other.place, game.spot) < _LEAVING_M for other in view.opponents)
+            place, speed_m_s = formation.taker_place(game.spot, way_rad), _GENTLE_M_S if leaving else 0.0
+            return Order("goto", place, way_rad, "take set piece", speed_m_s)
         if holds_ball:
             return self._play_ball(view)
         return Order("get_ball", game.spot, way_rad, "take set piece")

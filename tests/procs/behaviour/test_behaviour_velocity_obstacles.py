@@ -66,7 +66,7 @@ def hardest(first: tuple[Point, Point], second: tuple[Point, Point], apart_m: fl
             places[own] = Point(place.x_m + now.x_m / 20, place.y_m + now.y_m / 20)
         away_m = math.dist(*places)
         if away_m < apart_m:
-            to_x, to_y = (two - one for one, two in zip(*places, strict=True))
+            to_x, to_y = places[1].x_m - places[0].x_m, places[1].y_m - places[0].y_m
             one, two = velocities
             return ((one.x_m - two.x_m) * to_x + (one.y_m - two.y_m) * to_y) / away_m
     return 0.0
