@@ -217,13 +217,17 @@ class LogReader:
             return log.size_bytes
 
     def check_any(self) -> None:
-        """Checks after a whole iteration that the file is a log at all.
+        """Checks after a whole iteration that the file is a log at all, and whole in its first event.
 
         Raises:
             LogError: the iteration found no event, but bytes.
         """
-        if self.skipped_bytes and not self.position:
-            raise LogError(f"{self.path}: not an LCM log: no event in {self.skipped_bytes} bytes")
+        if self.position or not self.skipped_bytes:
+            return
+        with LogBytes(self.path) as log:
+            begun = log.read(0, len(SYNC)) == SYNC
+        reason = "cut off within its first event" if begun else "not an LCM log: no event in it"
+        raise LogError(f"{self.path}: {reason}; it has {self.skipped_bytes} bytes")
 
     def __iter__(self) -> Iterator[Event]:
         return self.events_from(0)

@@ -58,6 +58,7 @@ class Timeline:
         self._moments: list[Moment] = []
         self._notes: list[tuple[str, Moment]] = []
         if not self._read_on():
+            self._reader.check_any()
             raise LogError(f"{path}: nothing to play: no message in it")
         self.begin = self._moments[0]
         """The beginning of the log."""

@@ -220,6 +220,7 @@ class Recording:
                     ) from error
             if event.channel == RECORD:
                 break
+        self._reader.check_any()
         raise RecordingError(
             f"{self.path}: no plan in it, so it cannot be replayed; logs that fwk-launch records have one, "
             "logs of lcm-logger do not"

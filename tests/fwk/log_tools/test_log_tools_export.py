@@ -257,7 +257,7 @@ def test_a_file_that_is_not_mcap_is_refused(tmp_path: Path, content: bytes) -> N
 @pytest.mark.parametrize("form", Format)
 def test_a_file_that_is_not_a_log_is_not_exported(tmp_path: Path, form: Format) -> None:
     (tmp_path / "in").write_bytes(b"this is not a log")
-    with pytest.raises(LogError, match="in: not an LCM log: no event in 17 bytes"):
+    with pytest.raises(LogError, match="in: not an LCM log: no event in it; it has 17 bytes"):
         export(tmp_path / "in", tmp_path / "out", form, Selection())
     assert [path.name for path in tmp_path.iterdir()] == ["in"]
 

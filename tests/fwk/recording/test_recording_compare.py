@@ -239,8 +239,8 @@ def test_files_with_nothing_to_compare_are_refused(tmp_path: Path) -> None:
     late = write(tmp_path / "late", entries()[75:])
     early = write(tmp_path / "early", entries()[:20])
     for a, b, common, expected in [
-        (good, tmp_path / "text", False, "text: not an LCM log: no event in 140 bytes"),
-        (good, tmp_path / "text", True, "text: not an LCM log: no event in 140 bytes"),
+        (good, tmp_path / "text", False, "text: not an LCM log: no event in it; it has 140 bytes"),
+        (good, tmp_path / "text", True, "text: not an LCM log: no event in it; it has 140 bytes"),
         (good, tmp_path / "none", False, "none: cannot read: No such file or directory"),
         (empty, empty, False, "nothing to compare: no messages outside 'fwk/'"),
         (late, early, True, "nothing to compare: no common sequence numbers"),

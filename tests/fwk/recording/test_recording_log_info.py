@@ -96,7 +96,7 @@ def test_dropped_events_and_damage_are_reported(tmp_path: Path) -> None:
 
 def test_a_file_that_is_not_a_log_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text").write_text("hello")
-    with pytest.raises(LogError, match="text: not an LCM log: no event in 5 bytes"):
+    with pytest.raises(LogError, match="text: not an LCM log: no event in it; it has 5 bytes"):
         log_info(tmp_path / "text")
 
 

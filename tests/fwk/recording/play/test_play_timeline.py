@@ -67,6 +67,20 @@ def test_an_empty_log_cannot_be_played(tmp_path: Path) -> None:
         Timeline(tmp_path / "log")
 
 
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (b"no log", "not an LCM log: no event in it; it has 6 bytes"),
+        (None, "cut off within its first event; it has 40"),
+    ],
+)
+def test_a_file_that_is_no_log_cannot_be_played(tmp_path: Path, content: bytes | None, reason: str) -> None:
+    path = recording(tmp_path / "log")
+    path.write_bytes(path.read_bytes()[:40] if content is None else content)
+    with pytest.raises(LogError, match=reason):
+        Timeline(path)
+
+
 def test_ticks_before_damage_and_after_it_are_found(tmp_path: Path) -> None:
     log = recording(tmp_path / "log")
     data = bytearray(log.read_bytes())

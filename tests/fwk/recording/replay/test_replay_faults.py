@@ -4,8 +4,10 @@ import json
 from collections.abc import Sequence
 from pathlib import Path
 
+import pytest
+
 from fwk import Component, Config, Reads, Writes
-from fwk.lcm.event_log import LogWriter
+from fwk.lcm.event_log import SYNC, LogError, LogWriter
 from fwk.lcm.messages import encode
 from fwk.model.plain_values import value_messages
 from fwk.model.plan import Plan
@@ -241,3 +243,9 @@ def test_messages_that_the_recording_lacks_are_written_again(tmp_path: Path) -> 
     assert differences(replay)[0].startswith("r/pose: tick 3")  # 1 and 2 and 3 are 6
     assert replay.compared == 3
     assert made.replayed("r/counter").lost == {"r/imu": {1, 3}, "r/pose": set()}
+
+
+def test_a_log_cut_in_its_plan_is_called_cut_off(tmp_path: Path) -> None:
+    (tmp_path / "log").write_bytes(SYNC + bytes(36))
+    with pytest.raises(LogError, match="cut off within its first event; it has 40 bytes"):
+        Recording(tmp_path / "log")
