@@ -8,7 +8,7 @@ from fwk import Clock, Component, MainLoop, Reads, TimeSource, Writes
 from fwk.plan.hosting import Hosting
 from fwk.testing import MemorySystem
 from lcmtypes.robot import imu_t
-from tests.components.traders import Bystander, Trader, Wanderer
+from traders import Bystander, Trader, Wanderer
 
 
 class Conducts(Component):
