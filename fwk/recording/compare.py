@@ -43,12 +43,14 @@ def plan_in(log: Path) -> Plan | None:
     Raises:
         LogError: the file cannot be read, or is not a log.
     """
-    for event in islice(StampedLog(log), _PLAN_WITHIN):
+    reader = StampedLog(log)
+    for event in islice(reader, _PLAN_WITHIN):
         if event.channel == PLAN:
             try:
                 return read_plan(event.data)[0]
             except BROKEN:
                 return None
+    reader.check_any()
     return None
 
 

@@ -30,7 +30,7 @@ def use_types_of_run(log: Path, types: Path) -> None:
     that the user has named, as another folder than the present one, take precedence.
 
     Raises:
-        LogError: the log cannot be read.
+        LogError: the file cannot be read, or is not a log.
         TypeGenerationError: an .lcm file of `types` has mistakes.
     """
     use_types_of(types)
@@ -48,9 +48,11 @@ def plan_document(log: Path) -> dict[str, Any]:
     """Returns the plan that a recording begins with, as plain data, which takes far less time than a `Plan`.
 
     Raises:
-        LogError: the log cannot be read.
+        LogError: the file cannot be read, or is not a log.
     """
-    first = next(iter(LogReader(log)), None)
+    reader = LogReader(log)
+    first = next(iter(reader), None)
+    reader.check_any()
     if first is None or first.channel != PLAN:
         return {}
     kind = core_v1.plan_t if first.data[:8] == fingerprint(core_v1.plan_t) else core.plan_t
