@@ -16,6 +16,7 @@ from fwk.display.steering import Steering
 from fwk.display.view import View
 from fwk.lcm.messages import MessageError
 from fwk.model.plan import Plan
+from fwk.model.signals import ignore
 
 _STATUS_LINE_S = 5.0
 _WAITING_LINE_S = 10.0
@@ -28,7 +29,7 @@ def run_display(plan: Plan, connection: socket.socket, plain: bool) -> None:
     `fwk/status`, `fwk/log` and the data channels of the scoreboard. The sender drops packets that find no room, and
     this process has the lowest priority, so that nothing here slows the run.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C ends the run; the display shows how
+    ignore(signal.SIGINT)  # Ctrl-C ends the run; the display shows how
     signal.signal(signal.SIGTERM, _leave)  # raises an exception, so that the cursor of the terminal is restored
     os.nice(10)
     with contextlib.suppress(OSError):  # the reader of the output has gone; the run goes on without it

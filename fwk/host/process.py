@@ -14,6 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from fwk.model.parent_death import die_with_parent as die_with_parent
+from fwk.model.signals import ignore
 
 # Looked up once: a forked process shares with its parent only memory in which neither of them writes.
 _LIBC = ctypes.CDLL(None, use_errno=True)
@@ -121,14 +122,17 @@ class StopSignal:
         self._set = False
         signal.set_wakeup_fd(self._write, warn_on_full_buffer=False)
         signal.signal(signal.SIGTERM, self._on_signal)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the supervisor handles Ctrl-C
+        ignore(signal.SIGINT)  # the supervisor handles Ctrl-C
 
     def __call__(self) -> bool:
         return self._set
 
     def on_interrupt(self, ends: bool) -> None:
         """Sets whether Ctrl-C asks the process to stop or is ignored."""
-        signal.signal(signal.SIGINT, self._on_signal if ends else signal.SIG_IGN)
+        if ends:
+            signal.signal(signal.SIGINT, self._on_signal)
+        else:
+            ignore(signal.SIGINT)
 
     def _on_signal(self, _number: int, _frame: object) -> None:
         self._set = True

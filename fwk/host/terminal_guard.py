@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from fwk.host.process import StopSignal, die_with_parent, run_forked
+from fwk.model.signals import ignore
 
 
 def run_guarded(work: Callable[[StopSignal], int], run: int) -> int:
@@ -19,7 +20,7 @@ def run_guarded(work: Callable[[StopSignal], int], run: int) -> int:
         if pid == 0:
             die_with_parent(parent)
             run_forked(work)
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C belongs to the child
+        ignore(signal.SIGINT)  # Ctrl-C belongs to the child
         _wait_for_either(pid, run)
         os.kill(pid, signal.SIGKILL)  # an ended child is left alone
         return os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])

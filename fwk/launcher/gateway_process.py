@@ -19,6 +19,7 @@ from fwk.launcher.run_files import RunFiles
 from fwk.lcm.event_log import LogError
 from fwk.logs import targets
 from fwk.model.plan import Plan
+from fwk.model.signals import ignore
 from fwk.recording import sinks
 from fwk.supervisor.options import RunOptions
 
@@ -39,7 +40,7 @@ def run_gateway(
 ) -> int:
     """Serves until the supervisor closes `control`; returns the exit code."""
     # The gateway ends when the supervisor's end of `control` is closed, also by the supervisor's death.
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    ignore(signal.SIGTERM)
     control.setblocking(False)
     public = PublicBus(plan.public_url) if plan.public_url else None
     network = UdpNetwork(reservations.keep_for_gateway())

@@ -9,6 +9,7 @@ from typing import Any
 from fwk.clock import US_PER_S, monotonic_us, sleep_s
 from fwk.control.address import supervisor_address
 from fwk.control.client import Client, ControlError
+from fwk.model.signals import ignore
 
 CONSOLE_FILE = "console.txt"
 """File in the run directory that gets what a run in the background prints."""
@@ -28,7 +29,7 @@ def detach(run_dir: Path, bus_port: int, name: str) -> None:
     if child:
         os._exit(_report(child, run_dir, bus_port, name))
     os.setsid()
-    signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    ignore(signal.SIGHUP)
     null = os.open(os.devnull, os.O_RDONLY)
     console = os.open(run_dir / CONSOLE_FILE, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
     os.dup2(null, 0)

@@ -33,6 +33,7 @@ from fwk.lcm.log_file import LogError, check_compression
 from fwk.model.errors import PlanError, hint
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from fwk.model.signals import ignore
 from fwk.plan.load import LaunchOptions, load_plan
 
 RUN_BROKEN = 1
@@ -216,7 +217,7 @@ def launch(
         finally:
             restore(0, terminal)
     for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
-        signal.signal(number, signal.SIG_IGN)  # repeated signals are meant for the run, which has ended
+        ignore(number)  # repeated signals are meant for the run, which has ended
     write_result(run_dir, outcome.exit_code, outcome.reason, outcome.ticks, outcome.wall_s)
     for line in summary(plan, options, outcome):
         typer.echo(line)

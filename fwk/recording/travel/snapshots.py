@@ -17,6 +17,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from fwk.model.signals import ignore
+
 SNAPSHOTS_MAX = 24
 """Most snapshots that wait at the same time."""
 FAILED = 1
@@ -51,8 +53,8 @@ class Snapshots:
         sys.stdout.flush()
         waits, control = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         pid, order = os.getpid(), None
-        on_interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)
-        on_child = signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # fronts of the past leave no zombies
+        on_interrupt = ignore(signal.SIGINT)
+        on_child = ignore(signal.SIGCHLD)  # fronts of the past leave no zombies
         while os.fork():  # the snapshot
             control.close()
             data = _received(waits)
@@ -113,7 +115,7 @@ def run_session(work: Callable[[Snapshots], int]) -> int:
         ours.close()
         _run_front(work, theirs)
     theirs.close()
-    on_interrupt = signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C belongs to the front
+    on_interrupt = ignore(signal.SIGINT)  # Ctrl-C belongs to the front
     try:
         return _end_of(front, ours)
     finally:

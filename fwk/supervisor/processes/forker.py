@@ -31,6 +31,7 @@ from fwk.host.process import (
 from fwk.host.profile import Profile, ProfileRequest
 from fwk.model.plan import Plan
 from fwk.model.ports import Ports
+from fwk.model.signals import ignore
 from fwk.supervisor.processes.preload import preload
 from fwk.supervisor.processes.starter import Ended, Started
 from fwk.supervisor.processes.zygote_link import StartRequest, ZygoteEnd
@@ -72,7 +73,7 @@ class Forker:
         signal.signal(signal.SIGCHLD, lambda _number, _frame: None)  # only to wake this process
         # It ends when its connection is closed: hosts need their parent to finalize when all processes of a run are
         # asked to end at once, as systemd does.
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)
+        ignore(signal.SIGTERM)
         poller = select.poll()
         poller.register(self._connection.fileno(), select.POLLIN)
         poller.register(stop.wakeup, select.POLLIN)
