@@ -60,9 +60,8 @@ class Stranger:
 
 @pytest.fixture
 def stranger() -> Iterator[Stranger]:
-    made = Stranger()
-    yield made
-    made.close()
+    with contextlib.closing(Stranger()) as made:
+        yield made
 
 
 RUBBISH = [
@@ -115,6 +114,14 @@ def all_ports(ports: Ports) -> list[tuple[str, int]]:
     shared += [(GROUP, ports.channel(channel)) for channel in range(CHANNELS)]
     own = [(LOOPBACK, ports.host(host)) for host in range(HOSTS + 1)]
     return [*shared, *own, (LOOPBACK, ports.supervisor)]
+
+
+@pytest.fixture
+def disguised(ports: PortBlock) -> Iterator[list[Stranger]]:
+    """Strangers at all ports of the processes of the run, at another address."""
+    with contextlib.ExitStack() as opened:
+        members = Ports(ports.bus, HOSTS, CHANNELS).members
+        yield [opened.enter_context(contextlib.closing(Stranger("127.0.0.2", port))) for port in members]
 
 
 class Ears:
@@ -200,11 +207,10 @@ def mean(run: int) -> list[tuple[str, bytes]]:
 
 
 def test_own_ports_at_another_address_are_foreign(
-    launch: Launch, folder: Path, ports: PortBlock, reference: Path
+    launch: Launch, folder: Path, ports: PortBlock, reference: Path, disguised: list[Stranger]
 ) -> None:
     """All of 127.0.0.0/8 is this machine, so every port is free at another address."""
     inner = Ports(ports.bus, HOSTS, CHANNELS)
-    disguised = [Stranger("127.0.0.2", port) for port in inner.members]
     ears = Ears(inner)
     run = launch(*RUN, *UNHURRIED)
     while run.process.poll() is None:
@@ -213,10 +219,8 @@ def test_own_ports_at_another_address_are_foreign(
             for group, port in all_ports(inner):
                 for channel, data in plausible(ears.run) + mean(ears.run) * (port == inner.sync):
                     stranger.say(channel, data, port, group)
-        pause(0.05)
+            pause(0.05)  # the run has to get on beside
     ears.close()
-    for stranger in disguised:
-        stranger.close()
     assert_unharmed(run, folder, reference)
     assert ears.run
     text_log = (run.run_dir / "fwk.log").read_text()  # the console throttles floods
