@@ -1,7 +1,13 @@
 """Ignoring of a signal that may come at any time."""
 
+import ctypes
 import signal
 from typing import Any
+
+_SIG_IGN = 1
+_set_kernel_handler = ctypes.CDLL(None).signal
+_set_kernel_handler.argtypes = [ctypes.c_int, ctypes.c_void_p]
+_set_kernel_handler.restype = ctypes.c_void_p
 
 
 def ignore(number: signal.Signals) -> Any:
@@ -10,9 +16,5 @@ def ignore(number: signal.Signals) -> Any:
     `signal.signal` alone lets Python print a traceback when the signal comes during the call, because its handler is
     gone once Python looks for it.
     """
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    try:
-        signal.pthread_sigmask(signal.SIG_BLOCK, [number])  # runs the handler of those that came before
-        return signal.signal(number, signal.SIG_IGN)  # the kernel drops those that have come since
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+    _set_kernel_handler(number, _SIG_IGN)  # none comes any more
+    return signal.signal(number, signal.SIG_IGN)  # first runs the handler of those that came
