@@ -4,26 +4,45 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Iterator
 
 import pytest
 
+SENDER = """
+import os, sys
+while os.getppid() == int(sys.argv[1]):
+    os.kill(int(sys.argv[2]), int(sys.argv[3]))
+"""
+IGNORING = """
+import signal
 from fwk.model.signals import ignore
 
-SENDER = "import os, sys\nwhile os.getppid() == int(sys.argv[1]):\n    os.kill(int(sys.argv[1]), int(sys.argv[2]))"
+taken = []
+signal.signal(signal.SIGUSR1, lambda number, _: taken.append(number))
+print("ready", flush=True)
+while len(taken) < 300:
+    handler = ignore(signal.SIGUSR1)
+    assert signal.getsignal(signal.SIGUSR1) == signal.SIG_IGN
+    signal.signal(signal.SIGUSR1, handler)
+ignore(signal.SIGUSR1)
+"""
 
 
-def test_a_signal_during_the_change_leaves_no_traceback(capfd: pytest.CaptureFixture[str]) -> None:
-    taken = []
-    before = signal.signal(signal.SIGUSR1, lambda number, _: taken.append(number))
-    sender = subprocess.Popen([sys.executable, "-c", SENDER, str(os.getpid()), str(signal.SIGUSR1.value)])
-    try:
-        while len(taken) < 100:
-            handler = ignore(signal.SIGUSR1)
-            assert signal.getsignal(signal.SIGUSR1) == signal.SIG_IGN
-            signal.signal(signal.SIGUSR1, handler)
-    finally:
-        sender.kill()
-        sender.wait()
-        ignore(signal.SIGUSR1)
-        signal.signal(signal.SIGUSR1, before)
-    assert capfd.readouterr().err == ""
+@pytest.fixture
+def ignoring() -> Iterator[subprocess.Popen[str]]:
+    """A process of one thread, as those of a run are, that ignores a signal and takes it in turns."""
+    words = [sys.executable, "-c", IGNORING]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        yield process
+        process.kill()
+
+
+def test_a_signal_during_the_change_leaves_no_traceback(ignoring: subprocess.Popen[str]) -> None:
+    assert ignoring.stdout
+    assert ignoring.stdout.readline() == "ready\n"
+    numbers = map(str, (os.getpid(), ignoring.pid, signal.SIGUSR1.value))
+    sender = subprocess.Popen([sys.executable, "-c", SENDER, *numbers], stderr=subprocess.DEVNULL)
+    _, said = ignoring.communicate()
+    sender.kill()
+    sender.wait()
+    assert (ignoring.returncode, said) == (0, "")
