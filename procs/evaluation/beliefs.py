@@ -2,7 +2,6 @@
 
 import itertools
 import math
-from collections import defaultdict
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -12,7 +11,6 @@ from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, tru
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S, pose_samples
 from procs.model.frames import Floats
-from procs.model.robot import team_of
 
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
@@ -25,7 +23,6 @@ _INSIDE_95 = 5.991  # chi-square, 2 degrees of freedom
 _PLACED_S = 0.5  # the crew puts the ball down in no time, which no ball in play does
 _SAME_M = 1.0  # an opponent further from all robots is not one of them
 _DRIVING_M_S = 0.5
-_STALE_S = 0.2  # older sightings of a robot are not averaged
 _KICK_M_S = 2.0
 _JUMP_M = 0.2
 _BOUNCE_M_S = 1.0  # no ball that rolls or slides changes its velocity by so much in a tick
@@ -54,7 +51,7 @@ class _Ball(NamedTuple):
 
 def believed(piece: Piece) -> Samples:
     """Returns the samples of every measure of beliefs."""
-    own = pose_samples(piece) | _ball_samples(piece) | _fusion(piece) | _kicks(piece) | _opponents(piece)
+    own = pose_samples(piece) | _ball_samples(piece) | _kicks(piece) | _opponents(piece)
     return own | _baselines(piece)
 
 
@@ -65,7 +62,8 @@ def _baselines(piece: Piece) -> Samples:
     return pose_samples(piece, "particle_pose", PARTICLES) | {AVERAGE + name: averages[name] for name in names}
 
 
-def _models(piece: Piece, interface: str = "world_model") -> Iterator[tuple[str, int, world_model_t, ground_truth_t]]:
+def models_of(piece: Piece, interface: str = "world_model") -> Iterator[tuple[str, int, world_model_t, ground_truth_t]]:
+    """Yields robot, tick, its model and the truth of that tick; robot by robot, tick by tick."""
     for robot, models in sorted(piece.by_robot.get(interface, {}).items()):
         for tick, model in models.items():
             if tick * piece.period_s >= START_S and tick in piece.truth:
@@ -75,8 +73,8 @@ def _models(piece: Piece, interface: str = "world_model") -> Iterator[tuple[str,
 def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
     seen: list[_Ball] = []
     known: list[bool] = []
-    placed, bounced = _placed(piece), _bounced(piece)
-    for robot, tick, model, truth in _models(piece, interface):
+    placed, bounced = placed_ticks(piece), _bounced(piece)
+    for robot, tick, model, truth in models_of(piece, interface):
         known.append(model.ball.known)
         if model.ball.known and tick not in placed:
             seen.append(_ball(piece, robot, tick, model, truth, tick in bounced))
@@ -104,7 +102,7 @@ def _ball_samples(piece: Piece, interface: str = "world_model") -> Samples:
     }
 
 
-def _placed(piece: Piece) -> set[int]:
+def placed_ticks(piece: Piece) -> set[int]:
     """Returns the ticks in which, or shortly before which, the crew put the ball elsewhere."""
     ticks: set[int] = set()
     for (_, before), (tick, truth) in itertools.pairwise(sorted(piece.truth.items())):
@@ -141,58 +139,6 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
     )
 
 
-def _fusion(piece: Piece) -> Samples:
-    """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick."""
-    best: list[tuple[float, float]] = []
-    average: list[tuple[float, float]] = []
-    fused: dict[tuple[str, int], list[float]] = defaultdict(list)
-    placed = _placed(piece)
-    for robot, tick, model, truth in _models(piece):
-        if model.ball.known and tick not in placed:
-            error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
-            fused[team_of(robot), tick].append(error_m2)
-    sightings = _sightings(piece)
-    for (team, tick), errors_m2 in fused.items():
-        recent = [
-            (seen_tick, each)
-            for robot, seen in sightings.items()
-            if team_of(robot) == team
-            for seen_tick, each in _newest(seen, tick, _STALE_S / piece.period_s)
-        ]
-        truth = piece.truth[tick]
-        ball_m, error_m2 = np.array((truth.ball_x_m, truth.ball_y_m)), float(np.mean(errors_m2))
-        now = [each for seen_tick, each in recent if seen_tick == tick]
-        if now:
-            single = min(now, key=lambda each: each[2])[:2] - ball_m
-            best.append((error_m2, float(single @ single)))
-        if recent:
-            mean = np.mean([each[:2] for _, each in recent], axis=0) - ball_m
-            average.append((error_m2, float(mean @ mean)))
-    return {
-        "fused to best single": np.array(best).reshape(-1, 2),
-        "fused to plain average": np.array(average).reshape(-1, 2),
-    }
-
-
-def _sightings(piece: Piece) -> dict[str, dict[int, Floats]]:
-    """Returns x, y and distance of each robot's own sightings, by the tick of the exposure."""
-    found: dict[str, dict[int, Floats]] = {}
-    for robot, told in piece.by_robot.get("team_message", {}).items():
-        found[robot] = {
-            round(each.ball_capture_us / 1e6 / piece.period_s): np.array(
-                (each.ball_x_m, each.ball_y_m, each.ball_distance_m)
-            )
-            for each in told.values()
-            if each.ball_visible
-        }
-    return found
-
-
-def _newest(seen: dict[int, Floats], tick: int, within: float) -> list[tuple[int, Floats]]:
-    ticks = [each for each in range(tick, tick - round(within) - 1, -1) if each in seen]
-    return [(ticks[0], seen[ticks[0]])] if ticks else []
-
-
 def _kicks(piece: Piece) -> Samples:
     """Seconds from a kick until each robot knows the ball's velocity within a tenth; infinite if it never does."""
     delays_s = []
@@ -225,7 +171,7 @@ def _knows(model: world_model_t, truth: ground_truth_t) -> bool:
 
 def _opponents(piece: Piece) -> Samples:
     errors_m2, ghosts, found, ways = [], [], [], []
-    for robot, tick, model, _ in _models(piece):
+    for robot, tick, model, _ in models_of(piece):
         own, rivals = piece.robot(tick, robot), piece.rivals(tick, robot)
         near = [rival for rival in rivals if math.dist((own.x_m, own.y_m), (rival.x_m, rival.y_m)) <= NEAR_M]
         matched = []

@@ -1,6 +1,7 @@
 """Quality of the robots' play: collisions, distances at restarts, passes, goals."""
 
 import itertools
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from procs.referee.restarts import Restart, State
 _HEAVY_M_S, _LIGHT_M_S = 3.0, 1.0
 _CONTROL_S = 0.3
 _FLIGHT_S = 4.0
+_TAKEN_S = 7.0
 
 
 def conducted(piece: Piece) -> Samples:
@@ -31,6 +33,7 @@ def conducted(piece: Piece) -> Samples:
         "collisions above 3 m/s": np.array([(sum(hit > _HEAVY_M_S for hit in hits_m_s), piece.minutes)]),
         "distance violated at restarts": np.array(distances, np.float64),
         "half violated at kick-offs": np.array(halves, np.float64),
+        "restarts taken within 7 s": np.array(_taken(piece), np.float64),
         "passes controlled by the receiver": np.array(_passes(piece), np.float64),
         "goals": np.array([(goals, piece.minutes)]),
     }
@@ -39,11 +42,9 @@ def conducted(piece: Piece) -> Samples:
 def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
     """Returns whether distances, and halves of the field, were violated when each set piece was released."""
     distances, halves = [], []
-    ticks = sorted(piece.game)
-    for before, tick in itertools.pairwise(ticks):
-        game = piece.game[tick]
-        if piece.game[before].stopped and not game.stopped and tick in piece.truth:
-            truth = piece.truth[tick]
+    for tick in _released(piece):
+        game, truth = piece.game[tick], piece.truth.get(tick)
+        if truth:
             middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in truth.robots}
             restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
             ends = Ends(game.cyan_side or -1.0)
@@ -51,6 +52,26 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
             if restart.state is State.KICK_OFF:
                 halves.append(bool(in_wrong_half(restart, middles, ends)))
     return distances, halves
+
+
+def _released(piece: Piece) -> Iterator[int]:
+    """Yields the ticks in which set pieces are released."""
+    for before, tick in itertools.pairwise(sorted(piece.game)):
+        if piece.game[before].stopped and not piece.game[tick].stopped:
+            yield tick
+
+
+def _taken(piece: Piece) -> list[bool]:
+    """Returns for each released set piece whether its team kicked the ball in time."""
+    taken = []
+    for tick in _released(piece):
+        team = Team(piece.game[tick].state_team)
+        in_time = range(tick, tick + round(_TAKEN_S / piece.period_s) + 1)
+        events = [event for each in in_time for event in piece.events.get(each, ())]
+        kicked = any(each.kind == match_event_t.KICK and team_of(each.robot) == team.name.lower() for each in events)
+        if team is not Team.NONE and (kicked or in_time.stop <= max(piece.truth)):
+            taken.append(kicked)
+    return taken
 
 
 def _passes(piece: Piece) -> list[bool]:

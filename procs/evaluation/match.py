@@ -13,6 +13,7 @@ from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
 from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
+from procs.evaluation.team_ball import team_ball
 from procs.model.frames import Floats
 
 
@@ -27,7 +28,7 @@ def measured(file: str, time_s: float, seed: int) -> dict[str, list[float] | lis
 
 def samples_of(piece: Piece) -> Samples:
     """Returns the samples of every measure of a piece."""
-    return believed(piece) | conducted(piece) | possession(piece)
+    return believed(piece) | team_ball(piece) | conducted(piece) | possession(piece)
 
 
 def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:

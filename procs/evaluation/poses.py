@@ -16,7 +16,8 @@ FOUND_S = 10.0
 """A robot that was carried away has so long to find its place."""
 _WRONG_M, _WRONG_RAD = 1.0, 0.5
 _RIGHT_M, _RIGHT_RAD = 0.3, 0.3
-_JUMP_M_S = 20.0  # a robot that moves faster was carried
+_CARRIED_M_S = 20.0  # a robot that moves faster was carried
+_JUMP_M = 0.5  # a believed pose that departs so far from the true motion within a tick has jumped
 
 
 class _Belief(NamedTuple):
@@ -26,6 +27,8 @@ class _Belief(NamedTuple):
     localized: bool
     error_m: float
     error_rad: float
+    jump_m: float
+    """Change of the error in position, as a vector, since the tick before."""
     carried: bool
     """The robot was set down elsewhere in this tick."""
 
@@ -50,9 +53,9 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
     turns_rad2: list[float] = []
     known: list[bool] = []
     found_s: list[float] = []
-    wrongs = 0
+    wrongs = jumps = 0
     for robot in sorted(piece.by_robot.get(interface, {})):
-        unaware, was_wrong = False, False
+        unaware = was_wrong = was_localized = False
         beliefs = list(_beliefs(piece, interface, robot))
         found_s += _found_s(beliefs, piece.period_s)
         for belief in beliefs:
@@ -60,15 +63,18 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
             if not unaware:
                 known.append(belief.localized)
                 wrongs += belief.wrong and not was_wrong
+                jumps += belief.jump_m > _JUMP_M and belief.localized and was_localized and not belief.carried
                 if belief.localized:
                     errors_m2.append(belief.error_m**2)
                     turns_rad2.append(belief.error_rad**2)
-            was_wrong = belief.wrong
+            was_wrong, was_localized = belief.wrong, belief.localized
     samples = {
         "pose known": np.array(known, np.float64),
         "pose, position": np.array(errors_m2),
+        "pose, position, 99 %": np.array(errors_m2),
         "pose, heading": np.array(turns_rad2),
         "wrong pose believed": np.array([(wrongs, sum(known) * piece.period_s / 60 / 1000)]),
+        "pose jumps": np.array([(jumps, sum(known) * piece.period_s / 60)]),
         "kidnapped, found within 10 s": np.array([time_s <= FOUND_S for time_s in found_s], np.float64),
         "kidnapped, time until found": np.array(found_s),
     }
@@ -78,18 +84,22 @@ def pose_samples(piece: Piece, interface: str = "pose", prefix: str = "") -> dic
 def _beliefs(piece: Piece, interface: str, robot: str) -> Iterator[_Belief]:
     """Yields the beliefs of a robot in the order of the ticks."""
     before: tuple[float, float] | None = None
+    error_before = (0.0, 0.0)
     told: dict[int, pose_t] = piece.by_robot[interface][robot]
     for tick, pose in sorted(told.items()):
         if tick in piece.truth and tick * piece.period_s >= START_S:
             own = piece.robot(tick, robot)
             at = (own.x_m, own.y_m)
-            carried = before is not None and math.dist(before, at) > _JUMP_M_S * piece.period_s
-            before = at
+            carried = before is not None and math.dist(before, at) > _CARRIED_M_S * piece.period_s
+            error = (pose.x_m - own.x_m, pose.y_m - own.y_m)
+            jump_m = math.dist(error, error_before) if before is not None else 0.0
+            before, error_before = at, error
             yield _Belief(
                 tick,
                 bool(pose.localized),
-                math.dist((pose.x_m, pose.y_m), at),
+                math.hypot(*error),
                 abs(wrap(pose.heading_rad - own.heading_rad)),
+                jump_m,
                 carried,
             )
 

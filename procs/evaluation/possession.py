@@ -21,6 +21,7 @@ def possession(piece: Piece) -> Samples:
         "shots": np.array([(len(_shots(piece)), piece.minutes)]),
         "goals of cyan": np.array([(scores[0], piece.minutes)]),
         "goals of magenta": np.array([(scores[1], piece.minutes)]),
+        "goals of cyan less those of magenta": np.array([(scores[0] - scores[1], piece.minutes)]),
         "ball free": np.array(list(free.values()), np.float64),
         "captures that bounce": np.array(_bounces(piece), np.float64),
     }

@@ -20,6 +20,11 @@ def rms(samples: Floats) -> float:
     return float(np.sqrt(np.mean(samples))) if len(samples) else np.nan
 
 
+def root_99(samples: Floats) -> float:
+    """Root of the 99th percentile of squared errors (n)."""
+    return float(np.sqrt(np.quantile(samples, 0.99))) if len(samples) else np.nan
+
+
 def mean(samples: Floats) -> float:
     """Mean of samples (n)."""
     return float(np.mean(samples)) if len(samples) else np.nan
@@ -59,12 +64,16 @@ class Measure:
 
 MEASURES = [
     Measure("ball known", mean, "share", ">= 0.95"),
+    Measure("ball known to a robot of the team", mean, "share", ">= 0.95"),
+    Measure("ball lost, until known again", median, "s", "<= 0.5"),
     Measure("ball moving, position", rms, "m", ""),
     Measure("ball moving, velocity", rms, "m/s", ""),
     Measure("ball rolling freely, position", rms, "m", "<= 0.05"),
     Measure("ball rolling freely, velocity", rms, "m/s", "<= 0.15"),
     Measure("ball resting, position", rms, "m", "<= 0.03"),
     Measure("ball resting, velocity", rms, "m/s", "<= 0.05"),
+    Measure("one sighting, ball resting", rms, "m", "<= 0.05"),
+    Measure("one sighting, ball moving", rms, "m", "<= 0.10"),
     Measure("fused to best single", root_ratio, "", "<= 0.5"),
     Measure("fused to plain average", root_ratio, "", "<= 0.8"),
     Measure("inside 95 %, all", mean, "share", "0.90-0.99"),
@@ -79,14 +88,18 @@ MEASURES = [
     Measure("opponents that do not exist", mean, "share", ""),
     Measure("pose known", mean, "share", ""),
     Measure("pose, position", rms, "m", "<= 0.10"),
+    Measure("pose, position, 99 %", root_99, "m", "<= 0.30"),
     Measure("pose, heading", rms, "rad", "<= 0.03"),
     Measure("wrong pose believed", rate, "/1000 min", "0"),
+    Measure("pose jumps", rate, "/min", "<= 0.05"),
     Measure("kidnapped, found within 10 s", mean, "share", ">= 0.99"),
     Measure("kidnapped, time until found", median, "s", "<= 2"),
     Measure(f"{PARTICLES}pose known", mean, "share", ""),
     Measure(f"{PARTICLES}pose, position", rms, "m", ""),
+    Measure(f"{PARTICLES}pose, position, 99 %", root_99, "m", ""),
     Measure(f"{PARTICLES}pose, heading", rms, "rad", ""),
     Measure(f"{PARTICLES}wrong pose believed", rate, "/1000 min", ""),
+    Measure(f"{PARTICLES}pose jumps", rate, "/min", ""),
     Measure(f"{PARTICLES}kidnapped, found within 10 s", mean, "share", ""),
     Measure(f"{PARTICLES}kidnapped, time until found", median, "s", ""),
     Measure(f"{AVERAGE}ball moving, position", rms, "m", ""),
@@ -96,6 +109,7 @@ MEASURES = [
     Measure("collisions above 3 m/s", rate, "/min", "0"),
     Measure("distance violated at restarts", mean, "share", "0"),
     Measure("half violated at kick-offs", mean, "share", "0"),
+    Measure("restarts taken within 7 s", mean, "share", ">= 0.95"),
     Measure("passes controlled by the receiver", mean, "share", ">= 0.80"),
     Measure("captures that bounce", mean, "share", ""),
     Measure("ball free", mean, "share", ""),
@@ -103,6 +117,7 @@ MEASURES = [
     Measure("goals", rate, "/min", ""),
     Measure("goals of cyan", rate, "/min", ""),
     Measure("goals of magenta", rate, "/min", ""),
+    Measure("goals of cyan less those of magenta", ratio, "/min", ""),
 ]
 """Rows of the table in their order."""
 

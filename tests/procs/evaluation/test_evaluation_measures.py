@@ -112,6 +112,33 @@ def test_fused_ball_is_compared_with_the_nearest_robots_sighting() -> None:
     assert rows["fused to plain average"] == pytest.approx(0.05 / 0.3)
 
 
+def test_single_sightings_count_at_their_exposure_within_4_m() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)])
+    for tick in range(FIRST + 20, FIRST + 40):
+        made.truth[tick].ball_x_m, made.truth[tick].ball_vx_m_s = 1.0, 0.0
+    told = made.by_robot["team_message"] = {"cyan1": {}, "cyan2": {}}
+    for tick, truth in made.truth.items():
+        for name, error_m, distance_m in (("cyan1", 0.2, 1.0), ("cyan2", 0.4, 5.0)):
+            each = told[name][tick + 2] = team_message_t()
+            each.ball_visible, each.ball_capture_us, each.ball_distance_m = True, tick * 50_000, distance_m
+            each.ball_x_m, each.ball_y_m = truth.ball_x_m, error_m * (1 if truth.ball_vx_m_s else 0.5)
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
+    assert rows["one sighting, ball moving"] == pytest.approx(0.2)
+    assert rows["one sighting, ball resting"] == pytest.approx(0.1)
+
+
+def test_ball_that_one_robot_knows_is_known_to_its_team() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0), robot("cyan2", 0.0, 3.0)])
+    models = {name: {tick: model((0.0, 0.0)) for tick in made.truth} for name in ("cyan1", "cyan2")}
+    made.by_robot["world_model"] = models
+    for name, first, last in (("cyan1", 0, 4), ("cyan1", 10, 20), ("cyan2", 15, 40)):
+        for tick in range(FIRST + first, FIRST + last):
+            models[name][tick].ball.known = False
+    found = samples_of(made)
+    assert found["ball known to a robot of the team"].mean() == pytest.approx(1 - 5 / 40)
+    assert found["ball lost, until known again"].tolist() == pytest.approx([0.5, math.inf])
+
+
 def test_kick_delay_ends_when_the_velocity_is_known() -> None:
     made = piece([robot("cyan1", 0.0, 1.0)], vx_m_s=5.0)
     made.events[FIRST] = [event(match_event_t.KICK, "cyan1", 5.0)]
@@ -146,6 +173,27 @@ def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, 
         game = made.game[tick] = game_state_t()
         game.state, game.state_team, game.stopped = game_state_t.FREE_KICK, game_state_t.TEAM_CYAN, stopped
     assert conducted(made)["distance violated at restarts"].tolist() == [violated]
+
+
+@pytest.mark.parametrize(
+    ("kicker", "after_s", "taken"),
+    [("cyan1", 6.9, [True]), ("cyan1", 7.2, [False]), ("magenta1", 1.0, [False])],
+)
+def test_restart_is_taken_once_its_team_kicks(kicker: str, after_s: float, taken: list[bool]) -> None:
+    made = piece([robot("cyan1", 0.0, 0.0), robot("magenta1", 3.0, 1.0)], ticks=200, vx_m_s=0.0)
+    for tick in made.truth:
+        game = made.game[tick] = game_state_t()
+        game.state, game.state_team, game.stopped = game_state_t.THROW_IN, game_state_t.TEAM_CYAN, tick < FIRST + 10
+    made.events = {FIRST + 10 + round(after_s / 0.05): [event(match_event_t.KICK, kicker, 3.0)]}
+    assert conducted(made)["restarts taken within 7 s"].tolist() == taken
+
+
+def test_restart_at_the_end_of_the_piece_does_not_count() -> None:
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=100, vx_m_s=0.0)
+    for tick in made.truth:
+        game = made.game[tick] = game_state_t()
+        game.state_team, game.stopped = game_state_t.TEAM_CYAN, tick < FIRST + 10
+    assert conducted(made)["restarts taken within 7 s"].tolist() == []
 
 
 @pytest.mark.parametrize(("toucher", "controlled"), [("cyan2", True), ("magenta1", False)])
@@ -232,6 +280,20 @@ def test_wrong_place_found_after_a_search_counts_as_believed() -> None:
     found = pose_samples(made)
     assert found["wrong pose believed"][0, 0] == 1
     assert found["kidnapped, time until found"].tolist() == [math.inf]
+
+
+def test_pose_that_leaves_the_true_way_has_jumped() -> None:
+    made = carried_piece()
+    errors_m = [0.0] * 30 + [0.4] * 30 + [-0.4] * 160
+    for tick, truth in made.truth.items():
+        truth.robots = [robot("cyan1", 0.1 * tick, 0.0)]
+    told = {FIRST + i: believes(0.1 * (FIRST + i) + error_m) for i, error_m in enumerate(errors_m)}
+    made.by_robot["pose"] = {"cyan1": told}
+    found = pose_samples(made)
+    assert found["pose jumps"].tolist() == [pytest.approx((1, 220 * 0.05 / 60))]
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
+    assert rows["pose, position, 99 %"] == pytest.approx(0.4)
+    assert rows["pose, position"] < 0.38
 
 
 def test_baselines_are_measured_beside_the_beliefs() -> None:
