@@ -1,6 +1,7 @@
 """Evaluation of a match for `fwk eval`: plays a piece in memory, measures it, and reports all pieces together."""
 
-from collections.abc import Sequence
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -31,13 +32,13 @@ def samples_of(piece: Piece) -> Samples:
     return believed(piece) | team_ball(piece) | conducted(piece) | possession(piece)
 
 
-def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
+def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], folder: Path) -> str:
     """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table.
 
-    Measures without samples are left out: no match has all.
+    Measures without a value are left out: no match has all.
     """
     pieces: list[Samples] = [{name: _samples(values, name) for name, values in result.items()} for result in results]
-    rows = [row for row in rows_of(pieces) if row.samples]
+    rows = [row for row in rows_of(pieces) if not math.isnan(row.value)]
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
     try:
@@ -47,7 +48,7 @@ def report(results: Sequence[dict[str, list[float]]], folder: Path) -> str:
     return as_text(rows)
 
 
-def _samples(values: list[float], name: str) -> Floats:
+def _samples(values: list[float] | list[list[float]], name: str) -> Floats:
     """Returns samples as they were measured; an empty list of pairs gets its two columns back."""
     pairs = next(each.statistic for each in MEASURES if each.name == name) in (rate, ratio, root_ratio)
     return np.array(values, np.float64).reshape(-1, 2) if pairs else np.array(values, np.float64)

@@ -38,6 +38,14 @@ def test_report_without_matplotlib_names_the_line_to_type(tmp_path: Path, monkey
     assert sorted(file.name for file in tmp_path.iterdir()) == ["table.csv", "table.json"]
 
 
+def test_measures_without_a_value_are_left_out(tmp_path: Path) -> None:
+    piece: dict[str, list[float] | list[list[float]]] = {each.name: [] for each in MEASURES}
+    piece |= {"ball known": [1.0], "pose jumps": [[0.0, 0.0]]}
+    text = report([piece], tmp_path)
+    assert [row["name"] for row in json.loads((tmp_path / "table.json").read_text())] == ["ball known"]
+    assert "pose jumps" not in text
+
+
 def test_a_match_starts_without_the_drawing_library() -> None:
     program = "import sys, procs.evaluation.match; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

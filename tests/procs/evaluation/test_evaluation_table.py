@@ -7,7 +7,19 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from procs.evaluation.table import Measure, as_json, as_text, mean, median, rate, ratio, rms, root_ratio, rows_of
+from procs.evaluation.table import (
+    Measure,
+    as_json,
+    as_text,
+    mean,
+    median,
+    rate,
+    ratio,
+    rms,
+    root_99,
+    root_ratio,
+    rows_of,
+)
 from procs.model.frames import Floats
 
 
@@ -18,6 +30,8 @@ from procs.model.frames import Floats
         (mean, np.array([1.0, 0.0, 1.0, 1.0]), 0.75),
         (median, np.array([0.1, np.inf, 0.2]), 0.2),
         (median, np.array([np.inf, np.inf, 0.2]), np.inf),
+        (root_99, np.append(np.ones(100), 25.0), 1.0),
+        (root_99, np.append(np.ones(50), 25.0), math.sqrt(13.0)),
         (ratio, np.array([[1.0, 2.0], [2.0, 4.0]]), 0.5),
         (root_ratio, np.array([[1.0, 4.0], [1.0, 4.0]]), 0.5),
     ],
@@ -26,7 +40,7 @@ def test_statistic(statistic: Callable[[Floats], float], samples: Floats, expect
     assert statistic(samples) == pytest.approx(expected)
 
 
-@pytest.mark.parametrize("statistic", [rms, mean, median])
+@pytest.mark.parametrize("statistic", [rms, root_99, mean, median])
 def test_measure_without_samples_has_no_value(statistic: Callable[[Floats], float]) -> None:
     assert math.isnan(statistic(np.empty(0)))
 
