@@ -62,14 +62,15 @@ def _released(piece: Piece) -> Iterator[int]:
 
 
 def _taken(piece: Piece) -> list[bool]:
-    """Returns for each released set piece whether its team kicked the ball in time."""
+    """Returns whether its team kicked the ball in time, for each set piece that the referee does not stop before."""
     taken = []
     for tick in _released(piece):
         team = Team(piece.game[tick].state_team)
         in_time = range(tick, tick + round(_TAKEN_S / piece.period_s) + 1)
-        events = [event for each in in_time for event in piece.events.get(each, ())]
+        running = list(itertools.takewhile(lambda each: each in piece.game and not piece.game[each].stopped, in_time))
+        events = [event for each in running for event in piece.events.get(each, ())]
         kicked = any(each.kind == match_event_t.KICK and team_of(each.robot) == team.name.lower() for each in events)
-        if team is not Team.NONE and (kicked or in_time.stop <= max(piece.truth)):
+        if team is not Team.NONE and (kicked or len(running) == len(in_time)):
             taken.append(kicked)
     return taken
 

@@ -188,11 +188,13 @@ def test_restart_is_taken_once_its_team_kicks(kicker: str, after_s: float, taken
     assert conducted(made)["restarts taken within 7 s"].tolist() == taken
 
 
-def test_restart_at_the_end_of_the_piece_does_not_count() -> None:
-    made = piece([robot("cyan1", 0.0, 0.0)], ticks=100, vx_m_s=0.0)
+@pytest.mark.parametrize("until", [100, 200])
+def test_restart_that_is_cut_short_does_not_count(until: int) -> None:
+    """Either the piece ends, or the referee stops the game again."""
+    made = piece([robot("cyan1", 0.0, 0.0)], ticks=until, vx_m_s=0.0)
     for tick in made.truth:
         game = made.game[tick] = game_state_t()
-        game.state_team, game.stopped = game_state_t.TEAM_CYAN, tick < FIRST + 10
+        game.state_team, game.stopped = game_state_t.TEAM_CYAN, not 10 <= tick - FIRST < 100
     assert conducted(made)["restarts taken within 7 s"].tolist() == []
 
 
