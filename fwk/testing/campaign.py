@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, cast
 
 from fwk.lcm.type_registry import put_first, use_types_of
+from fwk.model.parent_death import die_with_parent
 from fwk.plan.classes import find_object
 
 Work = Callable[[str, float, int], Any]
@@ -112,7 +113,7 @@ def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
         CampaignError: Dask is not installed, or there is no scheduler at that address.
     """
     if not cluster:
-        with ProcessPoolExecutor(jobs) as pool:
+        with ProcessPoolExecutor(jobs, initializer=die_with_parent, initargs=(os.getpid(),)) as pool:
             yield pool
         return
     try:

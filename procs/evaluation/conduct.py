@@ -45,7 +45,8 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
     for tick in _released(piece):
         game, truth = piece.game[tick], piece.truth.get(tick)
         if truth:
-            middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in truth.robots}
+            playing = [robot for robot in truth.robots if robot.name not in game.sent_off]
+            middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in playing}
             restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
             ends = Ends(game.cyan_side or -1.0)
             distances.append(bool(too_near(restart, middles, ends)))

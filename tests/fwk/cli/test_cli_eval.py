@@ -3,6 +3,7 @@
 import json
 import os
 import re
+import subprocess
 import sys
 from concurrent.futures import Executor, Future, ThreadPoolExecutor
 from importlib import import_module
@@ -10,6 +11,7 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
+import psutil
 import pytest
 from typer.testing import CliRunner
 
@@ -117,6 +119,23 @@ class Queue(Executor):
         if len(self.futures) == 1:
             future.set_result(work(*words, **named))
         return future
+
+
+KILLED = """
+import os, signal
+from fwk.testing.campaign import executor_of
+with executor_of(1) as workers:
+    print(workers.submit(os.getpid).result(), flush=True)
+    workers.submit(signal.pause).result()
+"""
+
+
+def test_runs_of_a_killed_evaluation_end_with_it() -> None:
+    with subprocess.Popen([sys.executable, "-c", KILLED], stdout=subprocess.PIPE, text=True) as killed:
+        assert killed.stdout
+        worker = psutil.Process(int(killed.stdout.readline()))
+        killed.kill()
+    worker.wait(10)
 
 
 @pytest.mark.slow

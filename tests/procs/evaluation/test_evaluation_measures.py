@@ -175,6 +175,16 @@ def test_distances_count_when_a_set_piece_is_released(others: list[tuple[float, 
     assert conducted(made)["distance violated at restarts"].tolist() == [violated]
 
 
+@pytest.mark.parametrize(("sent_off", "violated"), [([], True), (["magenta2"], False)])
+def test_robots_that_were_sent_off_violate_nothing(sent_off: list[str], violated: bool) -> None:
+    made = piece([robot("cyan1", -0.5, 0.0), robot("magenta2", -4.0, 7.5)], ticks=2, vx_m_s=0.0)
+    for tick, stopped in ((FIRST, True), (FIRST + 1, False)):
+        game = made.game[tick] = game_state_t()
+        game.state, game.state_team, game.stopped = game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, stopped
+        game.sent_off = sent_off
+    assert conducted(made)["half violated at kick-offs"].tolist() == [violated]
+
+
 @pytest.mark.parametrize(
     ("kicker", "after_s", "taken"),
     [("cyan1", 6.9, [True]), ("cyan1", 7.2, [False]), ("magenta1", 1.0, [False])],
