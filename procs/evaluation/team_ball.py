@@ -2,6 +2,7 @@
 
 import math
 from collections import defaultdict
+from collections.abc import Set
 
 import numpy as np
 
@@ -13,10 +14,14 @@ from procs.model.robot import team_of
 
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 
+_Sightings = dict[str, dict[int, Floats]]
+"""x, y and distance of each robot's own sightings, by the tick of the exposure."""
+
 
 def team_ball(piece: Piece) -> Samples:
     """Returns the samples of every measure of the ball that concerns a team, or a single sighting."""
-    return _known(piece) | _single(piece) | _fusion(piece)
+    placed, sightings = placed_ticks(piece), _sightings(piece)
+    return _known(piece) | _single(piece, placed, sightings) | _fusion(piece, placed, sightings)
 
 
 def _known(piece: Piece) -> Samples:
@@ -40,12 +45,11 @@ def _known(piece: Piece) -> Samples:
     }
 
 
-def _single(piece: Piece) -> Samples:
+def _single(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Returns squared errors of the sightings that robots tell, by their own poses, at the time of the exposure."""
     resting: list[float] = []
     moving: list[float] = []
-    placed = placed_ticks(piece)
-    for seen in _sightings(piece).values():
+    for seen in sightings.values():
         for tick, (x_m, y_m, distance_m) in seen.items():
             truth = piece.truth.get(tick)
             if truth is None or tick in placed or tick * piece.period_s < START_S or distance_m > NEAR_M:
@@ -56,17 +60,15 @@ def _single(piece: Piece) -> Samples:
     return {"one sighting, ball resting": np.array(resting), "one sighting, ball moving": np.array(moving)}
 
 
-def _fusion(piece: Piece) -> Samples:
+def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick."""
     best: list[tuple[float, float]] = []
     average: list[tuple[float, float]] = []
     fused: dict[tuple[str, int], list[float]] = defaultdict(list)
-    placed = placed_ticks(piece)
     for robot, tick, model, truth in models_of(piece):
         if model.ball.known and tick not in placed:
             error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
             fused[team_of(robot), tick].append(error_m2)
-    sightings = _sightings(piece)
     for (team, tick), errors_m2 in fused.items():
         recent = [
             (seen_tick, each)
@@ -89,9 +91,8 @@ def _fusion(piece: Piece) -> Samples:
     }
 
 
-def _sightings(piece: Piece) -> dict[str, dict[int, Floats]]:
-    """Returns x, y and distance of each robot's own sightings, by the tick of the exposure."""
-    found: dict[str, dict[int, Floats]] = {}
+def _sightings(piece: Piece) -> _Sightings:
+    found: _Sightings = {}
     for robot, told in piece.by_robot.get("team_message", {}).items():
         found[robot] = {
             round(each.ball_capture_us / 1e6 / piece.period_s): np.array(

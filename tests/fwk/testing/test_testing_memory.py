@@ -1,7 +1,6 @@
 """Systems in memory write the same messages however their components share hosts."""
 
-import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 
@@ -57,14 +56,13 @@ CONDUCTED = {"a/conducts": Conducts, "a/plays": Plays, "b/slow": Slow}
 
 
 @pytest.fixture
-def market(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, type[Component]]]:
-    """Yields traders, imported from a folder of the test's own, as a user's project would."""
+def market(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, type[Component]]:
+    """Returns traders, imported from a folder of the test's own, as a user's project would."""
     write_files(tmp_path, sources("traders.py"))
     monkeypatch.syspath_prepend(tmp_path)
     traders = import_module("traders")
     every_trader = dict.fromkeys(["a/trader", "b/trader", "c/trader"], traders.Trader)
-    yield {**every_trader, "a/bystander": traders.Bystander, "d/trader": traders.Wanderer}
-    del sys.modules["traders"]
+    return {**every_trader, "a/bystander": traders.Bystander, "d/trader": traders.Wanderer}
 
 
 def sent(components: Mapping[str, type[Component]], hosting: Hosting) -> dict[str, list[bytes]]:

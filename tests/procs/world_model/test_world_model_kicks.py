@@ -95,13 +95,19 @@ def test_free_ball_that_is_not_seen_is_hardly_expected_to_be_hit() -> None:
     assert np.hypot(*(tracker.track.state - state)[2:]) < 2 * claimed_m_s < 0.9
 
 
-def test_own_kick_is_believed_before_any_sighting() -> None:
+def just_kicked(robot: str, held: int) -> BallTracker:
+    """Returns the tracker of a robot that held the ball so many frames and kicked it at 8 m/s a frame ago."""
     tracker = BallTracker()
-    for _ in range(10):
+    for _ in range(held):
         tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("a", np.array((0.33, 0.0, 0.0, 0.0)), np.zeros((4, 4)))
+        tracker.hold(robot, np.array((0.33, 0.0, 0.0, 0.0)), np.zeros((4, 4)))
     tracker.kick(np.array((8.0, 0.0)))
     tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    return tracker
+
+
+def test_own_kick_is_believed_before_any_sighting() -> None:
+    tracker = just_kicked("a", held=10)
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.1)
     tracker.see(Sighting("a", True, np.array((0.73, 0.0)), np.eye(2) * 0.02**2))
     assert tracker.age_s == 0.0, "the sighting fits"
@@ -154,12 +160,7 @@ def test_ball_that_bounces_off_a_robot_is_followed_at_once() -> None:
 
 def test_sighting_from_before_a_kick_tells_nothing() -> None:
     """A mate's camera was exposed before the robot's own kick; its message arrives after the kick."""
-    tracker = BallTracker()
-    for _ in range(4):
-        tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
-        tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), np.zeros((4, 4)))
-    tracker.kick(np.array((8.0, 0.0)))
-    tracker.advance(PERIOD_S, 2.0, ROLLING_M_S2)
+    tracker = just_kicked("me", held=4)
     tracker.see(Sighting("mate", False, np.array((0.33, 0.0)), np.eye(2) * 0.01**2, age_s=0.1))
     assert tracker.track.state[2] == pytest.approx(8.0, rel=0.03)
 

@@ -1,4 +1,4 @@
-"""What mates tell each other by radio: sightings, kicks, a caught ball, opponents; and when it counts."""
+"""Mates tell each other sightings, kicks, a caught ball and opponents by radio; a sighting counts from its exposure."""
 
 import math
 
