@@ -82,6 +82,7 @@ class Launched:
     ) -> None:
         self.folder = folder
         self._mark = uuid.uuid4().hex
+        self._seen: set[psutil.Process] = set()
         self._output = folder / f"output-{self._mark}.txt"
         command = [*wrapper, str(BIN / "fwk-launch"), *arguments, "--bus-port", str(ports.bus), "--plain"]
         environment = {**os.environ, "HOME": str(folder), MARK: self._mark, **env}
@@ -125,15 +126,18 @@ class Launched:
         self.process.send_signal(number)
 
     def processes(self) -> list[psutil.Process]:
-        """Returns all living descendants, wherever in the tree: they carry a mark in their environment."""
-        found = []
+        """Returns all living descendants, wherever in the tree: they carry a mark in their environment.
+
+        A process that dies loses its environment before its open files, so those that were seen once are remembered.
+        """
         for process in psutil.process_iter():
             try:
-                if process.status() != psutil.STATUS_ZOMBIE and process.environ().get(MARK) == self._mark:
-                    found.append(process)
+                if process.environ().get(MARK) == self._mark:
+                    self._seen.add(process)
             except psutil.Error:
                 continue
-        return found
+        self._seen = {process for process in self._seen if _lives(process)}
+        return sorted(self._seen, key=lambda process: process.pid)
 
     def gone_within(self, seconds: float) -> bool:
         """Returns whether all processes end within that time."""
@@ -182,6 +186,13 @@ class Launched:
             except ProcessLookupError:
                 continue
         self.process.wait()
+
+
+def _lives(process: psutil.Process) -> bool:
+    try:
+        return process.is_running() and process.status() != psutil.STATUS_ZOMBIE
+    except psutil.Error:
+        return False
 
 
 def pause(seconds: float = 0.02) -> None:
