@@ -7,6 +7,7 @@ from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from typing import Any, cast
 
@@ -14,8 +15,11 @@ from fwk.lcm.type_registry import put_first, use_types_of
 from fwk.model.parent_death import die_with_parent
 from fwk.plan.classes import find_object
 
-Work = Callable[[str, float, int], Any]
-"""Plays a launch file for a logical time with a seed; returns the measurements as plain values for JSON."""
+Work = Callable[..., Any]
+"""Plays a launch file for a logical time with a seed; returns the measurements as plain values for JSON.
+
+Settings that the launch file's own are overridden with are a fourth argument, if there are some.
+"""
 INSTALL = "pip install 'fwk[eval]'"
 CONNECT_S = 5.0
 """Longest time for the connection to a scheduler."""
@@ -33,13 +37,20 @@ class Evaluation:
     """`module:function`."""
     folders: tuple[str, ...] = ()
     """Folders of the launch file's modules and message types, besides the installed ones."""
+    sets: tuple[str, ...] = ()
+    """Settings to override: `PATH=VALUE`."""
 
     def __call__(self, file: str, time_s: float, seed: int) -> Any:
         """Plays a run and returns its measurements."""
         for folder in self.folders:
             use_types_of(Path(folder))
         put_first(self.folders)
-        return cast(Work, find_object(self.use, self.folders))(file, time_s, seed)
+        work = cast(Work, find_object(self.use, self.folders))
+        if not self.sets:
+            return work(file, time_s, seed)
+        if len(signature(work).parameters) < 4:
+            raise CampaignError(f"{self.use} takes no settings; give it a fourth parameter, 'sets: Sequence[str]'")
+        return work(file, time_s, seed, self.sets)
 
 
 class Campaign:

@@ -1,6 +1,6 @@
 """Systems in memory of the components of a launch file."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from importlib import import_module
 from itertools import takewhile
@@ -8,18 +8,18 @@ from typing import Any
 
 from fwk.component.declaration import declaration
 from fwk.model.plan import ComponentPlan, Plan
-from fwk.plan.load import load_plan
+from fwk.plan.load import LaunchOptions, load_plan
 from fwk.testing.memory import MemorySystem
 
 
 @lru_cache(maxsize=8)
-def launch_plan(file: str) -> Plan:
-    """Returns the checked plan of a launch file.
+def launch_plan(file: str, sets: tuple[str, ...] = ()) -> Plan:
+    """Returns the checked plan of a launch file; `sets` override settings, as `--set` does.
 
     Raises:
         PlanError: the launch file has mistakes.
     """
-    return load_plan(file)
+    return load_plan(file, LaunchOptions(sets=sets))
 
 
 def settings_in(file: str, component: str) -> dict[str, Any]:
@@ -32,20 +32,33 @@ def settings_in(file: str, component: str) -> dict[str, Any]:
 
 
 def system_of(
-    file: str, wanted: Callable[[str], bool] = bool, seed: int = 1, **changes: dict[str, Any]
+    file: str,
+    wanted: Callable[[str], bool] = bool,
+    seed: int = 1,
+    sets: Sequence[str] = (),
+    **changes: dict[str, Any],
 ) -> MemorySystem:
     """Builds the components of a launch file whose names are `wanted`, in one host, with the settings of the file.
 
-    `changes` are further settings by the component's own name: `camera={"flicker": 0.1}`.
+    Args:
+        file: launch file.
+        wanted: chooses components by name.
+        seed: of the components' random numbers.
+        sets: settings to override, as `--set` takes them: `world/*.errors.drive_delay_s=0.1`.
+        changes: further settings by the component's own name: `camera={"flicker": 0.1}`.
+
+    Raises:
+        PlanError: the launch file or an overridden setting has mistakes.
     """
-    found = [each for each in launch_plan(file).components if wanted(each.name)]
+    plan = launch_plan(file, tuple(sets))
+    found = [each for each in plan.components if wanted(each.name)]
     return MemorySystem(
         {each.name: _class(each) for each in found},
         {each.name: {**each.config, **changes.get(each.name.rpartition("/")[2], {})} for each in found},
         {each.name: _channels(each) for each in found},
         seed,
-        period_s=launch_plan(file).period_us / 1e6,
-        stages=launch_plan(file).stages,
+        period_s=plan.period_us / 1e6,
+        stages=plan.stages,
         turns={each.name: (each.every, each.offset) for each in found},
         hosting="single",
     )

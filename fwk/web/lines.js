@@ -8,7 +8,7 @@ export default {
   methods: {
     append(added) {
       this.lines = Object.freeze(this.lines.concat(added).slice(-this.most));
-      if (this.following) this.$nextTick(() => (this.$el.scrollTop = this.$el.scrollHeight));
+      this.$nextTick(() => { if (this.following) this.$el.scrollTop = this.$el.scrollHeight; });
     },
     clear() { this.lines = []; },
     follow(on) {

@@ -5,7 +5,7 @@ import math
 from procs.behaviour import formation
 from procs.behaviour.game import Game, Whose
 from procs.behaviour.order import Order
-from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER
+from procs.behaviour.roles import ATTACKER, DEFENDER, GOALKEEPER, PASSER
 from procs.behaviour.view import View
 from procs.model.field import Field, Point
 from procs.model.geometry import bearing_rad
@@ -14,6 +14,7 @@ from procs.model.robot import number_of
 _KEEPER = 1
 _TAKER = 2
 _SHOT_RANGE_M = 8.0
+_TOUCHED_M = 0.5  # a robot this near to the ball has touched it
 _BEHIND_M = 1.5  # distance along x between the robots that do not have the ball
 
 
@@ -21,7 +22,8 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     """Returns the role and the order of a robot, in the attack frame.
 
     Number 1 keeps the goal, number 2 takes the set pieces. In play the robot that believes itself nearest to the ball
-    goes for it and shoots; the others line up behind the ball.
+    goes for it and shoots; the others line up behind the ball. A taker shoots from where it is, and leaves the ball
+    alone until another robot is at it.
     """
     number, ball = number_of(view.own.name), view.ball.place
     if game.paused or not view.localized:
@@ -30,17 +32,22 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
+    taken = view.own.role == PASSER and not _touched_by_another(view)
+    if holds_ball and taken:
+        return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
         return ATTACKER, _play(view, field)
-    nearest = min((view.own, *view.mates), key=lambda robot: (math.dist(robot.place, ball), robot.name))
+    free = [robot for robot in (view.own, *view.mates) if robot.role != PASSER]
+    nearest = min(free, key=lambda robot: (math.dist(robot.place, ball), robot.name), default=None)
     if view.ball.known and nearest is view.own:
         return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
     place = Point(max(ball.x_m - _BEHIND_M * number, -field.half_length_m + 1.0), 0.5 * ball.y_m)
-    return DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
+    return PASSER if taken else DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
 
 
 def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Field) -> tuple[str, Order]:
-    goal_rad = bearing_rad(game.spot, field.goal_centre(1.0))
+    goal = field.goal_centre(1.0)
+    goal_rad = bearing_rad(game.spot, goal)
     if not takes:
         place = Point(game.spot.x_m - _BEHIND_M * number_of(view.own.name), 0.5 * game.spot.y_m)
         others = (*view.mates, *view.opponents)
@@ -48,9 +55,13 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if game.stopped:
         return ATTACKER, Order("goto", formation.taker_place(game.spot, goal_rad), goal_rad, "take set piece")
-    if holds_ball:
-        return ATTACKER, _play(view, field)
-    return ATTACKER, Order("get_ball", game.spot, goal_rad, "take set piece")
+    return PASSER, Order(
+        "shoot" if holds_ball else "get_ball", goal if holds_ball else game.spot, goal_rad, "take set piece"
+    )
+
+
+def _touched_by_another(view: View) -> bool:
+    return any(math.dist(robot.place, view.ball.place) < _TOUCHED_M for robot in (*view.mates, *view.opponents))
 
 
 def _play(view: View, field: Field) -> Order:

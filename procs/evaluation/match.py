@@ -18,10 +18,12 @@ from procs.evaluation.team_ball import team_ball
 from procs.model.frames import Floats
 
 
-def measured(file: str, time_s: float, seed: int) -> dict[str, list[float] | list[list[float]]]:
-    """Plays one piece of `time_s` and returns the samples of all measures."""
-    period_s = launch_plan(file).period_us / 1e6
-    system = system_of(file, seed=seed)
+def measured(
+    file: str, time_s: float, seed: int, sets: Sequence[str] = ()
+) -> dict[str, list[float] | list[list[float]]]:
+    """Plays one piece of `time_s`, with settings that are overridden, and returns the samples of all measures."""
+    period_s = launch_plan(file, tuple(sets)).period_us / 1e6
+    system = system_of(file, seed=seed, sets=sets)
     system.tick(round(time_s / period_s))
     piece = piece_of(system.sent, period_s)
     return {name: samples.tolist() for name, samples in samples_of(piece).items()}

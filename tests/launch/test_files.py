@@ -45,7 +45,7 @@ def test_a_system_has_its_robots_each_complete(file: str, robots: tuple[int, int
             "one-robot.yaml": "camera omni_ball omni_field stereo_camera stereo_obs obstacle_fusion localization",
         }.get(file, "camera omni_ball omni_field localization")
         assert members == f"base kicker {eyes} world_model agent skiller navigator".split()
-    assert plan.period_us == 50_000
+    assert plan.period_us == 40_000
 
 
 def test_a_team_hears_only_itself() -> None:

@@ -12,7 +12,7 @@ from fwk.cli.arguments import seconds
 from fwk.cli.output import BAD_INPUT
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
-from fwk.plan.load import load_plan
+from fwk.plan.load import LaunchOptions, load_plan
 from fwk.testing.campaign import Campaign, CampaignError, Evaluation, executor_of
 
 
@@ -24,6 +24,9 @@ def eval(  # noqa: A001 - the name of the command
     ] = 25.0,
     jobs: Annotated[int, typer.Option(min=0, help="runs at the same time; 0: one a processor")] = 0,
     cluster: Annotated[str, typer.Option(metavar="ADDRESS", help="scheduler of a Dask cluster instead")] = "",
+    sets: Annotated[
+        list[str] | None, typer.Option("--set", metavar="PATH=VALUE", help="override a setting; repeatable")
+    ] = None,
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="FOLDER", help="results; by default eval-NAME")
     ] = None,
@@ -36,7 +39,7 @@ def eval(  # noqa: A001 - the name of the command
     Exit codes: 0 measured; 1 a run failed, or there is no cluster; 2 bad input.
     """
     try:
-        plan = load_plan(file)
+        plan = load_plan(file, LaunchOptions(sets=sets or ()))
     except PlanError as error:
         typer.echo(str(error), err=True)
         raise typer.Exit(BAD_INPUT) from error
@@ -46,11 +49,13 @@ def eval(  # noqa: A001 - the name of the command
     use_folders(plan.folders)
     numbers, folder = _numbers(seeds), out or Path(f"eval-{plan.name}")
     try:
-        campaign = Campaign(folder, {"file": plan.file, "time_s": time_s, "by": plan.evaluation})
+        about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation} | ({"sets": sets} if sets else {})
+        campaign = Campaign(folder, about)
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(1) from error
-    failure = _play(campaign, Evaluation(plan.evaluation, plan.folders), file, time_s, numbers, jobs, cluster)
+    work = Evaluation(plan.evaluation, plan.folders, tuple(sets or ()))
+    failure = _play(campaign, work, file, time_s, numbers, jobs, cluster)
     if results := campaign.results(numbers):
         typer.echo(import_module(plan.evaluation.partition(":")[0]).report(results, folder))
     if failure:

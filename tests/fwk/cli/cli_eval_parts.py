@@ -17,11 +17,16 @@ class Idle(Component):
         """Ends at once."""
 
 
-def measured(file: str, time_s: float, seed: int) -> dict[str, Any]:
+def measured(file: str, time_s: float, seed: int, sets: Sequence[str] = ()) -> dict[str, Any]:
     """Returns the arguments and the number of the process; seed 13 fails."""
     if seed == 13:
         raise ValueError("an unlucky seed")
-    return {"time_s": time_s, "seed": seed, "process": os.getpid()}
+    return {"time_s": time_s, "seed": seed, "process": os.getpid(), "sets": list(sets)}
+
+
+def without_settings(file: str, time_s: float, seed: int) -> dict[str, Any]:
+    """Measures as an evaluation without settings."""
+    return measured(file, time_s, seed)
 
 
 def report(results: Sequence[dict[str, Any]], folder: Path) -> str:

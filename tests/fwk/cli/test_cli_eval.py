@@ -84,6 +84,26 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert "holds another campaign" in said
 
 
+def test_overridden_settings_reach_each_run(launch: Path) -> None:
+    words = (str(launch), "--seeds", "1", "--jobs", "1")
+    assert evaluated(*words, "--set", "period_s=0.1")[0] == 0
+    assert json.loads((launch.parent / "eval-it" / "seed-1.json").read_text())["sets"] == ["period_s=0.1"]
+    code, _, said = evaluated(*words)
+    assert (code, "holds another campaign" in said) == (1, True)
+
+
+def test_mistake_in_an_overridden_setting_is_named(launch: Path) -> None:
+    code, _, said = evaluated(str(launch), "--set", "it/idle.speed=1")
+    assert (code, "it/idle" in said, "speed" in said) == (2, True, True)
+
+
+def test_evaluation_that_takes_no_settings_is_named(launch: Path) -> None:
+    launch.write_text(LAUNCH.replace("parts:measured", "parts:without_settings"))
+    assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--jobs", "1", "--set", "period_s=0.1", "-o", "other")
+    assert (code, "without_settings takes no settings; give it a fourth parameter" in said) == (1, True)
+
+
 def test_results_stay_when_another_run_fails(tmp_path: Path) -> None:
     first = Campaign(tmp_path, {"file": "it"})
     with (
