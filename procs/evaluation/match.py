@@ -10,6 +10,7 @@ from fwk.testing import launch_plan, system_of
 from fwk.testing.campaign import INSTALL
 from procs.evaluation.beliefs import Samples, believed
 from procs.evaluation.conduct import conducted
+from procs.evaluation.delays import delays
 from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
@@ -31,7 +32,7 @@ def measured(
 
 def samples_of(piece: Piece) -> Samples:
     """Returns the samples of every measure of a piece."""
-    return believed(piece) | team_ball(piece) | conducted(piece) | possession(piece)
+    return believed(piece) | team_ball(piece) | delays(piece) | conducted(piece) | possession(piece)
 
 
 def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], folder: Path) -> str:

@@ -6,14 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from lcmtypes.robot import kicker_state_t
+from lcmtypes.robot import kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
+    ball_percept_t,
     game_state_t,
     ground_truth_t,
     match_event_t,
     match_events_t,
     pose_t,
     skill_status_t,
+    team_inbox_t,
     team_message_t,
     true_robot_t,
     world_model_t,
@@ -23,6 +25,9 @@ from procs.model.robot import team_of
 BELIEFS: dict[str, Any] = {
     "world_model": world_model_t,
     "team_message": team_message_t,
+    "team_inbox": team_inbox_t,
+    "ball_percept": ball_percept_t,
+    "motor_command": motor_command_t,
     "skill_status": skill_status_t,
     "kicker_state": kicker_state_t,
     "pose": pose_t,
@@ -42,6 +47,8 @@ class Piece:
     events: dict[int, list[match_event_t]] = field(default_factory=dict)
     by_robot: dict[str, dict[str, dict[int, Any]]] = field(default_factory=dict)
     """Interface to robot to tick to message, for the interfaces in `BELIEFS`."""
+    told_bytes: dict[str, int] = field(default_factory=dict)
+    """Robot to the size of all that it told its team."""
 
     @property
     def minutes(self) -> float:
@@ -82,6 +89,8 @@ def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float) -> Piece:
     found: dict[str, dict[str, dict[int, Any]]] = defaultdict(dict)
     for channel, messages in sent.items():
         robot, _, interface = channel.rpartition("/")
+        if interface == "team_message":
+            piece.told_bytes[robot] = sum(map(len, messages))
         if interface in BELIEFS:
             decoded = map(BELIEFS[interface].decode, messages)
             found[interface][robot] = {message.header.tick: message for message in decoded}

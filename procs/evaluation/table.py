@@ -25,6 +25,11 @@ def root_99(samples: Floats) -> float:
     return float(np.sqrt(np.quantile(samples, 0.99))) if len(samples) else np.nan
 
 
+def high_95(samples: Floats) -> float:
+    """95th percentile of samples (n)."""
+    return float(np.quantile(samples, 0.95)) if len(samples) else np.nan
+
+
 def mean(samples: Floats) -> float:
     """Mean of samples (n)."""
     return float(np.mean(samples)) if len(samples) else np.nan
@@ -75,6 +80,7 @@ MEASURES = [
     Measure("one sighting, ball resting", rms, "m", ""),
     Measure("one sighting, ball moving", rms, "m", ""),
     Measure("fused to best single", root_ratio, "", "<= 0.5"),
+    Measure("fused to median robot", root_ratio, "", "<= 0.5"),
     Measure("fused to plain average", root_ratio, "", "<= 0.8"),
     Measure("inside 95 %, all", mean, "share", "0.90-0.99"),
     Measure("inside 95 %, rolling freely", mean, "share", "0.90-0.99"),
@@ -90,6 +96,10 @@ MEASURES = [
     Measure("pose, position", rms, "m", "<= 0.10"),
     Measure("pose, position, 99 %", root_99, "m", "<= 0.30"),
     Measure("pose, heading", rms, "rad", "<= 0.03"),
+    Measure("picture to motor command, 95 %", high_95, "s", "<= 0.14"),
+    Measure("radio, age of a message, 95 %", high_95, "s", "<= 0.12"),
+    Measure("radio, messages of a robot", ratio, "/s", "10"),
+    Measure("radio, volume of a team", ratio, "Mbit/s", "<= 2.2"),
     Measure("wrong pose believed", rate, "/1000 min", "0"),
     Measure("pose jumps", rate, "/min", "<= 0.05"),
     Measure("kidnapped, found within 10 s", mean, "share", ">= 0.99"),

@@ -63,6 +63,7 @@ def _single(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
 def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     """Squared errors of the fused ball beside those of a single robot and of the plain average, by team and tick."""
     best: list[tuple[float, float]] = []
+    middle: list[tuple[float, float]] = []
     average: list[tuple[float, float]] = []
     fused: dict[tuple[str, int], list[float]] = defaultdict(list)
     for robot, tick, model, truth in models_of(piece):
@@ -83,10 +84,13 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
             single = min(now, key=lambda each: each[2])[:2] - ball_m
             best.append((error_m2, float(single @ single)))
         if recent:
+            singles_m2 = [float(np.square(each[:2] - ball_m).sum()) for _, each in recent]
+            middle.append((error_m2, float(np.median(singles_m2))))
             mean = np.mean([each[:2] for _, each in recent], axis=0) - ball_m
             average.append((error_m2, float(mean @ mean)))
     return {
         "fused to best single": np.array(best).reshape(-1, 2),
+        "fused to median robot": np.array(middle).reshape(-1, 2),
         "fused to plain average": np.array(average).reshape(-1, 2),
     }
 

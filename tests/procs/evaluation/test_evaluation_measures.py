@@ -7,15 +7,17 @@ import numpy as np
 import pytest
 
 from fwk.testing import system_of
-from lcmtypes.robot import kicker_state_t
+from lcmtypes.robot import kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
     ball_estimate_t,
+    ball_percept_t,
     game_state_t,
     ground_truth_t,
     match_event_t,
     pose_t,
     robot_estimate_t,
     skill_status_t,
+    team_inbox_t,
     team_message_t,
     true_robot_t,
     world_model_t,
@@ -318,3 +320,22 @@ def test_baselines_are_measured_beside_the_beliefs() -> None:
     assert np.sqrt(found["plain average: ball moving, position"].mean()) == pytest.approx(0.3)
     assert np.sqrt(found["200 particles: pose, position"].mean()) == pytest.approx(math.hypot(0.2, 1.0))
     assert not len(found["pose, position"])
+
+
+def test_radio_and_reactions_are_measured_by_their_times() -> None:
+    made = piece([robot("cyan1", 0.0, 1.0)], ticks=20)
+    told, inbox, percept = team_message_t(), team_inbox_t(), ball_percept_t()
+    told.header.time_us, inbox.header.time_us, inbox.messages = 5_000_000, 5_050_000, [told]
+    percept.header.time_us, percept.capture_us = 5_100_000, 5_065_000
+    made.by_robot = {
+        "team_message": {"cyan1": {FIRST: told}},
+        "team_inbox": {"cyan2": {FIRST + 1: inbox}},
+        "ball_percept": {"cyan1": {FIRST + 2: percept, FIRST + 4: percept}},
+        "motor_command": {"cyan1": {FIRST + 2: motor_command_t()}},
+    }
+    made.told_bytes = {"cyan1": 1000, "cyan2": 250}
+    rows = {row.name: row.value for row in rows_of([samples_of(made)])}
+    assert rows["radio, age of a message, 95 %"] == pytest.approx(0.1)  # read in the tick after the inbox
+    assert rows["radio, volume of a team"] == pytest.approx(0.01)
+    assert rows["radio, messages of a robot"] == pytest.approx(1.0)
+    assert rows["picture to motor command, 95 %"] == pytest.approx(0.035)
