@@ -43,7 +43,7 @@ _KICK_DIRECTION_SD = 0.03  # rad
 _TURNS_M_S2 = SLIDING_M_S2 * ROLLING_SHARE / (1.0 - ROLLING_SHARE)
 """A ball that was hit t seconds ago and slides at v m/s begins to roll when v is t times this."""
 _ROLLS_BELOW_M_S2, _SLIDES_ABOVE_M_S2 = 0.7 * _TURNS_M_S2, 1.4 * _TURNS_M_S2  # carpets differ by a third
-_KICK_TIME_SD_S = 0.02  # the kick lies somewhere in the tick before its report
+_KICK_TIME_SD_S = 0.012  # the kick lies somewhere in the tick before its report: 40 ms by the root of 12
 _FREE_1_S = np.array(
     (
         (0.0, 0.02, 0.0, 0.003, 0.003),

@@ -7,7 +7,7 @@ the later inputs are taken again.
 
 from bisect import bisect_left
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from operator import itemgetter
 
 from procs.model.frames import Floats
@@ -119,11 +119,17 @@ class BallTracker:
     def kick(self, velocity_m_s: Floats, age_s: float = 0.0, mouth: Seen = Seen.NOTHING) -> None:
         """Takes a kick that gave the ball a velocity; call it before `advance`.
 
+        From then on no robot was near enough to touch the ball, whatever earlier calls of `advance` said.
+
         Args:
             velocity_m_s: (2), world frame.
-            age_s: time since the kick.
+            age_s: time since the kick; negative: so long after the last tick, within the one that `advance` ends.
             mouth: place of the ball at the kick (0 or 1), if it is not the track's: the mouth of a mate.
         """
+        kicked_us = self._now_us - round(age_s * US_PER_S)
+        self._steps = [
+            (end_us, replace(step, contact=False) if end_us > kicked_us else step) for end_us, step in self._steps
+        ]
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, mouth))
 
     def _take(self, rank: int, age_s: float, taken: _Input) -> None:

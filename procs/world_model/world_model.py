@@ -103,6 +103,7 @@ class WorldModel(Component):
         self._team = Team()
         self._view: OwnView | None = None
         self._kicks = 0
+        self._kicked = False  # in this tick
         self._mates_kicks: dict[str, int] = {}
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
@@ -139,14 +140,14 @@ class WorldModel(Component):
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
         kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
-        self._kicks = kicker.kicks
+        self._kicks, self._kicked = kicker.kicks, kicked
         if kicked:
             velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, self._mouth_m)
-            self._ball.kick(velocity_m_s)
+            self._ball.kick(velocity_m_s, -passed_s / 2)  # at an unknown moment since the last tick
             message = self.team_message.value
-            message.kicks, message.kick_us = kicker.kicks, self.clock.now_us
+            message.kicks, message.kick_us = kicker.kicks, self.clock.now_us - round(passed_s / 2 * US_PER_S)
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
-        self._take_mates_kicks(told)
+        self._take_mates_kicks(told, passed_s)
         contact = self._in_contact(view, mates, passed_s)
         self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls())
         if kicker.ball_held and view.localized and not kicked:
@@ -195,7 +196,7 @@ class WorldModel(Component):
         for position_m, covariance_m2 in zip(seen.positions_m, seen.covariances_m2, strict=True):
             self._ball.see(Sighting(robot, robot == self._robot, position_m, covariance_m2, age_s))
 
-    def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]]) -> None:
+    def _take_mates_kicks(self, told: list[tuple[team_message_t, Mate]], passed_s: float) -> None:
         for message, mate in told:
             known = self._mates_kicks.get(mate.name, message.kicks)
             self._mates_kicks[mate.name] = message.kicks
@@ -203,7 +204,8 @@ class WorldModel(Component):
             sound = plausible(message.kick_vx_m_s, message.kick_vy_m_s) and 0.0 <= age_s <= _STALE_S
             if message.kicks != known and sound:
                 mouth = mouth_of(mate, self._mouth_m, message.kick_us / US_PER_S)
-                self._ball.kick(np.array((message.kick_vx_m_s, message.kick_vy_m_s)), age_s, mouth)
+                velocity_m_s = np.array((message.kick_vx_m_s, message.kick_vy_m_s))
+                self._ball.kick(velocity_m_s, age_s - passed_s, mouth)
 
     def _follow_opponents(
         self, view: OwnView, mates: list[Mate], told: list[tuple[team_message_t, Mate]], passed_s: float
@@ -255,7 +257,7 @@ class WorldModel(Component):
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
         caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
-        if caught_or_lost or self.team_message.value.kick_us == self.clock.now_us:
+        if caught_or_lost or self._kicked:
             return True  # mates have to know at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s

@@ -177,3 +177,30 @@ def test_kick_of_a_mate_begins_at_its_mouth() -> None:
     tracker.kick(np.array((8.0, 0.0)), 0.1, mouth)
     assert tracker.track.state[0] == pytest.approx(0.8, abs=0.03)
     assert tracker.track.state[2] == pytest.approx(7.7, abs=0.1)
+
+
+def test_frame_between_command_and_kick_does_not_slow_the_ball() -> None:
+    """The ball leaves in the middle of a tick; a frame from the first half of it still shows the ball in the mouth."""
+    tracker = BallTracker()
+    for _ in range(10):
+        tracker.advance(0.04, 2.0, 0.4, contact=True)
+        tracker.hold("me", np.array((0.33, 0.0, 0.0, 0.0)), np.eye(4) * 1e-4)
+    tracker.kick(np.array((8.0, 0.0)), -0.02)
+    flown_s = -0.02
+    for tick in range(5):
+        tracker.advance(0.04, 2.0, 0.4)
+        flown_s += 0.04
+        if tick % 2 == 0:
+            x_m = 0.33 + 8.0 * max(0.0, flown_s - 0.035) - 1.5 * max(0.0, flown_s - 0.035) ** 2
+            tracker.see(Sighting("me", True, np.array((x_m, 0.0)), np.eye(2) * 0.02**2, age_s=0.035))
+        assert tracker.track.state[2] == pytest.approx(8.0 - 3.0 * flown_s, rel=0.05)
+
+
+def test_kick_ends_the_touches_that_were_possible() -> None:
+    """A mate hears of a kick a tick later; that tick began with the kicker at the ball."""
+    tracker = just_kicked("a", held=10)
+    late = just_kicked("a", held=10)
+    tracker.advance(0.05, 2.0, 0.4, contact=False)
+    late.advance(0.05, 2.0, 0.4, contact=True)
+    late.kick(np.array((8.0, 0.0)), 0.05)
+    assert late.track.covariance[2, 2] < 2 * tracker.track.covariance[2, 2]
