@@ -15,6 +15,9 @@ _KEEPER = 1
 _TAKER = 2
 _SHOT_RANGE_M = 8.0
 _TOUCHED_M = 0.5  # a robot this near to the ball has touched it
+_CLEAR_M = 0.5  # distance from the own penalty area
+_ASIDE_M = 0.8  # distance along y between those robots
+_MIDDLE = 3.5  # mean of their numbers
 _BEHIND_M = 1.5  # distance along x between the robots that do not have the ball
 
 
@@ -41,7 +44,9 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
     nearest = min(free, key=lambda robot: (math.dist(robot.place, ball), robot.name), default=None)
     if view.ball.known and nearest is view.own:
         return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
-    place = Point(max(ball.x_m - _BEHIND_M * number, -field.half_length_m + 1.0), 0.5 * ball.y_m)
+    least_m = field.penalty_area_depth_m + _CLEAR_M - field.half_length_m
+    aside_m = _ASIDE_M * (number - _MIDDLE)
+    place = Point(max(ball.x_m - _BEHIND_M * number, least_m), 0.5 * ball.y_m + aside_m)
     return PASSER if taken else DEFENDER, Order("goto", place, bearing_rad(place, ball), "follow")
 
 

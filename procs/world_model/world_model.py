@@ -39,6 +39,7 @@ from procs.world_model.world_messages import fill_team_message, fill_world_model
 
 _STALE_S = 0.5  # older sightings of mates are not used
 _HOLDER_S = 0.3  # a mate's word that it holds the ball is believed for so long
+_KICK_MESSAGES = 2  # tell mates of a kick, in this tick and the next, as radio may lose one
 _NEAR_M = 0.9  # the wall or an opponent this near to the ball may touch it
 
 
@@ -103,7 +104,7 @@ class WorldModel(Component):
         self._team = Team()
         self._view: OwnView | None = None
         self._kicks = 0
-        self._kicked = False  # in this tick
+        self._kick_messages = 0  # that are due for the newest kick
         self._mates_kicks: dict[str, int] = {}
         self._last_us = 0
         self._sent_us = -US_PER_S  # the first message is due at once
@@ -140,8 +141,9 @@ class WorldModel(Component):
     ) -> None:
         config, kicker = self.config, self.kicker_state.value
         kicked = kicker.kicks != self._kicks and plausible(kicker.kick_speed_m_s)
-        self._kicks, self._kicked = kicker.kicks, kicked
+        self._kicks = kicker.kicks
         if kicked:
+            self._kick_messages = _KICK_MESSAGES
             velocity_m_s = view.kicked_m_s(kicker.kick_speed_m_s, self._mouth_m)
             self._ball.kick(velocity_m_s, -passed_s / 2)  # at an unknown moment since the last tick
             message = self.team_message.value
@@ -257,7 +259,7 @@ class WorldModel(Component):
         tick for it; from then on messages keep its pace, and mates hear of a sighting as soon as they can.
         """
         caught_or_lost = self.team_message.value.ball_held != self.kicker_state.value.ball_held
-        if caught_or_lost or self._kicked:
+        if caught_or_lost or self._kick_messages:
             return True  # mates have to know at once
         half_tick_s = self.clock.period_s / 2
         passed_s = self.clock.since_s(self._sent_us) + half_tick_s
@@ -276,6 +278,7 @@ class WorldModel(Component):
         fill_team_message(message, view, self._untold_ball, self._untold_obstacles)
         self._untold_ball = self._untold_obstacles = Seen.NOTHING
         self._sent_us = self.clock.now_us
+        self._kick_messages = max(0, self._kick_messages - 1)
         self.team_message.write()
 
     def _age_s(self, capture_us: int) -> float:

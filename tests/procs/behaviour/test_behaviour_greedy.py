@@ -52,6 +52,25 @@ def test_second_robot_takes_the_own_set_piece() -> None:
     assert decide(seen._replace(own=robot("cyan3", 0.0, 1.0)), game, False, FIELD)[1].skill == "goto"
 
 
+def test_taker_shoots_and_leaves_the_ball_until_it_is_touched() -> None:
+    game = Game(State.FREE_KICK, stopped=False, whose=Whose.OURS, spot=Point(-3.0, 1.0))
+    seen = view(robot("cyan2", -3.3, 1.0), ball(-3.0, 1.0), OTHERS)
+    role, order = decide(seen, game, True, FIELD)
+    assert (role, order.skill) == ("passer", "shoot")
+    taker = seen._replace(own=seen.own._replace(role=role))
+    assert decide(taker, PLAY, True, FIELD)[1].skill == "shoot", "a dribble would touch the ball twice"
+    role, order = decide(taker, PLAY, False, FIELD)
+    assert (role, order.skill) == ("passer", "goto")
+    touched = taker._replace(opponents=(robot("magenta4", -2.7, 1.0),))
+    assert decide(touched, PLAY, False, FIELD)[1].skill == "get_ball"
+
+
+def test_only_the_goalkeeper_waits_in_the_own_penalty_area() -> None:
+    seen = view(robot("cyan4", 0.0, 0.0), ball(-9.0, 0.0), OTHERS)
+    place = decide(seen, PLAY, False, FIELD)[1].place
+    assert not FIELD.in_penalty_area(*place, -1.0)
+
+
 def test_launch_file_chooses_the_strategy_of_a_team() -> None:
     assert settings_in("soccer-greedy.yaml", "magenta2/agent")["strategy"] == "greedy"
     assert settings_in("soccer-greedy.yaml", "cyan2/agent")["strategy"] == "team"
