@@ -40,7 +40,9 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
         return ATTACKER, _play(view, field)
-    free = [robot for robot in (view.own, *view.mates) if robot.role != PASSER]
+    free = [robot for robot in view.mates if robot.role != PASSER]
+    if not taken:
+        free.append(view.own)
     nearest = min(free, key=lambda robot: (math.dist(robot.place, ball), robot.name), default=None)
     if view.ball.known and nearest is view.own:
         return ATTACKER, Order("get_ball", ball, bearing_rad(ball, field.goal_centre(1.0)), "chase")
