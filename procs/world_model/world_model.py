@@ -68,6 +68,10 @@ class WorldModelConfig(Config):
     """Obstacles further outside the field than that are not robots of the match."""
     use_team_sight: bool = True
     """Use the sightings of mates."""
+    use_capture_times: bool = True
+    """Let a sighting count at the time of its exposure; otherwise, to see what that brings, when it arrives."""
+    use_ball_velocity: bool = True
+    """Tell the velocity of the ball; otherwise, to see what it brings, the ball always seems to rest."""
     message_period_s: float = Setting(default=0.1, gt=0.0)
     """Time from one message to the team to the next."""
     sight_correlation: float = Setting(default=1.0, ge=1.0)
@@ -123,6 +127,8 @@ class WorldModel(Component):
         self._follow_opponents(view, mates, told, passed_s)
         fill_world_model(self.world_model.value, view, self._ball, mates, self._opponents, now_s)
         self.world_model.value.ball_holder = self._holder(mates)
+        if not config.use_ball_velocity:
+            self.world_model.value.ball.vx_m_s = self.world_model.value.ball.vy_m_s = 0.0
         self.world_model.write()
         if self._message_due():
             self._tell_team(view)
@@ -283,7 +289,7 @@ class WorldModel(Component):
 
     def _age_s(self, capture_us: int) -> float:
         """Returns the time since an exposure; 0 stands for an exposure in this tick."""
-        return self.clock.since_s(capture_us) if capture_us else 0.0
+        return self.clock.since_s(capture_us) if capture_us and self.config.use_capture_times else 0.0
 
     def _opponent_settings(self) -> OpponentSettings:
         config = self.config

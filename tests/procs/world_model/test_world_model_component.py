@@ -200,3 +200,25 @@ def test_slipping_wheels_do_not_turn_what_the_robot_sees() -> None:
         )
         robot.bench.iterate()
     assert (robot.world.ball.x_m, robot.world.ball.y_m) == pytest.approx((4.0, 0.0), abs=0.1), "0.4 m with the wheels"
+
+
+def followed_ball(**settings: bool) -> tuple[float, float]:
+    """Returns place and speed, along y, of a ball at 2 m/s whose frames are 50 ms old; it truly is at y = 2."""
+    robot = Robot("cyan1", (0.0, 0.0, 0.0), seed=1, **settings)
+    for tick in range(-40, 1):
+        robot.sense(np.array((2.0, 2.0 + (tick - 1) * 0.1)), [])
+        percept = robot.bench.port("ball_percept")
+        (x_m, y_m), spread = robot.in_frame(np.array((2.0, 2.0 + (tick - 1) * 0.1)))
+        percept.put(
+            visible=True, x_m=x_m, y_m=y_m, covariance_m2=spread.tolist(), capture_us=max(1, robot.bench.time_us)
+        )
+        robot.bench.iterate()
+    return robot.world.ball.y_m, robot.world.ball.vy_m_s
+
+
+def test_settings_show_what_exposure_times_and_velocity_bring() -> None:
+    y_m, vy_m_s = followed_ball()
+    assert (y_m, vy_m_s) == (pytest.approx(2.0, abs=0.1), pytest.approx(2.0, abs=0.4))
+    behind_m = y_m - followed_ball(use_capture_times=False)[0]
+    assert behind_m == pytest.approx(0.05 * vy_m_s, abs=0.03)
+    assert followed_ball(use_ball_velocity=False) == (y_m, 0.0)
