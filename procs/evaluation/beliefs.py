@@ -11,6 +11,7 @@ from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, tru
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S, pose_samples
 from procs.model.frames import Floats
+from procs.model.robot import team_of
 
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
@@ -141,26 +142,30 @@ def _ball(piece: Piece, robot: str, tick: int, model: world_model_t, truth: grou
 
 def _kicks(piece: Piece) -> Samples:
     """Seconds from a kick until each robot knows the ball's velocity within a tenth; infinite if it never does."""
-    delays_s = []
+    delays_s: list[float] = []
+    own_s: list[float] = []
     for tick, events in piece.events.items():
         for kick in events:
             if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= START_S:
-                delays_s += _delays_s(piece, tick, kick.robot)
-    return {"velocity known after a kick": np.array(delays_s)}
+                found = _delays_s(piece, tick, kick.robot)
+                delays_s += found.values()
+                own_s += [delay_s for robot, delay_s in found.items() if team_of(robot) == team_of(kick.robot)]
+    return {"velocity known after a kick": np.array(delays_s), "velocity known after an own kick": np.array(own_s)}
 
 
-def _delays_s(piece: Piece, kicked: int, kicker: str) -> list[float]:
+def _delays_s(piece: Piece, kicked: int, kicker: str) -> dict[str, float]:
+    """Returns the delay of each robot; none if another robot touches the ball soon."""
     flight = []
     for tick in range(kicked, max(piece.truth) + 1):
         if tick > kicked and piece.touched_by(tick, 0.0) - {kicker}:
             break
         flight.append(tick)
     if len(flight) * piece.period_s < SETTLED_S:
-        return []
-    delays_s = []
-    for models in piece.by_robot.get("world_model", {}).values():
+        return {}
+    delays_s = {}
+    for robot, models in piece.by_robot.get("world_model", {}).items():
         found = (tick for tick in flight if tick in models and _knows(models[tick], piece.truth[tick]))
-        delays_s.append((next(found, math.inf) - kicked) * piece.period_s)
+        delays_s[robot] = (next(found, math.inf) - kicked) * piece.period_s
     return delays_s
 
 

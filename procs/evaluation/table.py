@@ -88,6 +88,7 @@ MEASURES = [
     Measure("inside 95 %, held by another", mean, "share", "0.90-0.99"),
     Measure("inside 95 %, held by itself", mean, "share", "0.90-0.99"),
     Measure("velocity known after a kick", median, "s", "<= 0.10"),
+    Measure("velocity known after an own kick", median, "s", "<= 0.10"),
     Measure("opponents, position", rms, "m", "<= 0.08"),
     Measure("opponents, lag", ratio, "s", "0"),
     Measure("opponents known", mean, "share", ">= 0.80"),

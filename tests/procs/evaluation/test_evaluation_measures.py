@@ -147,9 +147,11 @@ def test_kick_delay_ends_when_the_velocity_is_known() -> None:
     models: dict[int, Any] = {tick: model((truth.ball_x_m, 0.0)) for tick, truth in made.truth.items()}
     for tick in range(FIRST + 3, FIRST + 40):
         models[tick].ball.vx_m_s = 4.6
-    made.by_robot["world_model"] = {"cyan1": models, "cyan2": {FIRST: model((0.0, 0.0))}}
-    made.truth[FIRST].robots.append(robot("cyan2", 5.0, 5.0))
-    assert believed(made)["velocity known after a kick"].tolist() == pytest.approx([0.15, math.inf])
+    made.by_robot["world_model"] = {"cyan1": models, "magenta2": {FIRST: model((0.0, 0.0))}}
+    made.truth[FIRST].robots.append(robot("magenta2", 5.0, 5.0))
+    found = believed(made)
+    assert found["velocity known after a kick"].tolist() == pytest.approx([0.15, math.inf])
+    assert found["velocity known after an own kick"].tolist() == pytest.approx([0.15])
 
 
 def test_lag_of_an_opponent_is_its_distance_behind_by_its_speed() -> None:
