@@ -30,7 +30,7 @@ class Mode(IntEnum):
 _MODES = len(Mode)
 _EACH = np.arange(_MODES)
 _AXES, _OTHER = np.array((0, 1, 2, 3)), np.array((2, 3, 0, 1))  # x, y, vx, vy, and the partner of each
-_NOISE_M2_S3 = np.array((0.0002, 0.01, 0.3, 5.0, 0.3))
+_NOISE_M2_S3 = np.array((0.0002, 0.01, 0.1, 5.0, 0.3))
 """Spectral density of the acceleration that each model leaves open."""
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
 _SLOW_M_S = 0.15  # a rolling ball this slow is about to rest
