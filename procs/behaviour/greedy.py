@@ -26,7 +26,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
 
     Number 1 keeps the goal, number 2 takes the set pieces. In play the robot that believes itself nearest to the ball
     goes for it and shoots; the others line up behind the ball. A taker shoots from where it is, and leaves the ball
-    alone until another robot is at it.
+    alone until another robot is at it, if it has mates.
     """
     number, ball = number_of(view.own.name), view.ball.place
     if game.paused or not view.localized:
@@ -35,7 +35,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
-    taken = view.own.role == PASSER and not _touched_by_another(view)
+    taken = view.own.role == PASSER and bool(view.mates) and not _touched_by_another(view)
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
