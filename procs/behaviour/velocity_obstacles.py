@@ -23,9 +23,9 @@ _REACTION_S = 0.35
 _LATE_S = 0.4
 """The robot evades one that gives way only if they would collide so soon."""
 _SOONEST_S = 0.15
-_TOUCH_M_S = 0.6
+_TOUCH_M_S = 0.4
 """Closing speed of a touch that does no harm."""
-_WEIGHT_S = 1.2
+_WEIGHT_S = 1.6
 """Cost of a collision of 1 m/s in 1 s, as a difference from the wanted velocity in m/s."""
 _LEAST_M_S = 1.0
 _FASTEST_M_S = 4.0
