@@ -44,7 +44,7 @@ def system_of(
         file: launch file.
         wanted: chooses components by name.
         seed: of the components' random numbers.
-        sets: settings to override, as `--set` takes them: `world/*.errors.drive_delay_s=0.1`.
+        sets: settings to override, as `--set` takes them: `a/camera.errors.delay_s=0.1`.
         changes: further settings by the component's own name: `camera={"flicker": 0.1}`.
 
     Raises:
