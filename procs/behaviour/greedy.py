@@ -35,7 +35,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
-    taken = view.own.role == PASSER and bool(view.mates) and not _touched_by_another(view)
+    taken = view.own.role == PASSER and bool(view.mates) and not view.another_at_ball(_TOUCHED_M)
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
@@ -65,10 +65,6 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     return PASSER, Order(
         "shoot" if holds_ball else "get_ball", goal if holds_ball else game.spot, goal_rad, "take set piece"
     )
-
-
-def _touched_by_another(view: View) -> bool:
-    return any(math.dist(robot.place, view.ball.place) < _TOUCHED_M for robot in (*view.mates, *view.opponents))
 
 
 def _play(view: View, field: Field) -> Order:

@@ -93,15 +93,13 @@ class Tactics:
 
     def _still_barred_s(self, view: View, game: Game, holds_ball: bool) -> float:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
-        others = (*view.mates, *view.opponents)
         if game.stopped or not view.mates or holds_ball:
             return 0.0
         if self._taking and self._last.skill in ("pass", "shoot"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if self._taking and not game.free_play and self._fumbled(view):
             return _BARRED_S
-        touched = any(math.dist(other.place, view.ball.place) < _TOUCHED_M for other in others)
-        return 0.0 if touched else self._barred_s
+        return 0.0 if view.another_at_ball(_TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
         """Returns whether the robot has bumped the ball of the set piece away."""

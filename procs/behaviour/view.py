@@ -75,6 +75,10 @@ class View(NamedTuple):
     mates: tuple[Robot, ...] = ()
     opponents: tuple[Robot, ...] = ()
 
+    def another_at_ball(self, within_m: float) -> bool:
+        """Returns whether another robot is so near to the ball that it has touched it."""
+        return any(math.dist(robot.place, self.ball.place) < within_m for robot in (*self.mates, *self.opponents))
+
     def without(self, robots: Container[str]) -> "View":
         """Returns the view without mates that take no part in the game."""
         return self._replace(mates=tuple(mate for mate in self.mates if mate.name not in robots))
