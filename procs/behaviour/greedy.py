@@ -35,7 +35,7 @@ def decide(view: View, game: Game, holds_ball: bool, field: Field) -> tuple[str,
         return GOALKEEPER, Order("shoot", field.goal_centre(1.0)) if holds_ball else Order("keep_line")
     if not game.free_play:
         return _set_piece(view, game, number == _TAKER and game.whose is Whose.OURS, holds_ball, field)
-    taken = view.own.role == PASSER and bool(view.mates) and not view.another_at_ball(_TOUCHED_M)
+    taken = view.own.role == PASSER and bool(view.mates) and not view.ball.is_near(view.others, _TOUCHED_M)
     if holds_ball and taken:
         return PASSER, Order("shoot", field.goal_centre(1.0), intention="take set piece")
     if holds_ball:
@@ -57,8 +57,7 @@ def _set_piece(view: View, game: Game, takes: bool, holds_ball: bool, field: Fie
     goal_rad = bearing_rad(game.spot, goal)
     if not takes:
         place = Point(game.spot.x_m - _BEHIND_M * number_of(view.own.name), 0.5 * game.spot.y_m)
-        others = (*view.mates, *view.opponents)
-        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, others)
+        step = formation.next_step(view.own.place, formation.allowed(place, game, field), game, field, view.others)
         return DEFENDER, Order("goto", step, bearing_rad(step, game.spot), "keep distance")
     if game.stopped:
         return ATTACKER, Order("goto", formation.taker_place(game.spot, goal_rad), goal_rad, "take set piece")

@@ -78,4 +78,4 @@ def _arrived(view: View, receiver: str) -> bool:
 
 def taken(view: View) -> bool:
     """Returns whether an opponent has the ball."""
-    return any(math.dist(other.place, view.ball.place) < _TAKEN_M for other in view.opponents)
+    return view.ball.is_near(view.opponents, _TAKEN_M)

@@ -99,7 +99,7 @@ class Tactics:
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if self._taking and not game.free_play and self._fumbled(view):
             return _BARRED_S
-        return 0.0 if view.another_at_ball(_TOUCHED_M) else self._barred_s
+        return 0.0 if view.ball.is_near(view.others, _TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
         """Returns whether the robot has bumped the ball of the set piece away."""
@@ -161,7 +161,7 @@ class Tactics:
         return Order("get_ball", game.spot, way_rad, "take set piece")
 
     def _next_step(self, view: View, place: Point, game: Game) -> Point:
-        return formation.next_step(view.own.place, place, game, self.field, (*view.mates, *view.opponents))
+        return formation.next_step(view.own.place, place, game, self.field, view.others)
 
     def _plan(self, view: View, game: Game) -> tuple[str, Point] | None:
         """Returns the variant of the own set piece and the receiver's place, chosen while the game is stopped."""
@@ -228,7 +228,7 @@ class Tactics:
             if runner and _nearest_defender(view, runner, _MARK_M):
                 return Order("mark", runner.place, bearing_rad(runner.place, view.ball.place), "mark")
         place = formation.allowed(job.place, game, self.field)
-        if any(math.dist(mate.place, view.ball.place) < _HELD_M for mate in field_players(view)):
+        if view.ball.is_near(field_players(view), _HELD_M):
             place = formation.beside_shot(view.own.place, place, view.ball.place, self.field)
         return self._stand(view, place, job.role)
 

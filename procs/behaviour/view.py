@@ -5,7 +5,7 @@ both teams run the same code and play alike.
 """
 
 import math
-from collections.abc import Container
+from collections.abc import Container, Iterable
 from typing import NamedTuple
 
 from lcmtypes.soccer import ball_estimate_t, pass_agreement_t, robot_estimate_t, world_model_t
@@ -65,6 +65,10 @@ class Ball(NamedTuple):
         """Speed over the ground."""
         return math.hypot(*self.velocity_m_s)
 
+    def is_near(self, robots: Iterable[Robot], within_m: float) -> bool:
+        """Returns whether one of the robots is nearer to the ball than `within_m`."""
+        return any(math.dist(robot.place, self.place) < within_m for robot in robots)
+
 
 class View(NamedTuple):
     """Beliefs of a robot about the match."""
@@ -75,9 +79,10 @@ class View(NamedTuple):
     mates: tuple[Robot, ...] = ()
     opponents: tuple[Robot, ...] = ()
 
-    def another_at_ball(self, within_m: float) -> bool:
-        """Returns whether another robot is so near to the ball that it has touched it."""
-        return any(math.dist(robot.place, self.ball.place) < within_m for robot in (*self.mates, *self.opponents))
+    @property
+    def others(self) -> tuple[Robot, ...]:
+        """All robots but the own one."""
+        return (*self.mates, *self.opponents)
 
     def without(self, robots: Container[str]) -> "View":
         """Returns the view without mates that take no part in the game."""

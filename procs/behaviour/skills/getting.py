@@ -108,7 +108,7 @@ class GetBall(_Capture):
     """
 
     def _opponent_has_it(self, scene: Scene) -> bool:
-        return any(math.dist(other.place, scene.view.ball.place) < _HELD_M for other in scene.view.opponents)
+        return scene.view.ball.is_near(scene.view.opponents, _HELD_M)
 
     def _set_piece_from_beside(self, scene: Scene) -> bool:
         if not scene.set_piece:
@@ -191,7 +191,7 @@ def drive_to(scene: Scene) -> Drive:
     end_m_s = _ENTRY_M_S + max(0.0, flees_m_s)
     gap_m = max(0.0, math.dist(own.place, ball.place) - _CONTACT_M)
     limit_m_s = max(_ENTRY_M_S, _ENTRY_M_S + _SOFT_1_S * gap_m + flees_m_s)
-    contested = any(math.dist(other.place, ball.place) < _CONTEST_M for other in scene.view.opponents)
+    contested = ball.is_near(scene.view.opponents, _CONTEST_M)
     if scene.set_piece:
         limit_m_s = min(limit_m_s, _ENTRY_M_S + _GENTLE_1_S * gap_m)
     elif contested or gap_m > _NEAR_M or ball.speed_m_s > _SLOW_M_S:
