@@ -94,7 +94,7 @@ def ports() -> Iterator[PortBlock]:
     made.release()
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def leave_out() -> Callable[[str], NoReturn]:
     """`leave_out("needs root")` skips the test; the end of the test run lists the reason.
 

@@ -1,7 +1,8 @@
 """Fixture of the tests of the console."""
 
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from typing import NoReturn
 
 import pytest
 
@@ -14,11 +15,11 @@ from tests.programs.garden_system import garden_system
 
 
 @pytest.fixture(scope="package")
-def shared_garden(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Garden]:
+def shared_garden(tmp_path_factory: pytest.TempPathFactory, leave_out: Callable[[str], NoReturn]) -> Iterator[Garden]:
     """A run, a console and a browser that the tests of this folder share; later tests may use event loops again."""
     program = shutil.which(CHROMIUM)
     if not program:
-        pytest.skip(f"needs {CHROMIUM}: apt install {CHROMIUM}")
+        leave_out(f"needs {CHROMIUM}: apt install {CHROMIUM}")
     folder = tmp_path_factory.mktemp("garden")
     with PortBlock(2) as ports, Chromium(program) as browser:
         write_files(folder, garden_system(ports.public_url))
