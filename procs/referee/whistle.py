@@ -246,11 +246,6 @@ class Whistle:
         elif self.time_in_state_s >= self.rules.set_piece_s:
             self._play(scene.sight.ball)
 
-    def _taken(self, scene: Scene) -> bool:
-        """Returns whether all robots may now play the ball."""
-        dropped = self.state is State.DROP_BALL and bool(scene.touches.robots)
-        return dropped or self._stretch.rolled(scene.sight.ball, self.rules)
-
     def _watch_penalty(self, scene: Scene) -> None:
         """Watches one of the penalties that decide a match: it ends with a goal, out, the keeper's save or in time."""
         assert self.shootout

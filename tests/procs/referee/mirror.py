@@ -1,0 +1,150 @@
+"""A script of the referee as seen by one team, which attacks along +x whatever its colour and its end."""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from procs.model.field import Point
+from procs.referee import restarts
+from procs.referee.ends import Ends, Team
+from procs.referee.restarts import State
+from procs.simulation.physics.events import Event, Kind
+from tests.procs.referee.script import PLACES, TICK_S, Script
+
+BODY_M = 0.33  # from the middle of a robot to the middle of the ball in its mouth
+
+
+class View(NamedTuple):
+    """Way to see the field: which team is ours, which half is played, and whether left and right are exchanged."""
+
+    ours: Team
+    half: int
+    left: float
+
+    @property
+    def name(self) -> str:
+        """Returns the name of the view, for the test's name."""
+        return f"{self.ours.name.lower()}-half{self.half}-{'left' if self.left > 0 else 'right'}"
+
+
+VIEWS = [View(ours, half, left) for ours in (Team.CYAN, Team.MAGENTA) for half in (1, 2) for left in (1.0, -1.0)]
+
+
+class Call(NamedTuple):
+    """What the referee has decided, as seen by our team."""
+
+    state: State
+    team: str
+    """ours, theirs, or empty for both."""
+    reason: str = ""
+    spot: tuple[float, float] | None = None
+    """Of the ball; None: anywhere."""
+    score: tuple[int, int] = (0, 0)
+
+
+class Mirror:
+    """Script whose robots are named our1 to our3 and their1 to their3; we have the kick-off."""
+
+    def __init__(self, view: View) -> None:
+        self.script = Script(deadlock_s=8.0, set_piece_s=7.0)
+        whistle = self.script.whistle
+        whistle.begin_half(view.half)
+        self._ours = view.ours
+        self._signs = (-whistle.ends.side_of(view.ours), view.left)
+        self.ends: Ends = whistle.ends
+        for name, place in PLACES.items():
+            seen = name.replace("cyan", "our").replace("magenta", "their")
+            self.move(seen, *place)
+        self.give(restarts.kick_off(view.ours))
+        self.script.started()
+
+    def give(self, restart: restarts.Restart) -> None:
+        """Gives a set piece, in the field's own frame."""
+        self.script.whistle.interrupt(restart)
+
+    @property
+    def ball(self) -> Point:
+        """Place of the ball as we see it."""
+        return self._turned(*self.script.ball)
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the game is stopped."""
+        return self.script.whistle.stopped
+
+    @property
+    def call(self) -> Call:
+        """What the referee has decided last."""
+        whistle = self.script.whistle
+        team = {self._ours: "ours", self._ours.other: "theirs"}.get(whistle.team, "")
+        reasons = self.script.reasons
+        score = (whistle.score[self._ours], whistle.score[self._ours.other])
+        spot = self._turned(*whistle.spot) if whistle.stopped else None
+        return Call(whistle.state, team, reasons[-1] if reasons else "", spot and (spot.x_m, spot.y_m), score)
+
+    def move(self, robot: str, x_m: float, y_m: float) -> None:
+        """Puts a robot somewhere."""
+        self.script.robots[self._named(robot)] = self._turned(x_m, y_m)
+
+    def touch(self, robot: str, x_m: float | None = None, y_m: float = 0.0) -> None:
+        """Runs a tick in which a robot touches the ball, there or where it is."""
+        if x_m is not None:
+            self.script.ball = self._turned(x_m, y_m)
+        self.script.touch(self._named(robot))
+
+    def roll(self, x_m: float, y_m: float = 0.0) -> None:
+        """Runs a tick in which the ball is somewhere, without a touch."""
+        self.script.roll(*self._turned(x_m, y_m))
+
+    def wait(self, time_s: float) -> None:
+        """Lets time go by."""
+        self.script.wait(time_s)
+
+    def happen(self, kind: Kind, robot: str, x_m: float, y_m: float, other: str = "", speed_m_s: float = 5.0) -> None:
+        """Runs a tick with an event of the field."""
+        place = self._turned(x_m, y_m)
+        if kind is not Kind.COLLISION:
+            self.script.ball = place
+        self.script.tick(Event(kind, self._named(robot), self._named(other), *place, speed_m_s))
+
+    def push(self, robot: str, rival: str, speed_m_s: float) -> None:
+        """Runs a tick in which both robots drive along +x."""
+        x_m_s = speed_m_s * self._signs[0]
+        self.script.tick(**{self._named(name): Point(x_m_s, 0.0) for name in (robot, rival)})
+
+    def carry(self, robot: str, x_m: float, y_m: float = 0.0, speed_m_s: float = 2.0) -> float:
+        """Lets a robot carry the ball along a straight line until the whistle; returns the way in m."""
+        start = self.ball
+        whole_m = math.dist(start, (x_m, y_m))
+        way_m, step_m = 0.0, speed_m_s * TICK_S
+        while way_m < whole_m and not self.stopped:
+            way_m = min(whole_m, way_m + step_m)
+            share = way_m / whole_m
+            ball = Point(start.x_m + share * (x_m - start.x_m), start.y_m + share * (y_m - start.y_m))
+            behind_m = BODY_M / whole_m
+            self.move(robot, ball.x_m - behind_m * (x_m - start.x_m), ball.y_m - behind_m * (y_m - start.y_m))
+            self.touch(robot, *ball)
+        return way_m
+
+    def until_stopped(self, act: Callable[[], None], limit_s: float) -> float:
+        """Repeats an act of one tick until the whistle; returns the time in s, or the limit."""
+        for tick in range(round(limit_s / TICK_S)):
+            if self.stopped:
+                return tick * TICK_S
+            act()
+        return limit_s
+
+    def play(self) -> None:
+        """We kick off and pass: our3 has the ball, 1 m behind the centre."""
+        self.touch("our2")
+        self.roll(-1.0)
+        self.touch("our3")
+        assert self.script.whistle.state is State.PLAY
+
+    def _named(self, robot: str) -> str:
+        ours, theirs = (team.name.lower() for team in (self._ours, self._ours.other))
+        return robot.replace("our", ours).replace("their", theirs)
+
+    def _turned(self, x_m: float, y_m: float) -> Point:
+        """Returns a place of our frame in the field's, or the other way round."""
+        return Point(self._signs[0] * x_m, self._signs[1] * y_m)
