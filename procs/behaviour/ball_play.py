@@ -128,8 +128,8 @@ class BallPlay:
         if kick.intention == "pass":
             mates = [mate for mate in view.mates if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
-        way_rad = aim.lane_rad(view.ball.place, kick.place, view.opponents)
-        return kick if kick.intention == "try" or way_rad > 0.0 else None
+        rivals = self._before_keeper(view) if kick.intention == "try" else view.opponents
+        return kick if aim.lane_rad(view.ball.place, kick.place, rivals) > 0.0 else None
 
     def _dribble(self, view: View) -> Order:
         """Takes the ball along where the way is free, towards the goal if possible."""
@@ -203,14 +203,19 @@ class BallPlay:
 
     def _try_shot(self, view: View) -> Order | None:
         """Shoots past the field players to the corner that the goalkeeper covers least; a save leaves a rebound."""
-        start, goal = view.ball.place, self.field.goal_centre(1.0)
+        start = view.ball.place
         if not self._in_range(start):
             return None
-        keeper = min(view.opponents, key=lambda other: math.dist(other.place, goal), default=None)
         best = aim.best_shot(start, _others(view), self.field)
-        if aim.lane_rad(start, best.place, [other for other in _others(view) if other is not keeper]) < 0.0:
+        if aim.lane_rad(start, best.place, (*self._before_keeper(view), *view.mates)) < 0.0:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "try")
+
+    def _before_keeper(self, view: View) -> list[Robot]:
+        """Returns the opponents without the one nearest to its goal."""
+        goal = self.field.goal_centre(1.0)
+        keeper = min(view.opponents, key=lambda other: math.dist(other.place, goal), default=None)
+        return [other for other in view.opponents if other is not keeper]
 
     def _clear(self, view: View) -> Order:
         """Kicks the ball away hard: upfield, where the way is free and the robot need not turn far."""

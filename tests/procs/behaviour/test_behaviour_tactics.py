@@ -100,6 +100,16 @@ def test_shot_once_begun_keeps_its_target() -> None:
     assert tactics.decide(moved, PLAY, job(ATTACKER), True, 0.05).place == first.place
 
 
+def test_shot_past_a_keeper_is_given_up_when_a_rival_steps_in() -> None:
+    tactics, free = Tactics(FIELD), with_ball(1.0, 0.0)
+    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(6)]
+    tried = orders[-1]
+    assert (tried.skill, tried.intention) == ("shoot", "try")
+    blocked = with_ball(1.0, 0.0, robot("", 3.0, tried.place.y_m / 5))
+    order = tactics.decide(blocked, PLAY, job(ATTACKER), True, 0.05)
+    assert (order.skill, order.place) != (tried.skill, tried.place)
+
+
 def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
     game = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 1.0))
     order = decide(view(robot("cyan2", -2.0, 0.0), ball(2.0, 1.0)), game)
