@@ -154,7 +154,7 @@ class BallPlay:
 
     def _make_room(self, view: View, goal_rad: float) -> Order:
         """Takes the ball to where a shot has the most room, mostly sideways, with the mouth towards the goal."""
-        ball, others = view.ball.place, _others(view)
+        ball, others = view.ball.place, view.others
         start = self._held_from or ball
         places = [ahead(ball, goal_rad + turn_rad, _ASIDE_M) for turn_rad in _ASIDE_RAD]
         possible = [place for place in places if self._may_carry(place) and math.dist(start, place) < _LONGEST_M]
@@ -175,7 +175,7 @@ class BallPlay:
         start = view.ball.place
         if not self._in_range(start):
             return None
-        best = aim.best_shot(start, _others(view), self.field)
+        best = aim.best_shot(start, view.others, self.field)
         if best.free_rad * math.dist(start, best.place) < room_m:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
@@ -206,7 +206,7 @@ class BallPlay:
         start = view.ball.place
         if not self._in_range(start):
             return None
-        best = aim.best_shot(start, _others(view), self.field)
+        best = aim.best_shot(start, view.others, self.field)
         if aim.lane_rad(start, best.place, (*self._before_keeper(view), *view.mates)) < 0.0:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "try")
@@ -222,7 +222,7 @@ class BallPlay:
         ball, own_rad = view.ball.place, view.own.heading_rad
 
         def worth(way_rad: float) -> float:
-            free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), _others(view))
+            free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), view.others)
             return min(0.3, free_rad) - aim.TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
 
         way_rad = max(_CLEARING_RAD, key=worth)
@@ -234,7 +234,7 @@ class BallPlay:
         goal_rad = bearing_rad(start, self.field.goal_centre(1.0))
         places = [ahead(start, goal_rad + turn_rad, _PUSH_M) for turn_rad in (0.0, 0.5, -0.5, 1.0, -1.0)]
         inside = [place for place in places if self.field.in_field(*place, -0.5)] or places[:1]
-        best = max(inside, key=lambda place: min(0.6, aim.lane_rad(start, place, _others(view), _SLOW_BALL_M_S)))
+        best = max(inside, key=lambda place: min(0.6, aim.lane_rad(start, place, view.others, _SLOW_BALL_M_S)))
         return Order("push", best, bearing_rad(start, best), "push", _PUSH_M_S)
 
     def _pass_on(self, view: View, back_m: float, lane_rad: float = aim.LANE_RAD, kept: str = "") -> Order | None:
@@ -258,7 +258,3 @@ def _presses(rival: Robot, place: Point) -> bool:
 def field_players(view: View) -> list[Robot]:
     """Returns the mates in play, without the goalkeeper."""
     return [mate for mate in view.mates if mate.role not in (GOALKEEPER, ABSENT)]
-
-
-def _others(view: View) -> tuple[Robot, ...]:
-    return (*view.opponents, *view.mates)

@@ -4,14 +4,15 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+from procs.model.ball import BALL
 from procs.model.field import Point
+from procs.model.geometry import ahead, bearing_rad, between
+from procs.model.robot import ROBOT
 from procs.referee import restarts
-from procs.referee.ends import Ends, Team
+from procs.referee.ends import Team
 from procs.referee.restarts import State
 from procs.simulation.physics.events import Event, Kind
 from tests.procs.referee.script import PLACES, TICK_S, Script
-
-BODY_M = 0.33  # from the middle of a robot to the middle of the ball in its mouth
 
 
 class View(NamedTuple):
@@ -30,15 +31,15 @@ class View(NamedTuple):
 VIEWS = [View(ours, half, left) for ours in (Team.CYAN, Team.MAGENTA) for half in (1, 2) for left in (1.0, -1.0)]
 
 
-class Call(NamedTuple):
-    """What the referee has decided, as seen by our team."""
+class Decision(NamedTuple):
+    """Decision of the referee, as seen by our team."""
 
     state: State
     team: str
     """ours, theirs, or empty for both."""
     reason: str = ""
     spot: tuple[float, float] | None = None
-    """Of the ball; None: anywhere."""
+    """Place of the ball for the set piece; None if it does not matter."""
     score: tuple[int, int] = (0, 0)
 
 
@@ -51,7 +52,6 @@ class Mirror:
         whistle.begin_half(view.half)
         self._ours = view.ours
         self._signs = (-whistle.ends.side_of(view.ours), view.left)
-        self.ends: Ends = whistle.ends
         for name, place in PLACES.items():
             seen = name.replace("cyan", "our").replace("magenta", "their")
             self.move(seen, *place)
@@ -73,14 +73,14 @@ class Mirror:
         return self.script.whistle.stopped
 
     @property
-    def call(self) -> Call:
-        """What the referee has decided last."""
+    def decision(self) -> Decision:
+        """The referee's last decision; its spot only while the game is stopped."""
         whistle = self.script.whistle
         team = {self._ours: "ours", self._ours.other: "theirs"}.get(whistle.team, "")
         reasons = self.script.reasons
         score = (whistle.score[self._ours], whistle.score[self._ours.other])
         spot = self._turned(*whistle.spot) if whistle.stopped else None
-        return Call(whistle.state, team, reasons[-1] if reasons else "", spot and (spot.x_m, spot.y_m), score)
+        return Decision(whistle.state, team, reasons[-1] if reasons else "", spot, score)
 
     def move(self, robot: str, x_m: float, y_m: float) -> None:
         """Puts a robot somewhere."""
@@ -114,15 +114,12 @@ class Mirror:
 
     def carry(self, robot: str, x_m: float, y_m: float = 0.0, speed_m_s: float = 2.0) -> float:
         """Lets a robot carry the ball along a straight line until the whistle; returns the way in m."""
-        start = self.ball
-        whole_m = math.dist(start, (x_m, y_m))
-        way_m, step_m = 0.0, speed_m_s * TICK_S
+        start, end = self.ball, Point(x_m, y_m)
+        whole_m, way_m = math.dist(start, end), 0.0
         while way_m < whole_m and not self.stopped:
-            way_m = min(whole_m, way_m + step_m)
-            share = way_m / whole_m
-            ball = Point(start.x_m + share * (x_m - start.x_m), start.y_m + share * (y_m - start.y_m))
-            behind_m = BODY_M / whole_m
-            self.move(robot, ball.x_m - behind_m * (x_m - start.x_m), ball.y_m - behind_m * (y_m - start.y_m))
+            way_m = min(whole_m, way_m + speed_m_s * TICK_S)
+            ball = between(start, end, way_m / whole_m)
+            self.move(robot, *ahead(ball, bearing_rad(start, end), -ROBOT.held_ball_m(BALL)))
             self.touch(robot, *ball)
         return way_m
 

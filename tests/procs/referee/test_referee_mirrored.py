@@ -5,7 +5,7 @@ import pytest
 from procs.referee import restarts
 from procs.referee.restarts import State
 from procs.simulation.physics.events import Kind
-from tests.procs.referee.mirror import VIEWS, Call, Mirror, View
+from tests.procs.referee.mirror import VIEWS, Decision, Mirror, View
 from tests.procs.referee.script import TICK_S
 
 LEFT = [  # the ball leaves the field: event, last touch, place; set piece, its team and its spot
@@ -31,8 +31,8 @@ def in_play(view: View) -> Mirror:
     return match
 
 
-def check(match: Mirror, wanted: Call) -> None:
-    found = match.call
+def check(match: Mirror, wanted: Decision) -> None:
+    found = match.decision
     assert found._replace(spot=None) == wanted._replace(spot=None)
     assert match.stopped
     if wanted.spot:
@@ -40,7 +40,7 @@ def check(match: Mirror, wanted: Call) -> None:
 
 
 def check_no_call(match: Mirror) -> None:
-    assert (match.call.state, match.call.reason, match.stopped) == (State.PLAY, "", False)
+    assert (match.decision.state, match.decision.reason, match.stopped) == (State.PLAY, "", False)
 
 
 @seen_by_all
@@ -51,7 +51,7 @@ def test_ball_leaves_the_field(
     kind, robot, place, state, team, spot = left
     match = in_play(view)
     match.happen(kind, robot, *place)
-    check(match, Call(state, team, spot=spot))
+    check(match, Decision(state, team, spot=spot))
 
 
 @seen_by_all
@@ -68,7 +68,7 @@ def test_goal_counts(view: View) -> None:
     match.roll(5.0)
     match.touch("our3", 6.0, 0.3)
     match.happen(Kind.GOAL, "our3", 11.2, 0.3)
-    check(match, Call(State.KICK_OFF, "theirs", spot=(0.0, 0.0), score=(1, 0)))
+    check(match, Decision(State.KICK_OFF, "theirs", spot=(0.0, 0.0), score=(1, 0)))
 
 
 @seen_by_all
@@ -76,7 +76,7 @@ def test_own_goal_counts_for_the_others(view: View) -> None:
     match = in_play(view)
     match.touch("our2", -9.0, 0.3)
     match.happen(Kind.GOAL, "our2", -11.2, 0.3)
-    check(match, Call(State.KICK_OFF, "ours", spot=(0.0, 0.0), score=(0, 1)))
+    check(match, Decision(State.KICK_OFF, "ours", spot=(0.0, 0.0), score=(0, 1)))
 
 
 @seen_by_all
@@ -86,14 +86,14 @@ def test_deflected_goal_counts(view: View) -> None:
     match.touch("our3", 6.0, 0.3)
     match.touch("their1", 10.4, 0.3)
     match.happen(Kind.GOAL, "their1", 11.2, 0.4)
-    check(match, Call(State.KICK_OFF, "theirs", spot=(0.0, 0.0), score=(1, 0)))
+    check(match, Decision(State.KICK_OFF, "theirs", spot=(0.0, 0.0), score=(1, 0)))
 
 
 @seen_by_all
 def test_goal_from_the_own_half(view: View) -> None:
     match = in_play(view)
     match.happen(Kind.GOAL, "our3", 11.2, 0.3)
-    check(match, Call(State.GOAL_KICK, "theirs", "shot from the own half", (7.4, 3.5)))
+    check(match, Decision(State.GOAL_KICK, "theirs", "shot from the own half", (7.4, 3.5)))
 
 
 @seen_by_all
@@ -102,7 +102,7 @@ def test_goal_straight_from_the_kick_off(view: View) -> None:
     match.touch("our2", 0.1)
     match.roll(3.0)
     match.happen(Kind.GOAL, "our2", 11.2, 0.3)
-    check(match, Call(State.GOAL_KICK, "theirs", "no second robot touched the ball", (7.4, 3.5)))
+    check(match, Decision(State.GOAL_KICK, "theirs", "no second robot touched the ball", (7.4, 3.5)))
 
 
 @seen_by_all
@@ -111,7 +111,7 @@ def test_own_goal_straight_from_the_kick_off(view: View) -> None:
     match.touch("our2")
     match.roll(-3.0)
     match.happen(Kind.GOAL, "our2", -11.2, 0.3)
-    check(match, Call(State.CORNER_KICK, "theirs", "own goal straight from a set piece", (-10.8, 6.8)))
+    check(match, Decision(State.CORNER_KICK, "theirs", "own goal straight from a set piece", (-10.8, 6.8)))
 
 
 @seen_by_all
@@ -126,9 +126,9 @@ def test_ball_won_in_the_own_half(view: View, passes: bool) -> None:
     match.touch("our2", 2.0)
     match.happen(Kind.GOAL, "our2", 11.2, 0.3)
     if passes:
-        check(match, Call(State.KICK_OFF, "theirs", score=(1, 0)))
+        check(match, Decision(State.KICK_OFF, "theirs", score=(1, 0)))
     else:
-        check(match, Call(State.GOAL_KICK, "theirs", "no pass since the ball was won in the own half"))
+        check(match, Decision(State.GOAL_KICK, "theirs", "no pass since the ball was won in the own half"))
 
 
 @seen_by_all
@@ -142,7 +142,7 @@ def test_pass_must_be_a_metre_long(view: View, far_m: float) -> None:
     match.roll(2.0)
     match.touch("our3", 3.0)
     match.happen(Kind.GOAL, "our3", 11.2, 0.3)
-    assert match.call.score == ((1, 0) if far_m >= 1.0 else (0, 0))
+    assert match.decision.score == ((1, 0) if far_m >= 1.0 else (0, 0))
 
 
 @seen_by_all
@@ -150,7 +150,7 @@ def test_holding_for_a_second(view: View) -> None:
     match = in_play(view)
     match.move("our3", match.ball.x_m - 0.33, 0.0)
     held_s = TICK_S + match.until_stopped(lambda: match.touch("our3"), 3.0)
-    check(match, Call(State.FREE_KICK, "theirs", "holding", (-1.0, 0.0)))
+    check(match, Decision(State.FREE_KICK, "theirs", "holding", (-1.0, 0.0)))
     assert 1.0 <= held_s <= 1.0 + 2 * TICK_S, "called in the next tick at the latest"
 
 
@@ -174,7 +174,7 @@ def test_pulling_back(view: View) -> None:
         match.touch("our3", match.ball.x_m - 0.05)
 
     pulled_m = 0.05 / TICK_S * match.until_stopped(pull, 1.0)
-    check(match, Call(State.FREE_KICK, "theirs", "holding"))
+    check(match, Decision(State.FREE_KICK, "theirs", "holding"))
     assert 0.3 <= pulled_m < 0.3 + 2 * 0.05 + 1e-9
 
 
@@ -183,7 +183,7 @@ def test_pulling_back(view: View) -> None:
 def test_dribbling_for_more_than_three_metres(view: View, x_m: float, y_m: float) -> None:
     match = in_play(view)
     way_m = match.carry("our3", x_m, y_m)
-    check(match, Call(State.FREE_KICK, "theirs", "dribbling"))
+    check(match, Decision(State.FREE_KICK, "theirs", "dribbling"))
     assert 3.0 < way_m <= 3.0 + 2 * 0.1 + 1e-9, "called in the next tick at the latest"
 
 
@@ -209,7 +209,7 @@ def test_dribbling_after_a_free_roll(view: View) -> None:
 def test_taker_dribbles(view: View) -> None:
     match = Mirror(view)
     match.carry("our2", 4.0)
-    check(match, Call(State.FREE_KICK, "theirs", "dribbling"))
+    check(match, Decision(State.FREE_KICK, "theirs", "dribbling"))
 
 
 @seen_by_all
@@ -219,7 +219,7 @@ def test_double_touch_at_the_kick_off(view: View) -> None:
     match.roll(0.6)
     match.roll(0.7)
     match.touch("our2")
-    check(match, Call(State.FREE_KICK, "theirs", "double touch", (0.7, 0.0)))
+    check(match, Decision(State.FREE_KICK, "theirs", "double touch", (0.7, 0.0)))
 
 
 @seen_by_all
@@ -242,7 +242,7 @@ def test_double_touch_at_a_throw_in(view: View) -> None:
     match.touch("our2")
     match.roll(3.0, 6.2)
     match.touch("our2")
-    check(match, Call(State.FREE_KICK, "theirs", "double touch", (3.0, 6.2)))
+    check(match, Decision(State.FREE_KICK, "theirs", "double touch", (3.0, 6.2)))
 
 
 @seen_by_all
@@ -251,7 +251,7 @@ def test_wrong_team_takes_the_throw_in(view: View) -> None:
     match.happen(Kind.OUT_SIDE, "our3", 3.0, 7.2)
     match.script.started()
     match.touch("our3")
-    check(match, Call(State.THROW_IN, "theirs", "touch before the set piece was taken", (3.0, 6.9)))
+    check(match, Decision(State.THROW_IN, "theirs", "touch before the set piece was taken", (3.0, 6.9)))
 
 
 @seen_by_all
@@ -259,14 +259,14 @@ def test_rival_comes_near_at_the_kick_off(view: View) -> None:
     match = Mirror(view)
     match.move("their2", 2.6, 0.0)
     match.wait(TICK_S)
-    check(match, Call(State.KICK_OFF, "ours", "too near to a set piece", (0.0, 0.0)))
+    check(match, Decision(State.KICK_OFF, "ours", "too near to a set piece", (0.0, 0.0)))
 
 
 @seen_by_all
 def test_kick_off_is_open_to_all_after_seven_seconds(view: View) -> None:
     match = Mirror(view)
     match.wait(6.9)
-    assert match.call.state is State.KICK_OFF
+    assert match.decision.state is State.KICK_OFF
     match.wait(0.2)
     check_no_call(match)
     match.touch("their2")
@@ -288,7 +288,7 @@ def test_kick_off_is_open_to_all_after_seven_seconds(view: View) -> None:
 def test_collision(view: View, robot: str, place: tuple[float, float], state: State, spot: tuple[float, float]) -> None:
     match = in_play(view)
     match.happen(Kind.COLLISION, robot, *place, other="their3", speed_m_s=3.5)
-    check(match, Call(state, "theirs", "collision", spot))
+    check(match, Decision(state, "theirs", "collision", spot))
 
 
 @seen_by_all
@@ -305,7 +305,7 @@ def test_pushing(view: View) -> None:
     match.move("our2", 1.0, 1.0)
     match.move("their2", 1.5, 1.0)
     pushed_s = match.until_stopped(lambda: match.push("our2", "their2", 0.5), 3.0)
-    check(match, Call(State.FREE_KICK, "theirs", "pushing"))
+    check(match, Decision(State.FREE_KICK, "theirs", "pushing"))
     assert 0.8 <= pushed_s <= 0.8 + 2 * TICK_S, "0.4 m at 0.5 m/s"
 
 
@@ -318,7 +318,7 @@ def test_two_in_a_penalty_area(view: View, end: float) -> None:
     match.wait(0.9)
     check_no_call(match)
     match.wait(0.3)
-    assert match.call[:3] == (State.FREE_KICK, "theirs", "too many in an area")
+    assert match.decision[:3] == (State.FREE_KICK, "theirs", "too many in an area")
 
 
 @seen_by_all
@@ -328,27 +328,27 @@ def test_deadlock(view: View) -> None:
     match.wait(7.9)
     check_no_call(match)
     match.wait(0.2)
-    check(match, Call(State.DROP_BALL, "", "deadlock", (7.4, 3.5)))
+    check(match, Decision(State.DROP_BALL, "", "deadlock", (7.4, 3.5)))
 
 
 @seen_by_all
 def test_penalty_counts_without_a_second_robot(view: View) -> None:
     match = in_play(view)
     match.happen(Kind.COLLISION, "their2", 9.5, 0.5, other="our2", speed_m_s=3.5)
-    check(match, Call(State.PENALTY, "ours", "collision", (7.4, 0.0)))
+    check(match, Decision(State.PENALTY, "ours", "collision", (7.4, 0.0)))
     match.script.started()
     match.touch("our2")
     match.roll(9.0)
     match.happen(Kind.GOAL, "our2", 11.2, 0.3)
-    assert match.call.score == (1, 0)
+    assert match.decision.score == (1, 0)
 
 
 @seen_by_all
 def test_penalty_that_is_not_taken(view: View) -> None:
     match = in_play(view)
-    match.give(restarts.penalty(view.ours, match.script.whistle.rules.field, match.ends))
+    match.give(restarts.penalty(view.ours, match.script.whistle.rules.field, match.script.whistle.ends))
     match.script.started()
     match.wait(9.9)
-    assert match.call.state is State.PENALTY
+    assert match.decision.state is State.PENALTY
     match.wait(0.2)
-    check(match, Call(State.GOAL_KICK, "theirs", "penalty not taken in time"))
+    check(match, Decision(State.GOAL_KICK, "theirs", "penalty not taken in time"))
