@@ -29,6 +29,7 @@ class HostDriver:
             make_runner=make_runner,
             background=BackgroundServer().serving,
             initialized=give_memory_back,
+            runs_ahead=True,
             lift_memory_limit=lift_limit,
         )
         self.host = host_of(assignment, self._network, hooks)

@@ -38,5 +38,7 @@ class ProcessHooks:
     """Serves other hosts while a continuous component iterates."""
     initialized: Callable[[], None] = _nothing
     """Called when every `init` has returned."""
+    runs_ahead: bool = False
+    """Whether the host runs stages within its lookahead without waiting for their ticks; the same either way."""
     lift_memory_limit: Callable[[], None] = _nothing
     """Ends the process's memory limit."""

@@ -14,12 +14,14 @@ from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
 from fwk.engine.component_group import ComponentGroup, Ran, Written
 from fwk.engine.failures import ComponentFailedError
+from fwk.engine.lookahead import lookahead
 from fwk.host.dynamic_channels import DynamicChannels
 from fwk.host.hooks import ProcessHooks
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
 from fwk.host.shutdown import LOCKSTEP_TIMEOUT_US, TIMEOUT_US, Shutdown
 from fwk.lcm.messages import MessageError
+from fwk.model.plan import NOBODY, Plan
 from fwk.model.ports import Ports
 from fwk.model.requests import clear_requests, has_requests, lost_message
 from lcmtypes.core import actual_t, done_t, fetch_t, gone_t, leaving_t, log_t, protocol_t, tick_t
@@ -90,9 +92,11 @@ class Host:
             [component.name for component in self.group.plans if stage in component.stages]
             for stage in range(len(plan.stages))
         ]
+        self._stages_ahead = _stages_ahead(plan, assignment.host) if hooks.runs_ahead else {}
         self._catch_up = CatchUp(assignment.start.incarnation)
         self._answered = (0, -1)  # the newest (tick, step) that was answered
         self._done = b""
+        self._dones: dict[int, bytes] = {}  # dones of the newest tick, by step
         self._ticks_ignored = False
         self._shutdown: Shutdown | None = None
         self._message = done_t()  # the next done; fields that stay the same are written once
@@ -153,13 +157,13 @@ class Host:
     def _finalize(self) -> Steps[None]:
         """Finalizes the components and sends what they wrote with a final done, which counts if the run goes on."""
         written, tick = self.group.finalize()
-        before = self._done
+        before = list(self._dones.values())
         done = self._message
         clear_requests(done)
         done.kind, done.tick, done.step, done.iteration = done_t.FINAL, tick, -1, 0
         self.group.put_lost_frames(done)
         self._publish(written, -1, 0)
-        yield from self._leave([each for each in (before, self._done) if each])
+        yield from self._leave([*before, self._done])
 
     def _leave(self, dones: Sequence[bytes]) -> Steps[None]:
         """Waits until no other process needs this one any more; `dones` are the last ones for the supervisor."""
@@ -201,10 +205,9 @@ class Host:
         """Runs the iterations of a tick, once; repeats the done for a tick that was answered before."""
         if self._assignment.host in tick.absent:
             return
-        this = (tick.tick, tick.step)
-        if this <= self._answered:
-            if this == self._answered:
-                self._sender.publish(sync.DONE, self._done, self._sync_port)
+        if (tick.tick, tick.step) <= self._answered:
+            if tick.tick == self._answered[0] and tick.step in self._dones:
+                self._sender.publish(sync.DONE, self._dones[tick.step], self._sync_port)
             return
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         new = self._dynamic.take_over(tick.channels) if self._dynamic and tick.channels else ()
@@ -222,12 +225,29 @@ class Host:
         if tick.settings or tick.channels:
             self.group.configure(tick.settings, tick.channels)
         self.group.set_holder(tick.main_loop)
+        if tick.tick != self._answered[0]:
+            self._dones.clear()
+        self._run_stage(tick, tick.step, stage)
+        if stage in self._stages_ahead and tick.main_loop == NOBODY:
+            self._run_ahead(tick, self._stages_ahead[stage])
+
+    def _run_ahead(self, tick: tick_t, stages: Sequence[int]) -> None:
+        """Runs further stages of a tick on the same marks of other hosts and the new marks of this one."""
+        done = self._message
+        for stage in stages:
+            if self._stopping():
+                break
+            self.group.deliver(self.inputs.advance(done.channel, done.sequence, ()))
+            self._run_stage(tick, stage, stage)
+
+    def _run_stage(self, tick: tick_t, step: int, stage: int) -> None:
+        """Runs the iterations of a stage and sends what they wrote, with a done."""
         names = self._names_of_stage[stage]
         done = self._message
-        done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, tick.step, 0
-        self._finish(names, self.group.run(names, self._plan.stages[stage], tick, tick.step))
+        done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, step, 0
+        self._finish(names, self.group.run(names, self._plan.stages[stage], tick, step))
         self._catch_up.took_part(tick.tick)
-        self._answered = this
+        self._answered = tick.tick, step
 
     def _fetch(self, lacking: Sequence[ChannelBuffer]) -> Steps[bool]:
         """Fetches until everything visible is here; returns False if the process is asked to stop."""
@@ -251,7 +271,7 @@ class Host:
         done = self._message
         done.next_time_us, done.busy_us = next_us, busy_us
         done.channel, done.sequence = list(marks), list(marks.values())
-        self._done = sync.encode_done(done)
+        self._done = self._dones[done.step] = sync.encode_done(done)
         self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _handle_own(self) -> bool:
@@ -308,3 +328,9 @@ class Host:
         if not line.tick:
             line.tick, line.time_us = self._assignment.start.tick, self._assignment.start.time_us
         self._sender.publish(b"fwk/log", line.encode(), self._ports.log)
+
+
+def _stages_ahead(plan: Plan, host: int) -> dict[int, list[int]]:
+    """Returns the stages that a host runs on the marks of an earlier one, by that stage."""
+    last = lookahead(plan)[host]
+    return {stage: [each for each in last if stage < each <= last[stage]] for stage in last if last[stage] > stage}

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 
 from fwk.bus.network import Steps
 from fwk.bus.retransmission import Backoff, RetransmissionTimeout
+from fwk.engine.lookahead import lookahead
+from fwk.model.plan import NOBODY
 from fwk.model.tick_events import HostLate, StageBegun
 from fwk.supervisor.core import Core
 from fwk.supervisor.host_process import HostProcess
@@ -13,9 +15,12 @@ from fwk.supervisor.processes.hosts import Hosts
 from fwk.supervisor.tick_log import TickLog
 from fwk.supervisor.tick_sender import Tick, TickSender, Turn
 from fwk.supervisor.wait_report import WaitReport
+from lcmtypes.core import done_t
 
 NEVER_US = 1 << 62
 REPEAT_LONGEST_US = 100_000
+REPEAT_AHEAD_US = 5_000
+"""Shortest wait before a tick is sent that all hosts of its stage run ahead: they take the time of several stages."""
 LOOK_US = 20_000
 """Interval at which a waiting stage attends to hosts that are being restarted."""
 STUCK_US = 1_000_000
@@ -57,6 +62,8 @@ class Barrier(ABC):
         self._times = times
         self._timeouts = [RetransmissionTimeout() for _ in core.plan.stages]
         self._tick = Tick(0, 0, -1)
+        self._lookahead = lookahead(core.plan)
+        self._early: dict[tuple[int, int], dict[int, done_t]] = {}  # by tick and step, then by host
         self._rejoined = False  # a host joined the running stage: send it the tick at once
 
     def run(self, tick: Tick, turn: Turn) -> Steps[None]:
@@ -66,8 +73,9 @@ class Barrier(ABC):
         self.ledger_step = core.ledger.begin()
         self.outstanding = self._participants(turn.hosts)
         self._tick_log.event(StageBegun(stage, turn.step))
-        self.sender.broadcast(tick, turn, self.outstanding)
+        self._send(begins=True)
         began_us = sent_us = now_us = core.now_us()
+        self._take_early()
         look_us = began_us + LOOK_US
         ends_us = self._ends_us(began_us)
         repeats = self._repeats(sent_us)
@@ -83,7 +91,7 @@ class Barrier(ABC):
                 self._leave_behind()
             elif self._rejoined or now_us >= repeats.due_us:
                 self.repeated += not self._rejoined
-                self.sender.broadcast(tick, turn, self.outstanding)
+                self._send()
                 sent_us = core.now_us()
                 if self._rejoined:
                     self._rejoined, repeats = False, self._repeats(sent_us)
@@ -95,12 +103,42 @@ class Barrier(ABC):
     def _repeats(self, now_us: int) -> Backoff:
         """Returns when a tick of the running stage that was sent now is repeated."""
         first_us = self._timeouts[self.turn.stage].wait_us
+        if all(self._runs_ahead(host) for host in self.turn.hosts if host.index in self.outstanding):
+            first_us = max(first_us, REPEAT_AHEAD_US)
         return Backoff(now_us, first_us, max(first_us, REPEAT_LONGEST_US))
 
     def answered(self, host: HostProcess) -> None:
         """Notes that a host has answered the running stage."""
         self.outstanding.discard(host.index)
-        host.answered_step = self.ledger_step
+        host.answered_step = host.told_step
+
+    def keep_early(self, host: HostProcess, done: done_t) -> None:
+        """Keeps the done of a stage that has not begun yet, if the host may run that stage ahead."""
+        place = done.tick, done.step
+        if self.place < place <= host.ahead and done.kind == done_t.STAGE and done.incarnation == host.incarnation:
+            self._early.setdefault(place, {})[host.index] = done
+
+    def _take_early(self) -> None:
+        """Takes the dones of hosts that have run the beginning stage ahead."""
+        for done in self._early.pop(self.place, {}).values():
+            self._core.events.emit(done)
+        self._core.events.dispatch()
+
+    def _runs_ahead(self, host: HostProcess) -> bool:
+        """Returns whether a host runs the stage on the marks of an earlier one, without a tick."""
+        return host.told_step < self.ledger_step and host.ahead >= self.place
+
+    def _send(self, begins: bool = False) -> None:
+        """Sends the tick to all outstanding hosts; when the stage begins, not to those that run it ahead."""
+        tick, turn, outstanding = self._tick, self.turn, self.outstanding
+        if begins:
+            ahead = {host.index for host in turn.hosts if self._runs_ahead(host)}
+            outstanding = outstanding - ahead if ahead else outstanding
+        for host in turn.hosts:
+            if host.ahead < self.place and host.running and host.index in outstanding:
+                last = self._lookahead[host.index][turn.stage] if tick.main_loop == NOBODY else turn.step
+                host.told_step, host.ahead = self.ledger_step, (tick.number, last)
+        self.sender.broadcast(tick, turn, outstanding)
 
     def joined(self) -> None:
         """Notes that a host is ready: it may belong to the running stage."""

@@ -61,6 +61,8 @@ class Dones:
         try:
             if self._counts(host, done):
                 self._take(host, done)
+            else:
+                self._barrier.keep_early(host, done)
         except MessageError as error:
             self._complain("fwk/done", f"{error}; refused")
 

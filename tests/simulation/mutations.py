@@ -7,6 +7,7 @@ from typing import Any
 from unittest.mock import patch
 
 from fwk.component import services
+from fwk.engine import lookahead
 from fwk.engine.boundary import BoundaryRequest, BoundaryRequests
 from fwk.engine.catch_up import CatchUp
 from fwk.engine.channel_buffer import ChannelBuffer
@@ -16,6 +17,7 @@ from fwk.host.host import Host
 from fwk.host.inputs import Inputs
 from fwk.host.outputs import Outputs
 from fwk.lcm.messages import Header
+from fwk.model.plan import HostPlan, Plan
 from fwk.supervisor.boundary import Boundary
 from fwk.supervisor.control.control import Control
 
@@ -174,6 +176,14 @@ def _fails_at_once(right: Any) -> Any:
     return leave
 
 
+def _boundless(_right: Any) -> Any:
+    def of_host(plan: Plan, host: HostPlan) -> Mapping[int, int]:
+        stages = {stage for index in host.components for stage in plan.components[index].stages}
+        return dict.fromkeys(sorted(stages), max(stages, default=0))
+
+    return of_host
+
+
 MUTATIONS = (
     Mutation("early marks", "marks are visible one stage early", Visibility, "publish", _visible_at_once),
     Mutation("greedy newcomer", "a newcomer sees every message", CatchUp, "applies", _never_new),
@@ -198,5 +208,6 @@ MUTATIONS = (
     Mutation("early answer", "a setting is acknowledged too early", Control, "_taken_over", _before_it_is_so),
     Mutation("silent loss", "a lost message is not counted", Inputs, "gone", _uncounted),
     Mutation("hasty failure", "a host with a failed component ends at once", Host, "_leave", _fails_at_once),
+    Mutation("boundless lookahead", "a host does not wait for what it reads", lookahead, "_of_host", _boundless),
     Mutation("hasty boundary", "a tick does not wait for hosts that leave", Boundary, "_until_left", _leaves_unseen),
 )

@@ -85,7 +85,7 @@ class SimulatedZygote:
         self.processes[pid] = process
         self._newest[host] = pid
         assignment = Assignment(self._plan, host, self._run, start, {}, marker=self._progress)
-        hooks = ProcessHooks(stopping=lambda: process.stopping)
+        hooks = ProcessHooks(stopping=lambda: process.stopping, runs_ahead=True)
         self._world.trace.add(self._world.now_us, name, f"starts as process {pid}")
         process.start(lambda: host_of(assignment, process, hooks).serve())
         self._tell(Started(host, start.incarnation, pid))

@@ -12,6 +12,7 @@ from fwk.bus.network import Steps
 from fwk.bus.sockets import LOOPBACK, Address
 from fwk.bus.waiting import Source
 from fwk.engine.assignment import Start
+from fwk.engine.lookahead import lookahead
 from fwk.lcm import wire
 from fwk.model.plan import NOBODY
 from fwk.model.ports import Ports
@@ -87,9 +88,12 @@ class MemoryRun:
         """Hosts whose `init` does not end."""
         self.does_not_stop: set[int] = set()
         """Hosts whose `finalize` does not end."""
+        self.loses_dones: set[tuple[int, int]] = set()
+        """Hosts and steps whose dones do not arrive."""
         self.alters: Callable[[done_t], None] = lambda _: None
         """Changes a done before it is sent."""
         self._incarnation: dict[int, int] = {}
+        self._lookahead = lookahead(plan)
         self._events: deque[Started | Ended] = deque()
         self._sockets: dict[int, MemorySocket] = {}
         self._watched: set[int] = set()
@@ -197,7 +201,16 @@ class MemoryRun:
             stages = {each for index in host.components for each in self.plan.components[index].stages}
             takes_part = stage in stages and host.index not in tick.absent
             if takes_part and host.index not in self.does_not_answer and self._incarnation.get(host.index):
-                self.done(host.index, tick.tick, tick.step, sequence=tick.tick)
+                for step in self._steps_of(host.index, tick, stage):
+                    if (host.index, step) not in self.loses_dones:
+                        self.done(host.index, tick.tick, step, sequence=tick.tick)
+
+    def _steps_of(self, host: int, tick: tick_t, stage: int) -> list[int]:
+        """Returns the steps that a host runs on the marks of a tick."""
+        if tick.main_loop != NOBODY:
+            return [tick.step]
+        ahead = self._lookahead[host]
+        return [each for each in ahead if stage <= each <= ahead[stage]]
 
     def _gateway_done(self, tick: int) -> None:
         made = recorded_t()

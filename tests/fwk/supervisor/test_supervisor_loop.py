@@ -219,3 +219,91 @@ def test_record_has_all_events_of_a_tick_in_order() -> None:
     kinds = tick_events_t.STAGE, tick_events_t.STAGE_DONE, tick_events_t.STAGE_DONE
     assert tuple(run.records[-1].events.kind) == kinds
     assert run.records[-1].run == RUN
+
+
+ACQUIRE = 1
+ROBOT, ACTOR = 0, 1
+"""Hosts of `robot`."""
+
+
+class Sensor(Component):
+    stage = "sensor_acquire"
+    left: Writes[imu_t]
+
+
+class Thinker(Component):
+    stage = "think"
+    left: Reads[imu_t]
+    right: Writes[imu_t]
+
+
+class Actor(Component):
+    stage = "act"
+    right: Reads[imu_t]
+
+
+def robot() -> MemoryRun:
+    """A host with two stages that needs no other host, and a host that reads from it."""
+    run = MemoryRun(
+        {"r/sensor": Sensor, "r/thinker": Thinker, "r/actor": Actor},
+        groups=[["r/sensor", "r/thinker"]],
+        clock="simulated",
+        period_s=0.001,
+    )
+    run.begin()
+    return run
+
+
+def test_host_that_runs_ahead_gets_no_further_tick() -> None:
+    run = robot()
+    run.play_ticks(3)
+    assert [(tick.tick, tick.step) for tick in run.ticks if tick.step == THINK] == []
+    assert run.supervisor.loop.barrier.repeated == 0
+    dones = run.records[-1].events.stage_dones
+    done = list(zip(dones.host, dones.step, strict=True))
+    assert done == [(ROBOT, ACQUIRE), (ROBOT, THINK), (ACTOR, THINK + 2)]
+
+
+def test_tick_is_sent_when_an_early_done_is_lost() -> None:
+    run = robot()
+    run.loses_dones = {(ROBOT, THINK)}
+    tick = len(run.records) + 1
+    run.play(lambda: (run.ticks[-1].tick, run.ticks[-1].step) == (tick, THINK))
+    run.loses_dones.clear()
+    run.play_ticks(2)
+    assert run.supervisor.loop.barrier.repeated > 0
+
+
+def test_messages_of_an_early_done_are_visible_in_their_order() -> None:
+    run = robot()
+    run.does_not_answer = {ACTOR}
+    tick = len(run.records) + 1
+    run.play(lambda: (run.ticks[-1].tick, run.ticks[-1].step) == (tick, THINK + 2))
+    newest = run.ticks[-1]
+    assert dict(zip(newest.channel, newest.sequence, strict=True))[RIGHT] == tick
+
+
+def test_early_done_of_a_dead_host_does_not_count() -> None:
+    run = robot()
+    run.does_not_answer = {ROBOT}
+    tick = len(run.records) + 1
+    run.play(lambda: run.ticks[-1].tick == tick)
+    run.done(ROBOT, tick, THINK, sequence=99)
+    run.play(lambda: run.supervisor.loop.barrier.repeated > 0)
+    run.end(ROBOT, -9)
+    run.does_not_answer = set()
+    run.play_ticks(3)
+    assert run.supervisor._core.ledger.latest(RIGHT) < 99
+
+
+def test_done_beyond_the_lookahead_does_not_count() -> None:
+    run = robot()
+    run.does_not_answer = {ROBOT, ACTOR}
+    tick = len(run.records) + 1
+    run.play(lambda: run.ticks[-1].tick == tick)
+    run.done(ACTOR, tick, THINK + 2)
+    run.done(ROBOT, tick, ACQUIRE, sequence=tick)
+    run.done(ROBOT, tick, THINK, sequence=tick)
+    run.play(lambda: (run.ticks[-1].tick, run.ticks[-1].step) == (tick, THINK + 2))
+    run.play(lambda: run.supervisor.loop.barrier.repeated > 3)
+    assert len(run.records) == tick - 1
