@@ -5,7 +5,7 @@ import json
 import signal
 import socket
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -195,8 +195,9 @@ def page(tmp_path: Path) -> Iterator[str]:
 
 @pytest.mark.slow
 @pytest.mark.system
-def test_chromium_shows_the_page(page: str) -> None:
-    from tools.docs.rerun_picture import picture_of, share_of
+def test_chromium_shows_the_page(needs: Callable[..., None], page: str) -> None:
+    from tools.docs.rerun_picture import CHROMIUM, picture_of, share_of
 
+    needs(CHROMIUM)
     lawn = b"\x30\x80\x3c"
     assert share_of(picture_of(page, lawn), lawn) > 0.02
