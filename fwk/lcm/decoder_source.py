@@ -1,5 +1,6 @@
 """The source of a decoder of an LCM type."""
 
+import math
 import struct
 from typing import Any
 
@@ -15,6 +16,9 @@ from fwk.lcm.generated_source import (
     type_named,
 )
 
+_TOGETHER_MOST = 36
+"""Numbers of the largest array of fixed size that is unpacked together with its neighbours: a 6 x 6 matrix."""
+
 
 class DecoderSource(Source):
     """Source of `decode`, the function for one type.
@@ -29,6 +33,7 @@ class DecoderSource(Source):
         fingerprint = self._constant("fingerprint", message_type._get_packed_fingerprint())
         self._line(f"if data[:8] != {fingerprint}:")
         self._line("    raise ValueError('wrong fingerprint')")
+        self._arrays: list[str] = []  # lines that make arrays of the numbers that wait to be unpacked
         self._at, self._offset = "", 8  # where the next member begins: the value of a variable plus a number of bytes
         made = self._object(message_type)
         self._struct(message_type, made)
@@ -90,6 +95,9 @@ class DecoderSource(Source):
 
     def _array(self, kind: str, dimensions: Dimensions, owner: str, target: str) -> None:
         first, *others = dimensions
+        if self._is_unpacked_together(kind, dimensions):
+            self._together(kind, dimensions, target)
+            return
         self._flush_numbers()
         length = f"{owner}.{first}" if isinstance(first, str) else str(first)
         if isinstance(first, str):
@@ -110,6 +118,21 @@ class DecoderSource(Source):
             self._move(f"{self._place} + {struct.calcsize('>' + DECODED[kind])} * {length}")
         else:
             self._loop(kind, length, target)
+
+    def _is_unpacked_together(self, kind: str, dimensions: Dimensions) -> bool:
+        fixed = kind in DECODED and kind != "byte" and all(isinstance(size, int) for size in dimensions)
+        return fixed and len(dimensions) <= 2 and math.prod(map(int, dimensions)) <= _TOGETHER_MOST
+
+    def _together(self, kind: str, dimensions: Dimensions, target: str) -> None:
+        """Unpacks an array of fixed size with the numbers before and after it."""
+        rows = []
+        for _ in range(int(dimensions[0]) if len(dimensions) == 2 else 1):
+            values = [self._fresh("number") for _ in range(int(dimensions[-1]))]
+            for value in values:
+                self._number(DECODED[kind], value)
+            rows.append(_listed(kind, f"({''.join(f'{value}, ' for value in values)})"))
+        made = f"[{', '.join(rows)}]" if len(dimensions) == 2 else rows[0]
+        self._arrays.append(f"{target} = {made}")
 
     def _row(self, kind: str, count: int) -> str:
         """Returns the expression of the values of an array of fixed size."""
@@ -151,7 +174,9 @@ class DecoderSource(Source):
             unpack = self._constant("unpack", made.unpack_from)
             self._line(f"{', '.join(self._values)}, = {unpack}(data, {self._place})")
             self._offset += made.size
-        self._format, self._values = "", []
+        for line in self._arrays:
+            self._line(line)
+        self._format, self._values, self._arrays = "", [], []
 
 
 def _empty(kind: str) -> str:

@@ -35,4 +35,7 @@ def between(start: Point, end: Point, share: float) -> Point:
 
 def plausible(*values: float) -> bool:
     """Returns whether all values can be measurements; NaN, infinity and values of 10,000 and more cannot."""
-    return all(abs(value) < BOUND for value in values)
+    for value in values:  # noqa: SIM110 - `all` and a generator take three times as long
+        if not -BOUND < value < BOUND:
+            return False
+    return True
