@@ -94,4 +94,60 @@ REGRESSIONS: dict[str, Scenario] = {
         ),
         actions=(Action("set", 3, 14_420, "drift4/rover", 969_730),),
     ),
+    # A continuous component asked for a channel while a boundary waited for a host that left: the run decided that at
+    # the next boundary, the branch of its recording at once.
+    "branch decides what came during the boundary": Scenario(
+        seed=5075,
+        ticks=6,
+        parts=(
+            Part("a0/director", "Director", ("act",), {"ballast": 20, "eager": 0.8}),
+            Part("b2/opener", "Opener", ("act",)),
+            Part("drift3/rover", "Rover", ()),
+        ),
+        stages=("plan", "think", "act"),
+        actions=(Action("stop", after_tick=2, delay_us=76, target="gateway", amount=103_055),),
+    ),
+    # The host of the component with the main loop died at a boundary after the decision about the main loop; the branch
+    # decided afterwards, gave the main loop back a tick earlier than the run, and no longer followed it.
+    "branch decides the main loop too late": Scenario(
+        seed=5473,
+        ticks=6,
+        parts=(
+            Part("drift2/drifter", "Drifter", (), {"ballast": 20}),
+            Part("b3/usurper", "Usurper", ("plan",), {"bursts": 0}),
+            Part(
+                "b4/opener",
+                "Opener",
+                ("plan", "think"),
+                {"ballast": 20, "bursts": 3, "crash_in": "loop", "crash_tick": 7, "eager": 0.3, "early": True},
+            ),
+            Part(
+                "b5/opener",
+                "Opener",
+                ("plan", "tidy"),
+                {
+                    "ballast": 20,
+                    "bursts": 3,
+                    "crash_in": "loop",
+                    "crash_tick": 6,
+                    "eager": 0.3,
+                    "early": False,
+                    "work_us": 0,
+                },
+            ),
+            Part(
+                "b6/opener",
+                "Opener",
+                ("think", "act"),
+                {"ballast": 20, "bursts": 0, "eager": 0.1, "early": False, "work_us": 0},
+            ),
+        ),
+        stages=("plan", "think", "act", "tidy"),
+        hosting="robot",
+        weather=Weather(loss=0.0627),
+        actions=(
+            Action("kill_at_send", after_tick=2, delay_us=17_735, target="drift2/drifter", amount=9),
+            Action("cut_off", after_tick=3, delay_us=14_628, target="b4/opener", amount=19),
+        ),
+    ),
 }

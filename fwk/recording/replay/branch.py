@@ -1,6 +1,7 @@
 """Branch: a replay that goes on live after a tick, as a run of its own with its own recording."""
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import cast
 
 from fwk.component.images import Frame
 from fwk.control.requests import RequestError
@@ -13,6 +14,7 @@ from fwk.model.plain_values import value_messages
 from fwk.model.tick_events import (
     ChannelsChanged,
     HostLost,
+    HostStarted,
     MainLoopGiven,
     StageBegun,
     TickEvent,
@@ -167,28 +169,33 @@ class Branch(LiveReplay):
         self._begin_tick(record.tick, record.time_us, record.channels)
         for settings in record.settings:
             self._set(settings, record.tick)
-        place = next((at for at, event in enumerate(tick.events) if isinstance(event, STAGES)), len(tick.events))
-        boundary, stages = tick.events[:place], tick.events[place:]
-        given = [event.component for event in boundary if isinstance(event, MainLoopGiven)]
-        events = self._taken(event for event in boundary if not isinstance(event, MainLoopGiven))
-        if self.decisions.wrong:
-            raise RecordingError(f"{self.recording.path}: cannot go on as in the run: {self.decisions.wrong}")
+        before, holder, after, stages = _boundary_of(tick.events)
+        events = self._taken(before)
         if schedule.asked:
             schedule.decide()
         begun = [(event.step, event.stage) for event in stages if isinstance(event, StageBegun)]
-        self._follows = schedule.holder == (given or [self._holder])[0] and [*schedule.steps[: len(begun)]] == begun
+        is_holder = schedule.holder == (self._holder if holder is None else holder)
+        self._follows = is_holder and [*schedule.steps[: len(begun)]] == begun
         if schedule.holder != self._holder:
             events += self._taken([MainLoopGiven(schedule.holder)])
+        events += self._taken(after)
+        if self.decisions.wrong:
+            raise RecordingError(f"{self.recording.path}: cannot go on as in the run: {self.decisions.wrong}")
         events += self._taken(stages if self._follows else self._stages())
         record.events = events_message(events)
         self._write(record)
 
+    def _take_events(self, events: Sequence[TickEvent]) -> None:
+        """Takes the events of a recorded tick before the branch."""
+        before, holder, after, stages = _boundary_of(events)
+        self._taken(before)
+        self.decisions.check_holder(self._holder if holder is None else holder, self._now)
+        if holder is not None:
+            self._taken([MainLoopGiven(holder)])
+        self._taken([*after, *stages])
+
     def _take_event(self, event: TickEvent) -> None:
-        if isinstance(event, MainLoopGiven) and not self._live:
-            self.decisions.check_holder(event.component, self._now)
-        elif isinstance(event, StageBegun) and not self._live and self._stage < 0:  # the boundary has ended
-            self.decisions.check_holder(self._holder, self._now)
-        elif isinstance(event, ChannelsChanged):
+        if isinstance(event, ChannelsChanged):
             change = self._changes[event.change]
             if self._follows:
                 self._end_killed(change)
@@ -209,6 +216,26 @@ class Branch(LiveReplay):
             self.decisions.advance(time_us)  # the recorded time counts
             self.decisions.participants.forget()
         super()._begin_tick(tick, time_us, channels)
+
+
+def _boundary_of(
+    events: Sequence[TickEvent],
+) -> tuple[Sequence[TickEvent], int | None, Sequence[TickEvent], Sequence[TickEvent]]:
+    """Divides the events of a tick at the decision about the main loop.
+
+    Returns:
+        Events before the decision, the new holder (None: the holder stayed), those after it, and those from the first
+        stage on. Without a new holder the first event that can only come after the decision tells where it was.
+    """
+    end = next((at for at, event in enumerate(events) if isinstance(event, STAGES)), len(events))
+    boundary = events[:end]
+    given = next((at for at, event in enumerate(boundary) if isinstance(event, MainLoopGiven)), None)
+    if given is not None:
+        holder = cast(MainLoopGiven, boundary[given]).component
+        return boundary[:given], holder, boundary[given + 1 :], events[end:]
+    later = HostLost, ChannelsChanged, HostStarted
+    at = next((at for at, event in enumerate(boundary) if isinstance(event, later)), end)
+    return boundary[:at], None, boundary[at:], events[end:]
 
 
 class _Frames:

@@ -35,11 +35,16 @@ class Decisions:
         self._grants = ChannelGrants(plan)
         self._opens = any(component.opens for component in plan.components)
         self._next_us = -1  # logical time of the next tick, as the time source set it
+        self._crosses = False  # a boundary has taken the requests that it decides
+        self._held: list[done_t] = []  # dones with requests for the boundary after that
 
     def heed(self, done: done_t) -> None:
-        """Takes what a done requests, before or after the branch."""
+        """Takes what a done requests, before or after the branch; a boundary that has begun does not decide it."""
         if done.next_time_us >= 0:
             self._next_us = done.next_time_us
+        if self._crosses:
+            self._held.append(done)
+            return
         for request in done.main_loop:
             self.schedule.ask(done.tick, place_of(done), request)
         for asked in done.channels:
@@ -47,6 +52,16 @@ class Decisions:
             self._grants.ask(done.tick, place_of(done), name, [channel_request_of(asked)])
         for starts in done.plugins:
             self.participants.ask(done.tick, place_of(done), starts)
+
+    def crosses(self) -> None:
+        """Notes that hosts leave at a boundary, which has taken its requests by then."""
+        self._crosses = True
+
+    def crossed(self) -> None:
+        """Notes that a boundary has ended."""
+        held, self._held, self._crosses = self._held, [], False
+        for done in held:
+            self.heed(done)
 
     def came(self, host: int, incarnation: int) -> None:
         """Notes that a host takes part from now on."""
@@ -57,6 +72,7 @@ class Decisions:
     def left(self, host: int) -> None:
         """Notes that a host takes no part any more."""
         self.participants.left(host)
+        self._held = [done for done in self._held if done.host != host]
         components = self._plan.hosts[host].components
         self.schedule.left(components)
         for component in components:

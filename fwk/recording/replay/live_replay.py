@@ -150,6 +150,10 @@ class LiveReplay(Replay):
                     self.absent.pop(self._run_plan.components[index].name, None)
         elif isinstance(event, HostLost | HostStopped):
             self.decisions.left(event.host)
+            if isinstance(event, HostStopped):
+                self.decisions.crosses()
+        elif isinstance(event, STAGES):
+            self.decisions.crossed()
         elif isinstance(event, IterationDone):
             for index in self._run_plan.hosts[event.host].components:
                 self._iterations[index] = event.iteration, self._time_us

@@ -128,7 +128,11 @@ class Replay:
         """Takes the settings and the events of a recorded tick."""
         for settings in tick.record.settings:
             self._set(settings, tick.record.tick)
-        for event in tick.events:
+        self._take_events(tick.events)
+
+    def _take_events(self, events: Sequence[TickEvent]) -> None:
+        """Takes the events of a recorded tick, in their order."""
+        for event in events:
             self._take_event(event)
 
     def _begin_tick(self, tick: int, time_us: int, channels: Sequence[channels_change_t]) -> None:
