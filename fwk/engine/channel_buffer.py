@@ -101,5 +101,4 @@ def _age(data: bytes) -> tuple[int, int]:
         header = Header.of(data)
     except MessageError:
         return -1, 0
-    writer = header.writer
-    return header.tick, int(writer.rpartition("#")[2]) if "#" in writer else 1
+    return header.tick, header.incarnation

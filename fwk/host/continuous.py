@@ -155,6 +155,7 @@ class ContinuousHost(Host):
         done.kind, done.tick, done.step, done.iteration = done_t.ITERATION, tick.tick, -1, number
         self._repeats = Backoff(self._now_us(), REPEAT_US, REPEAT_LONGEST_US)
         self._finish(self._names, ran)
+        self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _open(self, dynamic: DynamicChannels, changes: Sequence[channels_change_t], tick: tick_t) -> None:
         """Applies decisions on dynamic channels before an iteration; the catch-up rule holds for newly read ones.

@@ -97,6 +97,7 @@ class Host:
         self._answered = (0, -1)  # the newest (tick, step) that was answered
         self._done = b""
         self._dones: dict[int, bytes] = {}  # dones of the newest tick, by step
+        self._failed: ComponentFailedError | None = None  # in a stage run ahead, whose tick has not come yet
         self._ticks_ignored = False
         self._shutdown: Shutdown | None = None
         self._message = done_t()  # the next done; fields that stay the same are written once
@@ -128,6 +129,8 @@ class Host:
         try:
             self._init()
             yield from self._work()
+            if self._failed:
+                raise self._failed
             yield from self._finalize()
         except MemoryError as error:  # between two iterations
             self.group.out_of_memory(error)
@@ -209,6 +212,8 @@ class Host:
             if tick.tick == self._answered[0] and tick.step in self._dones:
                 self._sender.publish(sync.DONE, self._dones[tick.step], self._sync_port)
             return
+        if self._failed:
+            raise self._failed
         self._clock.tick, self._clock.now_us = tick.tick, tick.time_us
         new = self._dynamic.take_over(tick.channels) if self._dynamic and tick.channels else ()
         moved = self.inputs.advance(tick.channel, tick.sequence, tick.voids)
@@ -228,20 +233,36 @@ class Host:
         if tick.tick != self._answered[0]:
             self._dones.clear()
         self._run_stage(tick, tick.step, stage)
+        answered = [tick.step]
         if stage in self._stages_ahead and tick.main_loop == NOBODY:
-            self._run_ahead(tick, self._stages_ahead[stage])
+            answered += self._run_ahead(tick, self._stages_ahead[stage])
+        for step in answered:
+            self._sender.publish(sync.DONE, self._dones[step], self._sync_port)
 
-    def _run_ahead(self, tick: tick_t, stages: Sequence[int]) -> None:
-        """Runs further stages of a tick on the same marks of other hosts and the new marks of this one."""
-        done = self._message
+    def _run_ahead(self, tick: tick_t, stages: Sequence[int]) -> list[int]:
+        """Runs further stages of a tick on the same marks of other hosts and the new marks of this one.
+
+        If the process dies, none of the stages counts. A component that raises ends the process only when the tick
+        of its stage comes: by then the dones of the stages before have been taken.
+
+        Returns:
+            The stages that have been run.
+        """
+        done, ran = self._message, list[int]()
         for stage in stages:
             if self._stopping():
                 break
             self.group.deliver(self.inputs.advance(done.channel, done.sequence, ()))
-            self._run_stage(tick, stage, stage)
+            try:
+                self._run_stage(tick, stage, stage)
+            except ComponentFailedError as error:
+                self._failed = error
+                break
+            ran.append(stage)
+        return ran
 
     def _run_stage(self, tick: tick_t, step: int, stage: int) -> None:
-        """Runs the iterations of a stage and sends what they wrote, with a done."""
+        """Runs the iterations of a stage, sends what they wrote, and makes the done."""
         names = self._names_of_stage[stage]
         done = self._message
         done.kind, done.tick, done.step, done.iteration = done_t.STAGE, tick.tick, step, 0
@@ -257,7 +278,7 @@ class Host:
         return complete
 
     def _finish(self, names: Sequence[str], ran: Ran) -> None:
-        """Sends what these components wrote, and the done with their requests and the messages that were lost."""
+        """Sends what these components wrote; makes the done with their requests and the messages that were lost."""
         done = self._message
         if has_requests(done):
             clear_requests(done)
@@ -272,7 +293,6 @@ class Host:
         done.next_time_us, done.busy_us = next_us, busy_us
         done.channel, done.sequence = list(marks), list(marks.values())
         self._done = self._dones[done.step] = sync.encode_done(done)
-        self._sender.publish(sync.DONE, self._done, self._sync_port)
 
     def _handle_own(self) -> bool:
         """Handles messages to this host alone; returns False when it is time to stop."""

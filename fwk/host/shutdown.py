@@ -20,6 +20,9 @@ TIMEOUT_US = 500_000
 LOCKSTEP_TIMEOUT_US = 2_500_000
 """In lockstep, where time is not short; less than the time that hosts have when the whole run ends."""
 
+REPETITIONS_LEAST = 7
+"""Repetitions without an answer before the host leaves: a machine that was suspended has let no time for answers."""
+
 
 class Shutdown:
     """Repeats the last messages of a leaving host until the supervisor and the gateway have taken them.
@@ -33,7 +36,7 @@ class Shutdown:
         sender: the host's sender.
         leaving: names the newest message of each channel that the host has sent; the gateway takes it once it holds
         all of them.
-        dones: the last two dones of the host for the supervisor; empty: the host has failed and makes no final done.
+        dones: those of the newest tick and the final one, for the supervisor; empty: the host has failed.
         timeout_us: wall time after which the host leaves without an answer.
     """
 
@@ -65,11 +68,13 @@ class Shutdown:
         network = self._network
         end_us = network.now_us() + self._timeout_us
         repetition = Backoff(network.now_us(), 0, LONGEST_REPEAT_US, REPEAT_US)
-        while self._unanswered and (now_us := network.now_us()) < end_us:
+        sent = 0
+        while self._unanswered and ((now_us := network.now_us()) < end_us or sent <= REPETITIONS_LEAST):
             if now_us >= repetition.due_us:
                 self._send()
                 repetition.repeated(now_us)
-            yield min(repetition.due_us, end_us, self._sender.due_us)
+                sent += 1
+            yield min(repetition.due_us, max(end_us, now_us + REPEAT_US), self._sender.due_us)
             self._sender.send_due()
             handle_own()
 

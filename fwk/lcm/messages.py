@@ -69,6 +69,12 @@ class Header:
             raise MessageError(f"message of {len(data)} bytes is shorter than its header")
         return cls(tick, sequence, time_us, stage, data[HEADER_SIZE : end - 1].decode("utf-8", "replace"), end)
 
+    @property
+    def incarnation(self) -> int:
+        """Incarnation of the writer, which follows '#' in its name; 1: no number."""
+        _, _, number = self.writer.rpartition("#") if "#" in self.writer else ("", "", "1")
+        return int(number)
+
 
 def sequence_of(data: bytes) -> int:
     """Returns the sequence number of an encoded message of at least `HEADER_SIZE` bytes."""

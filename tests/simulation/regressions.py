@@ -150,4 +150,51 @@ REGRESSIONS: dict[str, Scenario] = {
             Action("cut_off", after_tick=3, delay_us=14_628, target="b4/opener", amount=19),
         ),
     ),
+    # The machine stood still for four seconds while a host left. The host gave up waiting for the gateway, which had had
+    # no time to fetch its last messages.
+    "machine stands still while a host leaves": Scenario(
+        seed=20079,
+        ticks=4,
+        parts=(
+            Part("a0/usurper", "Usurper", ("sense", "think"), {"eager": 0.8}),
+            Part("b2/director", "Director", ("tidy",), {"ballast": 20, "bursts": 3, "eager": 0.8}),
+        ),
+        stages=("sense", "think", "tidy"),
+        period_us=10_000,
+        weather=Weather(loss=0.2565, duplicate=0.0281, hiccup=0.0257),
+        actions=(Action("jump", after_tick=3, delay_us=426, target="b2/director", amount=4_285_757),),
+    ),
+    # A component raised in a stage that its host had run ahead. The process ended before the lost done of the stage
+    # before had been sent again, so that stage was run by its successor.
+    "component fails ahead of its tick": Scenario(
+        seed=20704,
+        ticks=2,
+        parts=(
+            Part(
+                "a0/player",
+                "Player",
+                ("think", "tidy"),
+                {"ballast": 20, "bursts": 3, "crash_in": "again", "crash_tick": 2},
+            ),
+            Part("b1/conductor", "Conductor", ("think", "tidy"), {"ballast": 20, "bursts": 3, "early": True}),
+        ),
+        stages=("think", "tidy"),
+        hosting="single",
+        period_us=10_000,
+        weather=Weather(loss=0.288, duplicate=0.0001, delay=0.2982, delay_us=18_409, hiccup=0.0107),
+    ),
+    # A paused run restarted a component twice at one boundary; a replay took the last messages of both incarnations for
+    # those of the first.
+    "restarted twice at one boundary": Scenario(
+        seed=20007,
+        ticks=3,
+        parts=(Part("b0/player", "Player", ("think",), {"work_us": 20_000}), Part("b1/player", "Player", ("think",))),
+        stages=("think", "tidy"),
+        period_us=10_000,
+        actions=(
+            Action("steer", after_tick=1, delay_us=17, target="b0/player", word="restart"),
+            Action("pause", after_tick=1, delay_us=347, target="b1/player", amount=360_543),
+            Action("steer", after_tick=2, delay_us=1_095, target="b0/player", word="restart"),
+        ),
+    ),
 }

@@ -3,7 +3,7 @@
 from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 
-from fwk.lcm.messages import sequence_of
+from fwk.lcm.messages import Header, sequence_of
 from fwk.recording.replay.recording import RecordedTick, RecordingError
 from lcmtypes.core import header_t
 
@@ -58,15 +58,23 @@ class RecordedMessages:
         return max((mark for index, mark in self._marks.items() if names.get(index) == channel), default=0)
 
     def take(self, channel: str, tick: int, step: int) -> list[bytes]:
-        """Returns the messages of a done on a channel, oldest first.
+        """Returns the messages of a done on a channel, oldest first."""
+        return self._hidden.pop((channel, tick, step), [])
 
-        Messages that components of one host wrote in `finalize` carry the tick of each component's own last
-        iteration.
+    def take_final(self, channel: str, incarnation: int) -> list[bytes]:
+        """Returns what an incarnation of a writer wrote in `finalize` on a channel, oldest first.
+
+        Such messages carry the tick of their component's own last iteration, so the tick of the done does not tell
+        which they are. A component that is restarted again at the same boundary has several incarnations there.
         """
-        if step != header_t.FINAL:
-            return self._hidden.pop((channel, tick, step), [])
-        keys = sorted(key for key in self._hidden if key[0] == channel and key[2] == step)
-        return [data for key in keys for data in self._hidden.pop(key)]
+        found: list[bytes] = []
+        for key in sorted(key for key in self._hidden if key[0] == channel and key[2] == header_t.FINAL):
+            messages = self._hidden.pop(key)
+            own = [data for data in messages if Header.of(data).incarnation == incarnation]
+            found += own
+            if len(own) < len(messages):
+                self._hidden[key] = [data for data in messages if data not in own]
+        return found
 
     def hide(self, messages: Mapping[tuple[str, int, int], list[bytes]]) -> None:
         """Takes messages, by channel, tick and step, without a record of the main loop."""

@@ -74,6 +74,7 @@ class Replay:
         self._indices = {channel.name: channel.index for channel in plan.channels}  # of the messages written now
         self._outside = {channel.name for channel in plan.channels if channel.writer == NOBODY}
         self._owed: dict[StageDone, list[Owed]] = {}
+        self._incarnations: dict[int, int] = {}  # of each host, the newest
         self._holder = NOBODY  # component that has the main loop
         self._now = self._time_us = 0  # the running tick and its logical time
         self._stage = self._step = -1  # of the running tick
@@ -179,6 +180,7 @@ class Replay:
         """Handles an event that changes the participants, or the missing messages."""
         if isinstance(event, HostStarted):
             self._forget(event.host)
+            self._incarnations[event.host] = event.incarnation
             self._lives.start(event.host, event.incarnation, event.change)
         elif isinstance(event, HostStopped):
             self._lives.stop(event.host)
@@ -281,7 +283,10 @@ class Replay:
         """Compares what a host's done published, and makes it visible from the next step on."""
         recorded: dict[str, list[bytes]] = {}
         for channel in self._host_channels[host]:
-            data = self._messages.take(channel, tick, step)
+            if step == header_t.FINAL:
+                data = self._messages.take_final(channel, self._incarnations.get(host, 1))
+            else:
+                data = self._messages.take(channel, tick, step)
             data = self._comparison.with_lost(channel, data, [written for _, written in made])
             if data:
                 recorded[channel] = data

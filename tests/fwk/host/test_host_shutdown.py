@@ -4,7 +4,7 @@ from itertools import pairwise
 
 from fwk.bus.memory_network import MemoryNetwork
 from fwk.bus.sender import Sender
-from fwk.host.shutdown import LOCKSTEP_TIMEOUT_US, LONGEST_REPEAT_US, REPEAT_US, Shutdown
+from fwk.host.shutdown import LOCKSTEP_TIMEOUT_US, LONGEST_REPEAT_US, REPEAT_US, REPETITIONS_LEAST, Shutdown
 from fwk.model.ports import Ports
 from lcmtypes.core import done_t, leaving_t, taken_t
 from tests.fwk.host.host_parts import plan
@@ -28,6 +28,13 @@ def test_repetitions_of_a_leaving_host_become_rarer() -> None:
     assert max(waits_us) == LONGEST_REPEAT_US
     assert network.clock_us == LOCKSTEP_TIMEOUT_US
     assert len(sent_us) < 50
+
+
+def test_a_suspended_machine_ends_no_leaving_host() -> None:
+    shutdown, network, sent_us, _ = leaving()
+    for until_us in shutdown.wait(lambda: None):
+        network.clock_us = until_us if network.clock_us else 2 * LOCKSTEP_TIMEOUT_US
+    assert len(set(sent_us)) == 1 + REPETITIONS_LEAST
 
 
 def test_a_leaving_host_ends_with_the_last_answer() -> None:
