@@ -150,8 +150,8 @@ REGRESSIONS: dict[str, Scenario] = {
             Action("cut_off", after_tick=3, delay_us=14_628, target="b4/opener", amount=19),
         ),
     ),
-    # The machine stood still for four seconds while a host left. The host gave up waiting for the gateway, which had had
-    # no time to fetch its last messages.
+    # The machine stood still for four seconds while a host left. The host gave up waiting for the gateway, which had no
+    # time to fetch its last messages.
     "machine stands still while a host leaves": Scenario(
         seed=20079,
         ticks=4,
