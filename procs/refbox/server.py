@@ -17,9 +17,9 @@ _HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
 class ServerConfig(Config):
     """Address at which base stations find the server."""
 
-    host: str = "127.0.0.1"
+    host: str = Field("127.0.0.1", frozen=True)
     """Address on which it listens; 0.0.0.0 lets other machines in."""
-    port: int = Field(default=PORT, ge=0, le=65_535)
+    port: int = Field(default=PORT, ge=0, le=65_535, frozen=True)
     """TCP port; 0: one that is free, named in the log."""
     stations: int = Field(default=32, ge=1, le=500)
     """Most base stations at a time; further ones are turned away."""

@@ -2,7 +2,7 @@
 
 from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, NonNegativeFloat, model_validator
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, model_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
@@ -39,7 +39,7 @@ class Action(BaseModel):
 class CrewConfig(Config):
     """Settings of the crew."""
 
-    actions: list[Action] = []
+    actions: list[Action] = Field([], frozen=True)
     """Actions in any order."""
 
 

@@ -12,7 +12,7 @@ from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
+from procs.model.robot import ROBOT, RobotModel
 from procs.simulation.camera_errors import PRESETS
 from procs.simulation.delayed_truth import DelayedTruth, Exposure
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
@@ -51,8 +51,6 @@ class CameraConfig(Config):
     """Part of the brightness that is missing at the picture's edge."""
     field: Field = Field()
     """Measures of the field."""
-    players: Players = dict(PLAYERS)
-    """Team of each robot, which its marker shows."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""
     ball: BallModel = BALL
