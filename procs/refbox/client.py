@@ -11,7 +11,7 @@ from fwk import Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import referee_command_t
 from procs.refbox.protocol import PORT, Command, ProtocolError, Stream, decode
 
-_IGNORED = frozenset({"WELCOME", "RESET", "IS_ALIVE"})
+_IGNORED = frozenset({"WELCOME", "IS_ALIVE"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
 _TIMEOUT_S = 1.0
 _UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})

@@ -20,7 +20,7 @@ _SET_PIECES = {
     "penalty": State.PENALTY,
 }
 _CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
-_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
 _HALVES = {
     "first_half": halves.FIRST,
     "second_half": halves.SECOND,
@@ -104,6 +104,8 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
             whistle.end_half()
         case "end_game":
             whistle.end_match()
+        case "reset":
+            whistle.begin_match()
         case _:
             known = [*_SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
             return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"

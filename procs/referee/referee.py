@@ -85,6 +85,8 @@ class Referee(Component):
             if refused:
                 command.reject(refused)
                 continue
+            if asked.name == "reset":
+                self.game_state.value.history = []
             for call in self._whistle.calls:
                 self._record(call)
             command.done()

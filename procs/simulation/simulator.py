@@ -136,7 +136,7 @@ class Simulator(Component):
         report = self.match_events.value
         report.ball_in_field = self._world.ball_in_field
         report.ball_x_m, report.ball_y_m = self._world.ball.body.position
-        report.ball_speed_m_s = self._world.ball.speed_m_s
+        report.ball_speed_m_s = 0.0 if self._crew.frozen else self._world.ball.speed_m_s
         report.last_touch = self._world.last_touch
         report.events = [event_message(event, self.config.players) for event in events]
         self.match_events.write()
@@ -208,11 +208,12 @@ class Simulator(Component):
 
     def _report_truth(self) -> None:
         truth, ball, players = self.ground_truth.value, self._world.ball, self.config.players
+        moves = not self._crew.frozen
         truth.ball_x_m, truth.ball_y_m = ball.body.position
         truth.ball_z_m = ball.z_m
-        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.body.velocity
-        truth.ball_vz_m_s = ball.vz_m_s
-        truth.robots = [robot_message(robot, players.get(name)) for name, robot in self._world.robots.items()]
+        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.body.velocity if moves else (0.0, 0.0)
+        truth.ball_vz_m_s = ball.vz_m_s if moves else 0.0
+        truth.robots = [robot_message(robot, players.get(name), moves) for name, robot in self._world.robots.items()]
         self.ground_truth.write()
 
 

@@ -71,7 +71,7 @@ class RefereePage(Page):
     icon = "sports"
     needs = ("world/referee_command@outside", GAME_STATE)
 
-    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
     HALVES = ("first_half", "second_half", "first_half_overtime", "second_half_overtime")
     OF_TEAM = ("kickoff", "freekick", "goalkick", "throwin", "corner", "penalty", "goal", "subgoal")
     OF_ROBOT = ("yellow_card", "double_yellow", "red_card", "repair", "substitution")

@@ -142,3 +142,18 @@ def test_led_by_hand_the_referee_calls_nothing() -> None:
     bench.port("match_events").put(ball_x_m=11.2, events=[make(match_event_t.GOAL, x_m=11.2)])
     bench.iterate()
     assert (state(bench).state, state(bench).score_cyan) == (game_state_t.PLAY, 0)
+
+
+def test_reset_begins_the_match_anew() -> None:
+    bench = playing()
+    goal = [make(match_event_t.TOUCH), make(match_event_t.GOAL, x_m=11.2)]
+    bench.port("match_events").put(ball_x_m=11.2, events=goal)
+    bench.port("referee_command").put(name="second_half")
+    bench.iterate()
+    assert (state(bench).score_cyan, state(bench).half, state(bench).cyan_side) == (1, 2, 1)
+    bench.port("referee_command").put(name="reset")
+    bench.iterate()
+    now = state(bench)
+    assert (now.score_cyan, now.half, now.cyan_side, now.time_in_half_s) == (0, 1, -1, 0.0)
+    assert (now.state, now.state_team, now.stopped) == (game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+    assert [each.goal for each in now.history] == [False]
