@@ -9,6 +9,7 @@ from pydantic import Field, PositiveFloat
 from fwk import Call as Sent
 from fwk import Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import referee_command_t
+from procs.model.robot import PLAYERS, Players
 from procs.refbox.protocol import PORT, Command, ProtocolError, Stream, decode
 
 _IGNORED = frozenset({"WELCOME", "IS_ALIVE"})
@@ -30,6 +31,8 @@ class ClientConfig(Config):
     """A RefBox that does not answer for so long is not there. The game goes on meanwhile."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
     """Multicast address that names each team."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class RefBoxClient(Component):
@@ -121,5 +124,11 @@ class RefBoxClient(Component):
         asked = self.referee_command.value
         asked.name = _OTHER_NAMES.get(command.name, command.name).lower()
         asked.team = command.team
-        asked.robot = f"{command.team}{command.robot}" if command.robot else ""
+        asked.robot = self._named(command) if command.robot else ""
         self._sent.append(self.referee_command.call(timeout_s=_TIMEOUT_S))
+
+    def _named(self, command: Command) -> str:
+        """Returns the namespace of the robot that a command names by team and number."""
+        meant = (command.team, command.robot)
+        found = (name for name, player in self.config.players.items() if (player.team, player.number) == meant)
+        return next(found, f"{command.team}{command.robot}")

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t
+from procs.model.robot import PLAYERS, Players, number_of
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, encode
 
@@ -25,6 +26,8 @@ class ServerConfig(Config):
     """Most base stations at a time; further ones are turned away."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
     """Multicast address that names each team."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class RefBoxServer(Component):
@@ -61,7 +64,7 @@ class RefBoxServer(Component):
             return
         now = self.game_state.value
         self._hear()
-        self._send(news(self._before, now), list(self._stations))
+        self._send(news(self._before, now, self._number), list(self._stations))
         self._before = now
         newcomers = self._admit()
         self._send([Command("WELCOME"), *news(None, now)], newcomers)
@@ -71,6 +74,10 @@ class RefBoxServer(Component):
         self._arrivals.close()
         for each in (*self._stations, self._listening):
             each.close()
+
+    def _number(self, robot: str) -> int:
+        player = self.config.players.get(robot)
+        return player.number if player else number_of(robot)
 
     def _hear(self) -> None:
         """Drops what base stations say, and notices those that have left."""

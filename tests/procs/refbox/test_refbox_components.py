@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t
 from procs.refbox.client import RefBoxClient
 from procs.refbox.server import RefBoxServer
 from procs.referee.referee import Referee
@@ -156,4 +156,29 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
             if any("is not JSON" in line.text for line in bench.logged):
                 break
     assert any("RefBox: b'hello' is not JSON" in line.text for line in bench.logged)
+    bench.finalize()
+
+
+def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:
+    players = {"anna": {"team": "magenta", "number": 7}}
+    bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], players=players)
+    bench.iterate()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(say("REPAIR", MAGENTA, robotID=7) + say("REPAIR", CYAN, robotID=7))
+        while len(bench.port("referee_command").sent) < 2:
+            bench.iterate()
+    bench.finalize()
+    assert [each.robot for each in bench.port("referee_command").sent] == ["anna", "cyan7"]
+
+
+def test_card_is_sent_with_the_number_of_the_player() -> None:
+    bench = Bench(RefBoxServer, "world/refbox", port=0, players={"anna": {"team": "magenta", "number": 7}})
+    with contextlib.closing(BaseStation(bench.component.port)) as station:
+        show(bench, game_state_t.PLAY, 0, False)
+        card = game_event_t()
+        card.card, card.team, card.robot = game_event_t.RED, game_state_t.TEAM_MAGENTA, "anna"
+        bench.port("game_state").put(state=game_state_t.PLAY, half=1, history=[card])
+        bench.iterate()
+        assert station.heard(4)[-1] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
     bench.finalize()
