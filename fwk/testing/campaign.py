@@ -1,6 +1,7 @@
 """Campaigns: many seeded runs at the same time, with a file for each result; an interrupted campaign resumes."""
 
 import json
+import multiprocessing
 import os
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from concurrent.futures import Executor, ProcessPoolExecutor, as_completed
@@ -99,6 +100,9 @@ class Campaign:
                     continue
                 self._keep(seed, result)
                 yield seed
+        except KeyboardInterrupt:  # the executor ends all runs; one that is cancelled before makes it print an error
+            running = {}
+            raise
         finally:
             for future in running:
                 future.cancel()
@@ -120,12 +124,21 @@ class Campaign:
 def executor_of(jobs: int, cluster: str = "") -> Iterator[Executor]:
     """Yields `jobs` processes of this machine, or the workers of the Dask cluster whose scheduler has an address.
 
+    Ctrl-C ends the processes of this machine at once.
+
     Raises:
         CampaignError: Dask is not installed, or there is no scheduler at that address.
     """
     if not cluster:
+        others = multiprocessing.active_children()
         with ProcessPoolExecutor(jobs, initializer=die_with_parent, initargs=(os.getpid(),)) as pool:
-            yield pool
+            try:
+                yield pool
+            except KeyboardInterrupt:  # runs that have begun, or wait in the pool, would be played to their end
+                for worker in multiprocessing.active_children():
+                    if worker not in others:
+                        worker.kill()
+                raise
         return
     try:
         dask: Any = import_module("distributed")

@@ -47,17 +47,13 @@ class Base(Component):
     log: Logger
 
     def init(self) -> None:
-        config = self.config
         self._odometry = Odometry()
         self._measured_us = 0
         self._late = False
-        self._ramp = Ramp(
-            config.speed_m_s,
-            config.acceleration_m_s2,
-            config.braking_m_s2,
-            config.omega_rad_s,
-            config.angular_acceleration_rad_s2,
-        )
+        self._ramp = self._limited(STANDSTILL)
+
+    def config_changed(self) -> None:
+        self._ramp = self._limited(self._ramp.velocity)
 
     def loop(self) -> None:
         # Measurements count whenever they come: one that arrives between the stages must not be missing in the sum.
@@ -72,6 +68,19 @@ class Base(Component):
         """Leaves the wheels stopped."""
         self.wheel_command.value = wheel_command_t()
         self.wheel_command.write()
+
+    def _limited(self, velocity: Velocity) -> Ramp:
+        """Returns the ramp within the present limits, from a velocity on."""
+        config = self.config
+        ramp = Ramp(
+            config.speed_m_s,
+            config.acceleration_m_s2,
+            config.braking_m_s2,
+            config.omega_rad_s,
+            config.angular_acceleration_rad_s2,
+        )
+        ramp.velocity = velocity
+        return ramp
 
     def _add(self, state: wheel_state_t) -> None:
         first, second, third = state.measured_m_s

@@ -11,7 +11,6 @@ from lcmtypes.soccer import ground_truth_t, match_event_t, robot_estimate_t, tru
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S, pose_samples
 from procs.model.frames import Floats
-from procs.model.robot import team_of
 
 NEAR_M = 4.0
 """Distance from the observer to which published accuracies of ball and obstacles refer."""
@@ -149,7 +148,7 @@ def _kicks(piece: Piece) -> Samples:
             if kick.kind == match_event_t.KICK and kick.speed_m_s >= _KICK_M_S and tick * piece.period_s >= START_S:
                 found = _delays_s(piece, tick, kick.robot)
                 delays_s += found.values()
-                own_s += [delay_s for robot, delay_s in found.items() if team_of(robot) == team_of(kick.robot)]
+                own_s += [delay_s for robot, delay_s in found.items() if piece.team(robot) == piece.team(kick.robot)]
     return {"velocity known after a kick": np.array(delays_s), "velocity known after an own kick": np.array(own_s)}
 
 

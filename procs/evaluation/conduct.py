@@ -10,7 +10,7 @@ from lcmtypes.soccer import match_event_t
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.model.field import Point
-from procs.model.robot import team_of
+from procs.model.robot import number_in
 from procs.referee.ends import Ends, Team
 from procs.referee.positions import in_wrong_half, too_near
 from procs.referee.restarts import Restart, State
@@ -46,10 +46,10 @@ def _restarts(piece: Piece) -> tuple[list[bool], list[bool]]:
         game, truth = piece.game[tick], piece.truth.get(tick)
         if truth:
             playing = [robot for robot in truth.robots if robot.name not in game.sent_off]
-            middles = {robot.name: Point(robot.x_m, robot.y_m) for robot in playing}
+            middles = {f"{piece.team(robot.name)}{number_in(robot)}": Point(robot.x_m, robot.y_m) for robot in playing}
             restart = Restart(State(game.state), Team(game.state_team), Point(truth.ball_x_m, truth.ball_y_m))
             ends = Ends(game.cyan_side or -1.0)
-            distances.append(bool(too_near(restart, middles, ends)))
+            distances.append(bool(too_near(restart, middles, ends, piece.measures)))
             if restart.state is State.KICK_OFF:
                 halves.append(bool(in_wrong_half(restart, middles, ends)))
     return distances, halves
@@ -70,7 +70,7 @@ def _taken(piece: Piece) -> list[bool]:
         in_time = range(tick, tick + round(_TAKEN_S / piece.period_s) + 1)
         running = list(itertools.takewhile(lambda each: each in piece.game and not piece.game[each].stopped, in_time))
         events = [event for each in running for event in piece.events.get(each, ())]
-        kicked = any(each.kind == match_event_t.KICK and team_of(each.robot) == team.name.lower() for each in events)
+        kicked = any(each.kind == match_event_t.KICK and piece.team(each.robot) == team.name.lower() for each in events)
         if team is not Team.NONE and (kicked or len(running) == len(in_time)):
             taken.append(kicked)
     return taken
@@ -93,7 +93,7 @@ def _receiver(piece: Piece, kicked: int, passer: str, kickers: dict[str, dict[in
     held: dict[str, int] = {}
     for tick in range(kicked + 1, kicked + round(_FLIGHT_S / piece.period_s)):
         touching = piece.touched_by(tick, 0.0) - {passer}
-        if any(team_of(robot) != team_of(passer) for robot in touching):
+        if any(piece.team(robot) != piece.team(passer) for robot in touching):
             return ""
         for robot in sorted(touching):
             state = kickers.get(robot, {}).get(tick)

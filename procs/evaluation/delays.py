@@ -7,7 +7,6 @@ import numpy as np
 from procs.evaluation.beliefs import Samples
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
-from procs.model.robot import team_of
 
 _BIT_PER_MBIT = 1e6
 
@@ -16,7 +15,7 @@ def delays(piece: Piece) -> Samples:
     """Returns the samples of every measure of delays and of the radio."""
     said_bit: dict[str, int] = defaultdict(int)
     for robot, size_bytes in piece.told_bytes.items():
-        said_bit[team_of(robot)] += 8 * size_bytes
+        said_bit[piece.team(robot)] += 8 * size_bytes
     messages = sum(map(len, piece.by_robot.get("team_message", {}).values()))
     robots_s = len(piece.by_robot.get("team_message", {})) * 60 * piece.minutes
     volumes = [(bits / _BIT_PER_MBIT, 60 * piece.minutes) for bits in said_bit.values()]

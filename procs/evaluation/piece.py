@@ -4,11 +4,13 @@ import math
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 from lcmtypes.robot import kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
     ball_percept_t,
+    field_t,
     game_state_t,
     ground_truth_t,
     match_event_t,
@@ -20,7 +22,8 @@ from lcmtypes.soccer import (
     true_robot_t,
     world_model_t,
 )
-from procs.model.robot import team_of
+from procs.model.field import Field, field_of
+from procs.model.robot import team_in, team_of
 
 BELIEFS: dict[str, Any] = {
     "world_model": world_model_t,
@@ -49,6 +52,17 @@ class Piece:
     """Interface to robot to tick to message, for the interfaces in `BELIEFS`."""
     told_bytes: dict[str, int] = field(default_factory=dict)
     """Robot to the size of all that it told its team."""
+    measures: Field = field(default_factory=Field)
+    """Field on which it was played."""
+
+    @cached_property
+    def players(self) -> dict[str, true_robot_t]:
+        """All robots that were ever on the field, by name."""
+        return {robot.name: robot for truth in self.truth.values() for robot in truth.robots}
+
+    def team(self, name: str) -> str:
+        """Returns the team of a robot: the stated one, or that of its name."""
+        return team_in(self.players[name]) if name in self.players else team_of(name)
 
     @property
     def minutes(self) -> float:
@@ -70,7 +84,7 @@ class Piece:
 
     def rivals(self, tick: int, name: str) -> list[true_robot_t]:
         """Returns the robots of the other team."""
-        return [robot for robot in self.truth[tick].robots if team_of(robot.name) != team_of(name)]
+        return [robot for robot in self.truth[tick].robots if team_in(robot) != self.team(name)]
 
     def touched_by(self, tick: int, within_s: float) -> set[str]:
         """Returns the robots that touched the ball in a tick or up to `within_s` before."""
@@ -86,6 +100,8 @@ def piece_of(sent: Mapping[str, Sequence[bytes]], period_s: float) -> Piece:
     piece.game = {game.header.tick: game for game in map(game_state_t.decode, sent.get("world/game_state", ()))}
     reports = map(match_events_t.decode, sent.get("world/match_events", ()))
     piece.events = {report.header.tick: report.events for report in reports}
+    measured = sent.get("world/field", ())
+    piece.measures = field_of(field_t.decode(measured[-1])) if measured else Field()
     found: dict[str, dict[str, dict[int, Any]]] = defaultdict(dict)
     for channel, messages in sent.items():
         robot, _, interface = channel.rpartition("/")

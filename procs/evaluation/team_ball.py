@@ -10,7 +10,6 @@ from procs.evaluation.beliefs import MOVING_M_S, NEAR_M, Samples, models_of, pla
 from procs.evaluation.piece import Piece
 from procs.evaluation.poses import START_S
 from procs.model.frames import Floats
-from procs.model.robot import team_of
 
 _STALE_S = 0.2  # older sightings of a robot are not averaged
 
@@ -32,7 +31,7 @@ def _known(piece: Piece) -> Samples:
     was_known: dict[str, bool] = defaultdict(bool)
     for robot, tick, model, _ in models_of(piece):
         known = bool(model.ball.known)
-        teams[team_of(robot), tick] |= known
+        teams[piece.team(robot), tick] |= known
         if was_known[robot] and not known:
             since[robot] = tick
         elif known and robot in since:
@@ -69,12 +68,12 @@ def _fusion(piece: Piece, placed: Set[int], sightings: _Sightings) -> Samples:
     for robot, tick, model, truth in models_of(piece):
         if model.ball.known and tick not in placed:
             error_m2 = (model.ball.x_m - truth.ball_x_m) ** 2 + (model.ball.y_m - truth.ball_y_m) ** 2
-            fused[team_of(robot), tick].append(error_m2)
+            fused[piece.team(robot), tick].append(error_m2)
     for (team, tick), errors_m2 in fused.items():
         recent = [
             (seen_tick, each)
             for robot, seen in sightings.items()
-            if team_of(robot) == team
+            if piece.team(robot) == team
             for seen_tick, each in _newest(seen, tick, _STALE_S / piece.period_s)
         ]
         truth = piece.truth[tick]

@@ -7,14 +7,16 @@ import numpy as np
 from procs.localization.pose_filter import moved
 from procs.model.frames import Floats, rotation
 
-_MEMORY = 0.85  # of a hypothesis' mean score from frame to frame
+_MEMORY = 0.85  # of a hypothesis' mean score after ...
+_MEMORY_S = 0.08  # ... this time
 _MOST = 8
 _SAME_M = 0.5
 _SAME_RAD = 0.3
-_OLD_ENOUGH = 6  # frames
+_LEAST_FRAMES = 3  # for a decision
+_OLD_ENOUGH_S = 0.38  # age for a decision
 _CLEAR_LEAD = 0.15  # over the next best, for a decision as early as that
 _PATIENT_LEAD = 0.04  # for a late decision
-_PATIENCE = 30  # frames, until the lead may be as small as that
+_PATIENCE_S = 2.3  # age from which the lead may be as small as that
 
 
 @dataclass
@@ -24,6 +26,7 @@ class Hypothesis:
     pose: Floats
     score: float
     frames: int = field(default=1)
+    age_s: float = field(default=0.0)
 
 
 class Hypotheses:
@@ -46,15 +49,16 @@ class Hypotheses:
         """Returns start poses (k, 3) for this frame's match: the known ones, then `others` (n, 3)."""
         return np.vstack([one.pose for one in self.known] + [others])
 
-    def update(self, poses: Floats, scores: Floats) -> None:
-        """Takes the matched poses and scores of `starts`."""
-        count = len(self.known)
+    def update(self, poses: Floats, scores: Floats, interval_s: float) -> None:
+        """Takes the matched poses and scores of `starts`, and the time since the last frame."""
+        count, memory = len(self.known), _MEMORY ** (interval_s / _MEMORY_S)
         for one, pose, score in zip(self.known, poses, scores, strict=False):
             one.pose = pose
-            one.score = _MEMORY * one.score + (1 - _MEMORY) * float(score)
+            one.score = memory * one.score + (1 - memory) * float(score)
             one.frames += 1
+            one.age_s += interval_s
         found = [Hypothesis(pose, float(score)) for pose, score in zip(poses[count:], scores[count:], strict=True)]
-        oldest_first = sorted(self.known, key=lambda one: (-one.frames, -one.score)) + found
+        oldest_first = sorted(self.known, key=lambda one: (-one.age_s, -one.frames, -one.score)) + found
         kept: list[Hypothesis] = []
         for one in oldest_first:
             if not any(_same(one.pose, other.pose) for other in kept):
@@ -63,11 +67,11 @@ class Hypotheses:
 
     def decided(self, good_score: float) -> Hypothesis | None:
         """Returns the best hypothesis if it is good, old enough, and far enough ahead of the rest."""
-        if not self.known or self.known[0].score < good_score or self.known[0].frames < _OLD_ENOUGH:
+        best = self.known[0] if self.known else None
+        if best is None or best.score < good_score or best.frames < _LEAST_FRAMES or best.age_s < _OLD_ENOUGH_S:
             return None
-        best = self.known[0]
         lead = best.score - (self.known[1].score if len(self.known) > 1 else 0.0)
-        return best if lead > (_CLEAR_LEAD if best.frames < _PATIENCE else _PATIENT_LEAD) else None
+        return best if lead > (_CLEAR_LEAD if best.age_s < _PATIENCE_S else _PATIENT_LEAD) else None
 
 
 def _same(one: Floats, other: Floats) -> bool:

@@ -24,11 +24,11 @@ class LocalizationConfig(Config):
 
     field: Field = Field()
     """Measures of the field."""
-    start_x_m: float | None = None
+    start_x_m: float | None = Setting(None, frozen=True)
     """Start of the robot if it is known, world frame; needs the other two."""
-    start_y_m: float | None = None
+    start_y_m: float | None = Setting(None, frozen=True)
     """See start_x_m."""
-    start_heading_rad: float | None = None
+    start_heading_rad: float | None = Setting(None, frozen=True)
     """See start_x_m."""
     reach_m: float = Setting(default=7.0, gt=0.5, le=12.0)
     """White points further away are not used."""

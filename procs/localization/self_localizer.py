@@ -158,7 +158,7 @@ class SelfLocalizer:
         found = match(self._lines, thin, self._hypotheses.starts(others))
         turned_rad = np.remainder(found.poses[:, 2] - heading_rad + np.pi, 2 * np.pi) - np.pi
         scores = np.where(np.abs(turned_rad) < self._settings.compass_limit_rad, found.scores, 0.0)
-        self._hypotheses.update(found.poses, scores)
+        self._hypotheses.update(found.poses, scores, interval_s)
         best = self._hypotheses.known[0]
         self._filter = PoseFilter(np.array((*best.pose[:2], wrap(float(best.pose[2])))), _LOST_DEVIATIONS)
         decided = self._hypotheses.decided(self._settings.good_score)

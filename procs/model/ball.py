@@ -18,6 +18,10 @@ class BallModel(BaseModel):
     """Deceleration in m/s² of the rolling ball. Small size league: 0.26 to 0.5; none is published for this league."""
     bounce: float = Field(default=0.6, ge=0.0, le=1.0)
     """Share of the vertical speed after a bounce on carpet. FIFA: at least 0.82 on steel; carpet takes some."""
+    least_rebound_m_s: float = Field(default=0.5, ge=0.0)
+    """Vertical speed below which the ball stays on the ground instead of bouncing. An estimate."""
+    spin_s: PositiveFloat = 0.5
+    """Time constant in s with which the ground stops a spin around the vertical. An estimate."""
     inertia: PositiveFloat = 2 / 3
     """Moment of inertia divided by mass and squared radius: 2/3 for a thin shell, 2/5 for a solid ball."""
 

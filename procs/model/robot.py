@@ -4,7 +4,7 @@ import math
 import re
 from collections.abc import Mapping
 from functools import cache
-from typing import Literal
+from typing import Literal, Protocol
 
 from pydantic import BaseModel, ConfigDict, PositiveFloat, PositiveInt
 
@@ -81,6 +81,24 @@ def number_of(robot: str) -> int:
     """Returns the number at the end of the name; 0 for a name without a number."""
     found = _NAME.fullmatch(robot)
     return int(found[2]) if found and found[2] else 0
+
+
+class Named(Protocol):
+    """A message about a robot."""
+
+    name: str
+    team: str
+    number: int
+
+
+def team_in(robot: Named) -> str:
+    """Returns the team that a message states; that of the robot's name where it states none."""
+    return robot.team or team_of(robot.name)
+
+
+def number_in(robot: Named) -> int:
+    """Returns the number that a message states; that of the robot's name where it states none."""
+    return robot.number or number_of(robot.name)
 
 
 def side_of(team: str) -> float:

@@ -1,5 +1,7 @@
 """Obeys a RefBox: hands its commands on to the referee."""
 
+import errno
+import os
 import socket
 
 from pydantic import Field, PositiveFloat
@@ -7,11 +9,13 @@ from pydantic import Field, PositiveFloat
 from fwk import Call as Sent
 from fwk import Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import referee_command_t
+from procs.model.robot import PLAYERS, Players
 from procs.refbox.protocol import PORT, Command, ProtocolError, Stream, decode
 
-_IGNORED = frozenset({"WELCOME", "RESET", "IS_ALIVE"})
+_IGNORED = frozenset({"WELCOME", "IS_ALIVE"})
 _OTHER_NAMES = {"GAMEOVER": "END_GAME", "GAME_OVER": "END_GAME"}
 _TIMEOUT_S = 1.0
+_UNDER_WAY = frozenset({errno.EINPROGRESS, errno.EALREADY, errno.EWOULDBLOCK, errno.EINTR})
 
 
 class ClientConfig(Config):
@@ -23,10 +27,12 @@ class ClientConfig(Config):
     """Its TCP port."""
     retry_s: PositiveFloat = 1.0
     """A RefBox that cannot be reached is tried again after this time."""
-    connect_s: PositiveFloat = 0.2
-    """Longest wait for a connection."""
+    connect_s: PositiveFloat = 1.0
+    """A RefBox that does not answer for so long is not there. The game goes on meanwhile."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
     """Multicast address that names each team."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class RefBoxClient(Component):
@@ -42,6 +48,8 @@ class RefBoxClient(Component):
 
     def init(self) -> None:
         self._connection: socket.socket | None = None
+        self._dialling: socket.socket | None = None
+        self._dialled_us = 0
         self._stream = Stream()
         self._again_us = 0
         self._sent: list[Sent] = []
@@ -58,19 +66,32 @@ class RefBoxClient(Component):
 
     def finalize(self) -> None:
         """Leaves the RefBox."""
-        if self._connection:
-            self._connection.close()
+        for each in filter(None, (self._connection, self._dialling)):
+            each.close()
 
     def _connect(self) -> None:
+        """Begins to connect, or goes on, without waiting for the RefBox."""
         place = (self.config.host, self.config.port)
+        if self._dialling is None:
+            self._dialling = socket.socket(socket.AF_INET6 if ":" in place[0] else socket.AF_INET)
+            self._dialling.setblocking(False)
+            self._dialled_us = self.clock.now_us
         try:
-            self._connection = socket.create_connection(place, timeout=self.config.connect_s)
-        except OSError as error:
+            code = self._dialling.connect_ex(place)
+            reason = os.strerror(code)
+        except OSError as error:  # no such host
+            code, reason = errno.EHOSTUNREACH, str(error)
+        if code in _UNDER_WAY:
+            if self.clock.since_s(self._dialled_us) < self.config.connect_s:
+                return
+            reason = f"no answer for {self.config.connect_s:g} s"
+        dialled, self._dialling = self._dialling, None
+        if code not in (0, errno.EISCONN):
+            dialled.close()
             self._again_us = self.clock.now_us + round(self.config.retry_s * 1e6)
-            self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {error}")
+            self.log.warning(f"no RefBox at {place[0]}:{place[1]}: {reason}")
             return
-        self._connection.setblocking(False)
-        self._stream = Stream()
+        self._connection, self._stream = dialled, Stream()
         self.log.info(f"connected with the RefBox at {place[0]}:{place[1]}")
 
     def _messages(self) -> list[bytes]:
@@ -103,5 +124,11 @@ class RefBoxClient(Component):
         asked = self.referee_command.value
         asked.name = _OTHER_NAMES.get(command.name, command.name).lower()
         asked.team = command.team
-        asked.robot = f"{command.team}{command.robot}" if command.robot else ""
+        asked.robot = self._named(command) if command.robot else ""
         self._sent.append(self.referee_command.call(timeout_s=_TIMEOUT_S))
+
+    def _named(self, command: Command) -> str:
+        """Returns the namespace of the robot that a command names by team and number."""
+        meant = (command.team, command.robot)
+        found = (name for name, player in self.config.players.items() if (player.team, player.number) == meant)
+        return next(found, f"{command.team}{command.robot}")

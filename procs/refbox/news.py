@@ -1,5 +1,7 @@
 """Commands of a RefBox that lead from one state of the game to the next."""
 
+from collections.abc import Callable
+
 from lcmtypes.soccer import game_event_t, game_state_t
 from procs.model.robot import number_of
 from procs.refbox.protocol import Command
@@ -20,11 +22,14 @@ _HALVES = {1: "FIRST_HALF", 2: "SECOND_HALF", 3: "FIRST_HALF_OVERTIME", 4: "SECO
 _CARDS = {game_event_t.YELLOW: "YELLOW_CARD", game_event_t.DOUBLE_YELLOW: "DOUBLE_YELLOW", game_event_t.RED: "RED_CARD"}
 
 
-def news(before: game_state_t | None, now: game_state_t) -> list[Command]:
-    """Returns the commands between two states, in their order; without a state before, those that lead to this one."""
+def news(before: game_state_t | None, now: game_state_t, number: Callable[[str], int] = number_of) -> list[Command]:
+    """Returns the commands between two states, in their order; without a state before, those that lead to this one.
+
+    `number` gives the number on the back of the robot with a namespace.
+    """
     if before is None:
         return _half(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
-    commands = _scores(before, now) + _cards(before, now)
+    commands = _scores(before, now) + _cards(before, now, number)
     breaks = (game_state_t.HALF_TIME, game_state_t.FROZEN)
     if now.state != before.state and now.state in breaks:
         return [*commands, Command("STOP"), Command("HALF_TIME" if now.state == game_state_t.HALF_TIME else "END_GAME")]
@@ -57,10 +62,10 @@ def _scores(before: game_state_t, now: game_state_t) -> list[Command]:
     return commands
 
 
-def _cards(before: game_state_t, now: game_state_t) -> list[Command]:
+def _cards(before: game_state_t, now: game_state_t, number: Callable[[str], int]) -> list[Command]:
     new = now.history[len(before.history) :]
     return [
-        Command(_CARDS[event.card], TEAMS.get(event.team, ""), number_of(event.robot))
+        Command(_CARDS[event.card], TEAMS.get(event.team, ""), number(event.robot))
         for event in new
         if event.card in _CARDS
     ]

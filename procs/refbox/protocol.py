@@ -5,6 +5,7 @@ text. Commands about a robot have its number as `robotID`.
 """
 
 import json
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -12,6 +13,10 @@ PORT = 28097
 """Port of the RefBox for base stations."""
 LONGEST = 65_536
 """A peer that sends more bytes without a NUL does not speak the protocol."""
+
+_NAME = re.compile(r"[A-Za-z0-9_]{1,40}")
+_NUMBER = re.compile(r"[0-9]{1,2}")
+_QUOTED = 60  # characters of a peer's bytes that an error repeats
 
 
 class ProtocolError(ValueError):
@@ -45,19 +50,27 @@ def decode(data: bytes, addresses: Mapping[str, str]) -> Command:
     """
     try:
         message = json.loads(data)
-    except ValueError as error:
-        raise ProtocolError(f"{data[:60]!r} is not JSON") from error
+    except (ValueError, RecursionError) as error:  # lists may be nested deeper than Python's stack
+        raise ProtocolError(f"{data[:_QUOTED]!r} is not JSON") from error
     if not isinstance(message, dict) or not isinstance(message.get("command"), str):
-        raise ProtocolError(f"{data[:60]!r} has no command")
-    address, robot = message.get("targetTeam", ""), message.get("robotID", 0)
+        raise ProtocolError(f"{data[:_QUOTED]!r} has no command")
+    name, address, robot = message["command"], message.get("targetTeam", ""), message.get("robotID", 0)
+    if not _NAME.fullmatch(name):
+        raise ProtocolError(f"{_quoted(name)} is not the name of a command")
     teams = {each: team for team, each in addresses.items()} | {"": ""}
-    if address not in teams:
-        raise ProtocolError(f"no team has the address {address!r}; there are {', '.join(sorted(addresses.values()))}")
-    if isinstance(robot, str) and robot.isdecimal():
+    if not isinstance(address, str) or address not in teams:
+        known = ", ".join(sorted(addresses.values()))
+        raise ProtocolError(f"no team has the address {_quoted(address)}; there are {known}")
+    if isinstance(robot, str) and _NUMBER.fullmatch(robot):
         robot = int(robot)
-    if not isinstance(robot, int) or not 0 <= robot < 100:
-        raise ProtocolError(f"{robot!r} is not the number of a robot")
-    return Command(message["command"].upper(), teams[address], robot)
+    if not isinstance(robot, int) or isinstance(robot, bool) or not 0 <= robot < 100:
+        raise ProtocolError(f"{_quoted(robot)} is not the number of a robot")
+    return Command(name.upper(), teams[address], robot)
+
+
+def _quoted(value: object) -> str:
+    """Returns the beginning of a peer's value for an error."""
+    return repr(value)[:_QUOTED]
 
 
 class Stream:

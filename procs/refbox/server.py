@@ -7,27 +7,34 @@ from pydantic import Field
 
 from fwk import Component, Config, Logger, Reads, channel
 from lcmtypes.soccer import game_state_t
+from procs.model.robot import PLAYERS, Players, number_of
 from procs.refbox.news import news
 from procs.refbox.protocol import PORT, Command, encode
 
 _BACKLOG = 16
+_HEARD = 65_536  # bytes taken from a base station in a tick, and dropped
 
 
 class ServerConfig(Config):
     """Address at which base stations find the server."""
 
-    host: str = "127.0.0.1"
+    host: str = Field("127.0.0.1", frozen=True)
     """Address on which it listens; 0.0.0.0 lets other machines in."""
-    port: int = Field(default=PORT, ge=0, le=65_535)
+    port: int = Field(default=PORT, ge=0, le=65_535, frozen=True)
     """TCP port; 0: one that is free, named in the log."""
+    stations: int = Field(default=32, ge=1, le=500)
+    """Most base stations at a time; further ones are turned away."""
     addresses: dict[str, str] = {"cyan": "224.16.32.1", "magenta": "224.16.32.2"}
     """Multicast address that names each team."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""
 
 
 class RefBoxServer(Component):
     """Sends each base station what led to the state of the game, then every decision in the tick in which it is made.
 
-    A base station that does not read what it is sent is cut off; no base station can hold the game up.
+    What base stations say is dropped. One that leaves, or does not read what it is sent, is cut off; no base station
+    can hold the game up.
     """
 
     stage = "post_loop"
@@ -56,7 +63,8 @@ class RefBoxServer(Component):
         if not self.game_state.has_value:
             return
         now = self.game_state.value
-        self._send(news(self._before, now), list(self._stations))
+        self._hear()
+        self._send(news(self._before, now, self._number), list(self._stations))
         self._before = now
         newcomers = self._admit()
         self._send([Command("WELCOME"), *news(None, now)], newcomers)
@@ -67,15 +75,45 @@ class RefBoxServer(Component):
         for each in (*self._stations, self._listening):
             each.close()
 
+    def _number(self, robot: str) -> int:
+        player = self.config.players.get(robot)
+        return player.number if player else number_of(robot)
+
+    def _hear(self) -> None:
+        """Drops what base stations say, and notices those that have left."""
+        for station in list(self._stations):
+            try:
+                left = not station.recv(_HEARD)
+            except BlockingIOError:
+                continue
+            except OSError:
+                left = True
+            if left:
+                self._cut_off(station, "base station left")
+
     def _admit(self) -> list[socket.socket]:
-        newcomers = []
-        while self._arrivals.select(0):
-            station, address = self._listening.accept()
+        newcomers: list[socket.socket] = []
+        for _ in range(_BACKLOG):
+            if not self._arrivals.select(0):
+                break
+            try:
+                station, address = self._listening.accept()
+            except OSError:  # it has left before it was let in, or the process has no descriptor left
+                break
+            if len(self._stations) + len(newcomers) >= self.config.stations:
+                self.log.warning(f"base station {address[0]} is turned away: {self.config.stations} are connected")
+                station.close()
+                continue
             station.setblocking(False)
             self.log.info(f"base station {address[0]}:{address[1]} is connected")
             newcomers.append(station)
         self._stations += newcomers
         return newcomers
+
+    def _cut_off(self, station: socket.socket, why: str) -> None:
+        self.log.info(why)
+        self._stations.remove(station)
+        station.close()
 
     def _send(self, commands: list[Command], stations: list[socket.socket]) -> None:
         data = b"".join(encode(command, self.config.addresses) for command in commands)
@@ -85,6 +123,4 @@ class RefBoxServer(Component):
             except OSError:
                 whole = False
             if not whole:
-                self.log.info("base station left, or did not read what it was sent")
-                self._stations.remove(station)
-                station.close()
+                self._cut_off(station, "base station left, or did not read what it was sent")

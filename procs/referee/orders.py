@@ -3,13 +3,16 @@
 from collections.abc import Callable
 
 from procs.model.field import Point
+from procs.model.robot import PLAYERS
 from procs.referee import halves, restarts
 from procs.referee.cards import Card
 from procs.referee.ends import Team
+from procs.referee.names import Names
 from procs.referee.restarts import Restart, State
 from procs.referee.sight import Sight
 from procs.referee.whistle import Whistle
 
+_USUAL = Names(PLAYERS)
 _TEAMS = {"": Team.NONE, "cyan": Team.CYAN, "magenta": Team.MAGENTA}
 _SET_PIECES = {
     "kickoff": State.KICK_OFF,
@@ -20,7 +23,7 @@ _SET_PIECES = {
     "penalty": State.PENALTY,
 }
 _CARDS = {"yellow_card": Card.YELLOW, "double_yellow": Card.DOUBLE_YELLOW, "red_card": Card.RED}
-_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+_PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
 _HALVES = {
     "first_half": halves.FIRST,
     "second_half": halves.SECOND,
@@ -29,8 +32,8 @@ _HALVES = {
 }
 
 
-def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "") -> str:
-    """Carries out a command; returns why it is impossible, or an empty text."""
+def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: str = "", names: Names = _USUAL) -> str:
+    """Carries out a command; returns why it is impossible, or an empty text. `robot` is a namespace."""
     if team not in _TEAMS:
         return f"no team '{team}'; there are cyan, magenta"
     if name in _SET_PIECES:
@@ -38,7 +41,7 @@ def carry_out(whistle: Whistle, sight: Sight, name: str, team: str = "", robot: 
     if name in ("goal", "subgoal"):
         return _goal(whistle, _TEAMS[team], name == "goal")
     if name in _CARDS or name in ("repair", "substitution"):
-        return _robot(whistle, sight, name, robot)
+        return _robot(whistle, sight, name, robot, names)
     if name in _HALVES:
         whistle.begin_half(_HALVES[name])
         return ""
@@ -76,10 +79,10 @@ def _goal(whistle: Whistle, team: Team, more: bool) -> str:
     return ""
 
 
-def _robot(whistle: Whistle, sight: Sight, name: str, robot: str) -> str:
-    known = sorted(sight.robots)
-    if robot not in known:
-        return f"no robot '{robot}'; there are {', '.join(known) or 'none'}"
+def _robot(whistle: Whistle, sight: Sight, name: str, namespace: str, names: Names) -> str:
+    known, robot = names.all_outside(sight.robots), names.inside(namespace)
+    if namespace not in known:
+        return f"no robot '{namespace}'; there are {', '.join(known) or 'none'}"
     if name in _CARDS:
         whistle.card(robot, _CARDS[name])
     else:
@@ -104,6 +107,8 @@ def _simple(whistle: Whistle, sight: Sight, name: str) -> str:
             whistle.end_half()
         case "end_game":
             whistle.end_match()
+        case "reset":
+            whistle.begin_match()
         case _:
             known = [*_SET_PIECES, "goal", "subgoal", *_CARDS, "repair", "substitution", *_HALVES]
             return f"no command '{name}'; there are {', '.join([*known, *_PLAIN])}"

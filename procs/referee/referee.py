@@ -12,6 +12,7 @@ from lcmtypes.soccer import (
 )
 from procs.model.field import Point
 from procs.referee.ends import Team
+from procs.referee.names import Names
 from procs.referee.orders import carry_out
 from procs.referee.restarts import State
 from procs.referee.rules import Rules
@@ -20,6 +21,7 @@ from procs.referee.whistle import Call, Whistle
 from procs.simulation.physics.events import Event, Kind
 
 _KINDS = frozenset(Kind)
+_LEAVES = frozenset({Kind.GOAL, Kind.OUT_SIDE, Kind.OUT_END})  # events of the ball, with or without a robot
 
 
 class RefereeConfig(Config, Rules):
@@ -47,6 +49,7 @@ class Referee(Component):
         self._whistle = Whistle(self.config)
         self._placed = 0
         self._before_us = -1
+        self._names = Names(self.config.players)
         self._record(Call(self._whistle.state, self._whistle.team))
 
     def loop(self) -> None:
@@ -67,24 +70,32 @@ class Referee(Component):
             self.ball_placement.write()
 
     def _sight(self) -> Sight:
-        ball, robots = self.match_events.value, self.ground_truth.value.robots
-        events = [
-            _event(event) for report in self.match_events.fresh for event in report.events if event.kind in _KINDS
-        ]
+        ball, inside = self.match_events.value, self._names.inside
+        robots = {inside(robot.name): robot for robot in self.ground_truth.value.robots}
+        robots.pop("", None)  # what plays in neither team
+        reported = [event for report in self.match_events.fresh for event in report.events if event.kind in _KINDS]
+        events = [_event(event, self._names) for event in reported if event.kind in _LEAVES or self._concerns(event)]
         return Sight(
             Point(ball.ball_x_m, ball.ball_y_m),
             events,
-            {robot.name: Point(robot.x_m, robot.y_m) for robot in robots},
-            {robot.name: Point(robot.vx_m_s, robot.vy_m_s) for robot in robots},
+            {name: Point(robot.x_m, robot.y_m) for name, robot in robots.items()},
+            {name: Point(robot.vx_m_s, robot.vy_m_s) for name, robot in robots.items()},
         )
+
+    def _concerns(self, event: match_event_t) -> bool:
+        """Returns whether all robots of an event are players."""
+        inside = self._names.inside
+        return bool(inside(event.robot) and (inside(event.other) or event.kind != Kind.COLLISION))
 
     def _obey(self, sight: Sight) -> None:
         for command in self.referee_command:
             asked, self._whistle.calls = command.value, []
-            refused = carry_out(self._whistle, sight, asked.name, asked.team, asked.robot)
+            refused = carry_out(self._whistle, sight, asked.name, asked.team, asked.robot, self._names)
             if refused:
                 command.reject(refused)
                 continue
+            if asked.name == "reset":
+                self.game_state.value.history = []
             for call in self._whistle.calls:
                 self._record(call)
             command.done()
@@ -94,7 +105,7 @@ class Referee(Component):
         whistle, event = self._whistle, game_event_t()
         event.goal, event.card, event.state, event.team = call.goal, call.card, call.state, call.team
         event.half, event.time_in_half_s = whistle.half, whistle.time_in_half_s
-        event.robot, event.reason = call.robot, call.reason
+        event.robot, event.reason = self._names.outside(call.robot), call.reason
         if call.state not in (State.HALF_TIME, State.FROZEN):
             self.game_state.value.history.append(event)
         if not call.goal:
@@ -105,10 +116,10 @@ class Referee(Component):
         score = f"cyan {whistle.score[Team.CYAN]}:{whistle.score[Team.MAGENTA]} magenta"
         when = f"{whistle.time_in_half_s:.1f} s into half {whistle.half}"
         if call.card:
-            return f"{call.card.name.lower().replace('_', ' ')} card for {call.robot}, {when}"
+            return f"{call.card.name.lower().replace('_', ' ')} card for {self._names.outside(call.robot)}, {when}"
         what = "final whistle" if call.state is State.FROZEN else call.state.name.lower().replace("_", " ")
         whose = f" for {call.team.name.lower()}" if call.team else ""
-        why = f" ({', '.join(filter(None, (call.reason, call.robot)))})" if call.reason else ""
+        why = f" ({', '.join(filter(None, (call.reason, self._names.outside(call.robot))))})" if call.reason else ""
         return f"{what}{whose}{why}, {score}, {when}"
 
     def _write_state(self) -> None:
@@ -118,9 +129,10 @@ class Referee(Component):
         game.score_cyan, game.score_magenta = whistle.score[Team.CYAN], whistle.score[Team.MAGENTA]
         game.time_in_half_s, game.time_in_state_s = whistle.time_in_half_s, whistle.time_in_state_s
         game.ball_x_m, game.ball_y_m = whistle.spot
-        game.sent_off = sorted(whistle.cards.sent_off)
+        game.sent_off = self._names.all_outside(whistle.cards.sent_off)
         self.game_state.write()
 
 
-def _event(event: match_event_t) -> Event:
-    return Event(Kind(event.kind), event.robot, event.other, event.x_m, event.y_m, event.speed_m_s)
+def _event(event: match_event_t, names: Names) -> Event:
+    robot, other = names.inside(event.robot), names.inside(event.other)
+    return Event(Kind(event.kind), robot, other, event.x_m, event.y_m, event.speed_m_s)

@@ -7,6 +7,7 @@ a year are the simulation's own.
 from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, PositiveFloat
 
 from procs.model.field import Field as SoccerField
+from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 
 
 class Rules(BaseModel):
@@ -76,3 +77,7 @@ class Rules(BaseModel):
     repair_s: PositiveFloat = 20.0
     """A robot under repair, or its substitute, comes back after this time (RefBox: 20 s)."""
     field: SoccerField = SoccerField()
+    robot: RobotModel = ROBOT
+    """Geometry of the robots, by which pushing is judged."""
+    players: Players = dict(PLAYERS)
+    """Team and number of each robot."""

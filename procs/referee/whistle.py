@@ -98,6 +98,12 @@ class Whistle:
         else:
             self._watch(duration_s, sight)
 
+    def begin_match(self) -> None:
+        """Begins the match anew: no goals, no cards, the kick-off of the first half."""
+        self.score = {Team.CYAN: 0, Team.MAGENTA: 0}
+        self.cards = Cards()
+        self.begin_half(halves.FIRST)
+
     def begin_half(self, half: int) -> None:
         """Begins a half with its kick-off, or the penalties with the first of them."""
         ends = halves.ends_of(half, self.rules)

@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 
 from fwk.testing import ExpressionError
-from procs.scenarios.scenario import BOOK, ScenarioError, run
+from procs.scenarios.scenario import BOOK, ScenarioError, outcome, read
 
 
 def main() -> int:
@@ -14,13 +14,22 @@ def main() -> int:
     parser.add_argument(
         "files", nargs="*", type=Path, help="scenario files; names in the book need no folder or ending"
     )
-    failed = 0
+    scenarios, wrong = {}, False
     for file in parser.parse_args().files or sorted(BOOK.glob("*.yaml")):
         path = file if file.exists() else BOOK / f"{file.name.removesuffix('.yaml')}.yaml"
         try:
-            verdict = run(path)
-        except (ScenarioError, ExpressionError, OSError) as error:
-            print(f"{path.stem}: {error}", file=sys.stderr)
+            scenarios[path] = read(path)
+        except (ScenarioError, OSError) as error:
+            print(error, file=sys.stderr)
+            wrong = True
+    if wrong:
+        return 2
+    failed = 0
+    for path, scenario in scenarios.items():
+        try:
+            verdict = outcome(scenario)
+        except ExpressionError as error:
+            print(f"{path}: {error}", file=sys.stderr)
             return 2
         failed += not verdict.ok
         print(

@@ -1,11 +1,14 @@
 """Field crew of a scenario: sets robots and ball down, and gives the referee commands, each at its time."""
 
-from typing import Any
+from typing import Any, Self
 
-from pydantic import BaseModel, ConfigDict, NonNegativeFloat
+from pydantic import BaseModel, ConfigDict, Field, NonNegativeFloat, model_validator
 
 from fwk import Call, Calls, Clock, Component, Config, Logger, channel
 from lcmtypes.soccer import place_ball_t, place_robot_t, referee_command_t
+from procs.scenarios.mistakes import field_mistakes
+
+_MESSAGES = {"place_ball": place_ball_t, "place_robot": place_robot_t, "referee": referee_command_t}
 
 
 class Action(BaseModel):
@@ -22,16 +25,26 @@ class Action(BaseModel):
     referee: dict[str, str] | None = None
     """Fields of `referee_command_t`: `name`, `team`, `robot`."""
 
+    @model_validator(mode="after")
+    def _makes_sense(self) -> Self:
+        given = [name for name in _MESSAGES if getattr(self, name) is not None]
+        if len(given) != 1:
+            raise ValueError(f"give one of {', '.join(_MESSAGES)}; here are {', '.join(given) or 'none'}")
+        wrong = field_mistakes(getattr(self, given[0]), _MESSAGES[given[0]]())
+        if wrong:
+            raise ValueError(f"{given[0]}: {'; '.join(wrong)}")
+        return self
+
 
 class CrewConfig(Config):
     """Settings of the crew."""
 
-    actions: list[Action] = []
-    """Deeds in any order."""
+    actions: list[Action] = Field([], frozen=True)
+    """Actions in any order."""
 
 
 class Crew(Component):
-    """Does its deeds in the order of their times."""
+    """Carries out its actions in the order of their times."""
 
     stage = "sensor_acquire"
 
@@ -45,6 +58,8 @@ class Crew(Component):
     def init(self) -> None:
         self._left = sorted(self.config.actions, key=lambda action: action.at_s)
         self._asked: list[Call] = []
+        self.refused: list[str] = []
+        """Actions that the simulator or the referee did not carry out, and why."""
 
     def loop(self) -> None:
         while self._left and self._left[0].at_s * 1e6 <= self.clock.now_us:
@@ -52,6 +67,7 @@ class Crew(Component):
         for call in [each for each in self._asked if each.finished]:
             self._asked.remove(call)
             if not call.done:
+                self.refused.append(call.reason)
                 self.log.error(f"refused: {call.reason}")
 
     def _do(self, action: Action) -> None:

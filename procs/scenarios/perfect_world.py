@@ -5,7 +5,7 @@ import numpy as np
 from fwk import Clock, Component, Config, Each, Reads, Writes, channel
 from lcmtypes.soccer import ball_estimate_t, ground_truth_t, robot_estimate_t, role_t, true_robot_t, world_model_t
 from procs.behaviour.roles import ABSENT
-from procs.model.robot import team_of
+from procs.model.robot import team_in
 
 _ROUNDING_M2 = 1e-8
 """A covariance without noise is that of rounding."""
@@ -52,8 +52,8 @@ class PerfectWorldModel(Component):
         ball.covariance = np.diag([place_m2, place_m2, velocity_m2_s2, velocity_m2_s2]).tolist()
         model.ball = ball
         others = [each for each in truth.robots if each.name != robot]
-        model.mates = [_estimate(each) for each in others if team_of(each.name) == team_of(robot)]
-        model.opponents = [_estimate(each) for each in others if team_of(each.name) != team_of(robot)]
+        model.mates = [_estimate(each) for each in others if team_in(each) == team_in(own)]
+        model.opponents = [_estimate(each) for each in others if team_in(each) != team_in(own)]
         for opponent in model.opponents:
             opponent.name = ""
         said = {name: role.value for name, role in self.role.items()}

@@ -1,27 +1,32 @@
-"""A soccer scenario: robots, start, deeds of the field crew, and what must happen."""
+"""A soccer scenario: robots, start, actions of the field crew, and what must happen."""
 
 from pathlib import Path
-from typing import Any
+from typing import Any, get_type_hints
 
 import yaml
-from pydantic import ValidationError
+from pydantic import NonNegativeInt, ValidationError
 
-from fwk import Component
+from fwk import Component, Config
 from fwk.testing import Expectations, MemorySystem, Verdict, play
+from lcmtypes.soccer import place_ball_t
 from procs.behaviour.agent import Agent
 from procs.behaviour.navigator import Navigator
 from procs.behaviour.skiller import Skiller
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
-from procs.referee.referee import Referee
+from procs.model.realism import Realism
+from procs.referee.referee import Referee, RefereeConfig
 from procs.scenarios.crew import Action, Crew
 from procs.scenarios.dummy import Dummy
+from procs.scenarios.mistakes import field_mistakes, robot_mistakes, settings_mistakes, texts_of
 from procs.scenarios.perfect_world import PerfectWorldModel
 from procs.scenarios.words import WORDS
 from procs.simulation.simulator import Simulator
 
 BOOK = Path(__file__).parent / "book"
 """Folder of the scenarios that come with the robots."""
+CREW = "world/crew"
+"""Component that carries out the commands of a scenario."""
 _ROBOT: dict[str, type[Component]] = {
     "base": Base,
     "kicker": Kicker,
@@ -49,13 +54,13 @@ class Scenario(Expectations):
     """Place and velocity of the ball once play has begun, as in `place_ball_t`; empty: the kick-off."""
     rules: dict[str, Any] = {}
     """Settings of the referee."""
-    realism: str = "realistic"
+    realism: Realism = "realistic"
     """Preset of the simulator."""
     settings: dict[str, dict[str, Any]] = {}
     """Further settings, by component: `cyan2/agent`."""
     commands: list[Action] = []
-    """Deeds of the field crew."""
-    seed: int = 1
+    """Actions of the field crew."""
+    seed: NonNegativeInt = 1
     """Seed of the run."""
 
 
@@ -63,21 +68,53 @@ def read(path: Path) -> Scenario:
     """Reads a scenario.
 
     Raises:
-        ScenarioError: the file is not a scenario.
+        ScenarioError: the file is not a scenario; the text has a line for each mistake.
         OSError: the file cannot be read.
     """
     try:
-        return Scenario.model_validate(yaml.safe_load(path.read_text()))
-    except (yaml.YAMLError, ValidationError) as error:
+        content = yaml.safe_load(path.read_text())
+    except (yaml.YAMLError, UnicodeDecodeError) as error:
         raise ScenarioError(f"{path}: {error}") from error
+    if not isinstance(content, dict):
+        raise ScenarioError(f"{path}: holds no keys; there are {', '.join(Scenario.model_fields)}")
+    try:
+        scenario = Scenario.model_validate(content)
+    except ValidationError as error:
+        found = texts_of(error, known=list(Scenario.model_fields))
+    else:
+        found = _mistakes(scenario)
+    if found:
+        raise ScenarioError("\n".join(f"{path}: {each}" for each in found))
+    return scenario
+
+
+def _mistakes(scenario: Scenario) -> list[str]:
+    found = list(robot_mistakes(scenario.robots, scenario.dummies, scenario.places))
+    found += [f"ball: {each}" for each in field_mistakes(scenario.ball, place_ball_t())]
+    configs = {name: _config(kind) for name, kind in _components(scenario).items()}
+    try:
+        RefereeConfig.model_validate(scenario.rules)
+    except ValidationError as error:
+        found += texts_of(error, "rules", list(RefereeConfig.model_fields))
+    found += settings_mistakes(scenario.settings, configs)
+    if not (scenario.eventually or scenario.in_order or scenario.always or scenario.at_end):
+        found.append("nothing has to happen; give eventually, in_order, always or at_end")
+    return found
+
+
+def _config(kind: type[Component]) -> type[Config] | None:
+    config = get_type_hints(kind).get("config")
+    return config if isinstance(config, type) and issubclass(config, Config) else None
+
+
+def _components(scenario: Scenario) -> dict[str, type[Component]]:
+    components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/referee": Referee, CREW: Crew}
+    components |= {f"{robot}/{name}": part for robot in scenario.robots for name, part in _ROBOT.items()}
+    return components | {f"{robot}/dummy": Dummy for robot in scenario.dummies}
 
 
 def system_of(scenario: Scenario) -> MemorySystem:
     """Builds the system of a scenario in memory."""
-    components: dict[str, type[Component]] = {"world/simulator": Simulator, "world/referee": Referee}
-    components["world/crew"] = Crew
-    components |= {f"{robot}/{name}": part for robot in scenario.robots for name, part in _ROBOT.items()}
-    components |= {f"{robot}/dummy": Dummy for robot in scenario.dummies}
     rules, actions = dict(scenario.rules), list(scenario.commands)
     if scenario.ball:  # play begins at once: the kick-off is free, and the ball is put elsewhere
         rules = {"kick_off_stoppage_s": 0.0, "positions_s": 0.0} | rules
@@ -85,18 +122,31 @@ def system_of(scenario: Scenario) -> MemorySystem:
     settings: dict[str, dict[str, Any]] = {
         "world/simulator": {"starts": scenario.places, "realism": scenario.realism},
         "world/referee": rules,
-        "world/crew": {"actions": [action.model_dump(exclude_none=True) for action in actions]},
+        CREW: {"actions": [action.model_dump(exclude_none=True) for action in actions]},
         **scenario.settings,
     }
-    return MemorySystem(components, settings=settings, seed=scenario.seed)
+    return MemorySystem(_components(scenario), settings=settings, seed=scenario.seed)
 
 
 def run(path: Path) -> Verdict:
-    """Plays the scenario of a file.
+    """Plays the scenario of a file. What its crew could not do counts as broken.
 
     Raises:
         ScenarioError: the file is not a scenario.
         ExpressionError: a condition cannot be understood.
     """
-    scenario = read(path)
-    return play(system_of(scenario), scenario, WORDS)
+    return outcome(read(path))
+
+
+def outcome(scenario: Scenario) -> Verdict:
+    """Plays a scenario.
+
+    Raises:
+        ExpressionError: a condition cannot be understood.
+    """
+    system = system_of(scenario)
+    verdict = play(system, scenario, WORDS)
+    crew = system.runners[CREW].component
+    assert isinstance(crew, Crew)
+    verdict.broken += [f"refused: {reason}" for reason in crew.refused]
+    return verdict

@@ -6,15 +6,17 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk import Component, Config, Logger, Reads, VisionMaster, channel
+from fwk import Clock, Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
 from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
-from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
-from procs.simulation.camera_errors import PRESETS
+from procs.model.robot import ROBOT, RobotModel
+from procs.simulation.camera_errors import PRESETS, CameraErrors
 from procs.simulation.delayed_truth import DelayedTruth, Exposure
+from procs.simulation.gaps import Gaps
+from procs.simulation.rendering.carpet import Wear
 from procs.simulation.rendering.renderer import Pose, Renderer, Scene
 from procs.simulation.rendering.sensor_noise import SensorNoise
 from procs.simulation.rendering.shapes import Bodies
@@ -49,10 +51,20 @@ class CameraConfig(Config):
     """Standard deviation of the blur of lens and motion."""
     vignette: float | None = Setting(default=None, ge=0.0, le=0.9)
     """Part of the brightness that is missing at the picture's edge."""
+    cast: float | None = Setting(default=None, ge=0.0, le=0.3)
+    """Standard deviation of a factor on each of the three colours, constant in a match."""
+    tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
+    """Standard deviation of a further tilt about either axis, constant in a match."""
+    worn: float | None = Setting(default=None, ge=0.0, le=1.0)
+    """Part of the lines' paint that is missing."""
+    clutter_1_m2: float | None = Setting(default=None, ge=0.0, le=10.0)
+    """White specks on a square metre of the floor around the field."""
+    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    """Interruptions in a minute, in which frames are lost in a row."""
+    gap_s: float | None = Setting(default=None, ge=0.0)
+    """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
-    players: Players = dict(PLAYERS)
-    """Team of each robot, which its marker shows."""
     robot: RobotModel = ROBOT
     """Geometry of all robots."""
     ball: BallModel = BALL
@@ -66,23 +78,28 @@ class Camera(Component):
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
     image: VisionMaster
     config: CameraConfig
+    clock: Clock
     log: Logger
     rng: np.random.Generator
 
     @classmethod
     def preload(cls, config: CameraConfig) -> None:
         """Computes the painted field and the maps of the mirror, which are the same for all robots."""
-        Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, _bodies(config))
+        wear = _wear(chosen(PRESETS[config.realism], config))
+        Renderer(config.mirror.mirror(config.roll_deg, config.pitch_deg), config.field, _bodies(config), wear)
 
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._delayed = DelayedTruth(self.name, "pictures", self.log)
         self._noise_seed = int(self.rng.integers(1 << 32))
+        built, interrupted = self.rng.spawn(2)
+        self._tilts, self._casts = built.standard_normal(2), built.standard_normal(3)
+        self._gaps = Gaps(interrupted)
         self._apply_settings()
 
     def loop(self) -> None:
         seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
-        if seen:
+        if seen and not self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
             frame = self._renderer.render(self._scene(seen), self._shake_px(seen.own))
             self.image.publish(self._noise.apply(frame, self.rng), seen.capture_us)
 
@@ -92,12 +109,14 @@ class Camera(Component):
     def _apply_settings(self) -> None:
         config = self.config
         errors = self._errors = chosen(PRESETS[config.realism], config)
-        mirror = config.mirror.mirror(config.roll_deg, config.pitch_deg)
-        self._renderer = Renderer(mirror, config.field, _bodies(config))
+        roll_deg, pitch_deg = (errors.tilt_sd_deg * self._tilts).tolist()
+        mirror = config.mirror.mirror(config.roll_deg + roll_deg, config.pitch_deg + pitch_deg)
+        self._renderer = Renderer(mirror, config.field, _bodies(config), _wear(errors))
         self._noise = SensorNoise(
             config.mirror.size_px, errors.noise_levels, config.brightness, errors.flicker, self._noise_seed
         )
         self._noise.spoil_lens(errors.blur_px, errors.vignette)
+        self._noise.cast = 1.0 + errors.cast * self._casts
 
     def _scene(self, seen: Exposure) -> Scene:
         others = [(robot.x_m, robot.y_m, COLOURS.get(robot.team, MAGENTA)) for robot in seen.others]
@@ -114,3 +133,7 @@ class Camera(Component):
 
 def _bodies(config: CameraConfig) -> Bodies:
     return Bodies(config.robot.radius_m, config.robot.height_m, config.ball.radius_m)
+
+
+def _wear(errors: CameraErrors) -> Wear:
+    return Wear(errors.worn, errors.clutter_1_m2)

@@ -1,4 +1,4 @@
-"""Deviation of the simulated camera from the ideal, for each preset."""
+"""Deviation of the simulated camera from the ideal, for each preset. Values without a source are estimates."""
 
 from pydantic import BaseModel, ConfigDict
 
@@ -24,6 +24,18 @@ class CameraErrors(BaseModel):
     """Standard deviation of the blur of lens and motion."""
     vignette: float = 0.0
     """Part of the brightness that is missing at the picture's edge."""
+    cast: float = 0.0
+    """Standard deviation of a factor on each of the three colours, constant in a match."""
+    tilt_sd_deg: float = 0.0
+    """Standard deviation of the mirror's uncalibrated tilt about the robot's x and y axis, constant in a match."""
+    worn: float = 0.0
+    """Part of the lines' paint that is missing."""
+    clutter_1_m2: float = 0.0
+    """White specks on a square metre of the floor around the field."""
+    gaps_1_min: float = 0.0
+    """Interruptions in a minute, in which frames are lost in a row."""
+    gap_s: float = 0.0
+    """Mean duration of an interruption."""
 
 
 PRESETS: dict[Realism, CameraErrors] = {
@@ -38,5 +50,11 @@ PRESETS: dict[Realism, CameraErrors] = {
         flicker=0.04,
         blur_px=0.6,
         vignette=0.15,
+        cast=0.05,
+        tilt_sd_deg=0.3,
+        worn=0.15,
+        clutter_1_m2=0.3,
+        gaps_1_min=2.0,
+        gap_s=0.3,
     ),
 }

@@ -1,7 +1,7 @@
 """Deviation from the ideal of percepts drawn from the truth, for each preset; fitted to those of the rendered path.
 
 Deviations are in pixels of the mirror's picture, so that they grow with distance as those of the detectors do. Rates of
-phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator.
+phantoms and recognition are those of B-Human's percepts from the truth and ER-Force's simulator; others are estimates.
 """
 
 from pydantic import BaseModel, ConfigDict
@@ -40,6 +40,12 @@ class PerceptErrors(BaseModel):
     """Robots a second that are not there. B-Human: 0.005 a frame."""
     line_phantoms: float = 0.0
     """Part of the points that do not lie on a line."""
+    tilt_sd_deg: float = 0.0
+    """Standard deviation of the mirror's uncalibrated tilt about the robot's x and y axis, constant in a match."""
+    gaps_1_min: float = 0.0
+    """Interruptions in a minute, in which frames are lost in a row."""
+    gap_s: float = 0.0
+    """Mean duration of an interruption."""
 
 
 PRESETS: dict[Realism, PerceptErrors] = {
@@ -86,5 +92,8 @@ PRESETS: dict[Realism, PerceptErrors] = {
         ball_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.1,
         line_phantoms=0.04,
+        tilt_sd_deg=0.3,
+        gaps_1_min=2.0,
+        gap_s=0.3,
     ),
 }

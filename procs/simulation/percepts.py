@@ -21,6 +21,7 @@ from procs.model.geometry import plausible
 from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
 from procs.simulation.delayed_truth import DelayedTruth
+from procs.simulation.gaps import Gaps
 from procs.simulation.line_scan import line_scan
 from procs.simulation.percept_errors import PRESETS
 from procs.simulation.sight import blurred, claimed, hidden, shaken
@@ -29,6 +30,7 @@ from procs.vision.calibration import MirrorConfig
 _LEAST_VISIBLE = 0.4  # of a ball; ER-Force's threshold, too
 _CLAIMED_BALL_PX = 0.5  # deviations that the detectors state, shaking included
 _CLAIMED_ROBOT_PX = (0.6, 1.5)
+_TILT_SHARE = 0.8  # of a tilt by an angle: shift of what is a few metres away, as a part of the mirror's scale
 
 
 class PerceptsConfig(Config):
@@ -52,6 +54,12 @@ class PerceptsConfig(Config):
     """Balls a second that are not there."""
     robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Robots a second that are not there."""
+    tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
+    """Standard deviation of the mirror's uncalibrated tilt about either axis, constant in a match."""
+    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    """Interruptions in a minute, in which frames are lost in a row."""
+    gap_s: float | None = Setting(default=None, ge=0.0)
+    """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
     robot: RobotModel = ROBOT
@@ -92,6 +100,9 @@ class Percepts(Component):
     def init(self) -> None:
         self._delayed = DelayedTruth(self.name, "percepts", self.log)
         self._before_us = -1
+        built, interrupted = self.rng.spawn(2)
+        self._tilts = built.standard_normal(2)
+        self._gaps = Gaps(interrupted)
         self._apply_settings()
 
     def loop(self) -> None:
@@ -100,11 +111,11 @@ class Percepts(Component):
         seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
         passed_s = self.clock.period_s if self._before_us < 0 else self.clock.since_s(self._before_us)
         self._before_us = self.clock.now_us
-        if seen is None:
+        if seen is None or self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
             return
         own = seen.own
         deviation_px = self._errors.shake_px + self._errors.shake_px_per_m_s * math.hypot(own.vx_m_s, own.vy_m_s)
-        forward, left = (deviation_px * self.rng.standard_normal(2)).tolist()
+        forward, left = (self._tilt_px + deviation_px * self.rng.standard_normal(2)).tolist()
         others = [(robot.x_m, robot.y_m) for robot in seen.others]
         robots_m = _seen_from(own, np.array(others).reshape(-1, 2))
         self._see_ball(own, seen.truth, robots_m, (forward, left), passed_s)
@@ -120,6 +131,7 @@ class Percepts(Component):
     def _apply_settings(self) -> None:
         self._errors = chosen(PRESETS[self.config.realism], self.config)
         self._mirror = self.config.mirror.mirror()
+        self._tilt_px = _TILT_SHARE * self._mirror.scale_px * math.radians(self._errors.tilt_sd_deg) * self._tilts
         self._lines = line_scan(self.config.field)
 
     def _see_ball(

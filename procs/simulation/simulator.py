@@ -1,6 +1,7 @@
 """Simulator of the match: moves the world by one tick, and replaces the hardware of every robot."""
 
 import math
+from typing import Literal
 
 import numpy as np
 from pydantic import Field as Setting
@@ -38,26 +39,28 @@ _FIELD_TICKS = 100  # from one message with the measures of the field to the nex
 class SimulatorConfig(Config):
     """Settings of the world."""
 
-    field: Field = Field()
+    field: Field = Setting(Field(), frozen=True)
     """Measures of the field."""
-    players: Players = dict(PLAYERS)
+    players: Players = Setting(dict(PLAYERS), frozen=True)
     """Team and number of each robot."""
-    robot: RobotModel = ROBOT
+    robot: RobotModel = Setting(ROBOT, frozen=True)
     """Geometry of all robots."""
-    ball: BallModel = BALL
+    ball: BallModel = Setting(BALL, frozen=True)
     """Size and friction of the ball."""
-    physics: PhysicsSettings = PhysicsSettings()
-    """Motors, mouths, kickers."""
-    realism: Realism = "realistic"
+    physics: PhysicsSettings = Setting(PhysicsSettings(), frozen=True)
+    """Motors, mouths, kickers, contacts."""
+    realism: Realism = Setting("realistic", frozen=True)
     """Deviation of actuators and sensors from the ideal: none, friendly, realistic or harsh."""
-    errors: Changes = {}
+    errors: Changes = Setting({}, frozen=True)
     """Errors and delays that differ from those of the preset, by name: `{drive_delay_s: 0.1}`."""
-    starts: dict[str, tuple[float, float, float]] = {}
+    starts: dict[str, tuple[float, float, float]] = Setting({}, frozen=True)
     """Starts of the robots: name to x in m, y in m and heading in rad (world frame); others take the default place."""
-    period_s: float = Setting(0.0, ge=0.0)
+    period_s: float = Setting(0.0, ge=0.0, frozen=True)
     """Logical time of a tick; 0: the system's."""
     command_timeout_s: PositiveFloat = 0.25
     """Wheels and ball handling stop when their command is older."""
+    stuck_wheels: dict[str, tuple[Literal[1, 2, 3], ...]] = {}
+    """Faults: wheels that do not turn, by robot: `{cyan3: [2]}`."""
 
 
 class Simulator(Component):
@@ -88,12 +91,14 @@ class Simulator(Component):
         """Sets the world up.
 
         Raises:
-            ValueError: `starts` names a robot that does not exist.
+            ValueError: `starts` or `stuck_wheels` names a robot that does not exist.
         """
         config, noise = self.config, noise_of(self.config.realism, self.config.errors)
         robots = sorted(self.wheel_command)
-        for stranger in sorted(set(config.starts) - set(robots)):
-            raise ValueError(f"{self.name}: starts: no robot '{stranger}'; there are: {', '.join(robots) or 'none'}")
+        for setting, named in (("starts", config.starts), ("stuck_wheels", config.stuck_wheels)):
+            for stranger in sorted(set(named) - set(robots)):
+                known = ", ".join(robots) or "none"
+                raise ValueError(f"{self.name}: {setting}: no robot '{stranger}'; there are: {known}")
         starts = {robot: Pose(*pose) for robot, pose in config.starts.items()}
         self._world = World(
             robots,
@@ -112,6 +117,10 @@ class Simulator(Component):
         self._period_us = round(config.period_s * US_PER_S) or self.clock.period_us
         self._before_us = -1
         self._placement_id = 0
+        self._spoil_wheels()
+
+    def config_changed(self) -> None:
+        self._spoil_wheels()
 
     def loop(self) -> None:
         now_us = self.clock.now_us
@@ -127,13 +136,19 @@ class Simulator(Component):
         report = self.match_events.value
         report.ball_in_field = self._world.ball_in_field
         report.ball_x_m, report.ball_y_m = self._world.ball.body.position
-        report.ball_speed_m_s = self._world.ball.speed_m_s
+        report.ball_speed_m_s = 0.0 if self._crew.frozen else self._world.ball.speed_m_s
         report.last_touch = self._world.last_touch
         report.events = [event_message(event, self.config.players) for event in events]
         self.match_events.write()
         if self.clock.tick % _FIELD_TICKS == 1:
             self.field.value = field_message(self.config.field)
             self.field.write()
+
+    def _spoil_wheels(self) -> None:
+        for stranger in sorted(set(self.config.stuck_wheels) - set(self._world.robots)):
+            self.log.warning(f"stuck_wheels: no robot '{stranger}'; there are: {', '.join(self._world.robots)}")
+        for name, robot in self._world.robots.items():
+            robot.drive.stuck = frozenset(wheel - 1 for wheel in self.config.stuck_wheels.get(name, ()))
 
     def _place_ball(self) -> None:
         for placement in self.ball_placement.fresh:
@@ -193,11 +208,12 @@ class Simulator(Component):
 
     def _report_truth(self) -> None:
         truth, ball, players = self.ground_truth.value, self._world.ball, self.config.players
+        moves = not self._crew.frozen
         truth.ball_x_m, truth.ball_y_m = ball.body.position
         truth.ball_z_m = ball.z_m
-        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.body.velocity
-        truth.ball_vz_m_s = ball.vz_m_s
-        truth.robots = [robot_message(robot, players.get(name)) for name, robot in self._world.robots.items()]
+        truth.ball_vx_m_s, truth.ball_vy_m_s = ball.body.velocity if moves else (0.0, 0.0)
+        truth.ball_vz_m_s = ball.vz_m_s if moves else 0.0
+        truth.robots = [robot_message(robot, players.get(name), moves) for name, robot in self._world.robots.items()]
         self.ground_truth.write()
 
 

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 from pydantic import Field as Setting
 
-from fwk import Component, Config, Logger, Reads, VisionMaster, channel
+from fwk import Clock, Component, Config, Logger, Reads, VisionMaster, channel
 from lcmtypes.soccer import ground_truth_t
 from procs.model.ball import BALL, BallModel
 from procs.model.field import Field
@@ -12,6 +12,7 @@ from procs.model.realism import Realism, chosen
 from procs.model.robot import ROBOT, RobotModel
 from procs.simulation.camera_errors import PRESETS
 from procs.simulation.delayed_truth import DelayedTruth
+from procs.simulation.gaps import Gaps
 from procs.simulation.rendering.renderer import Pose
 from procs.simulation.rendering.shapes import Bodies
 from procs.simulation.rendering.stereo_renderer import StereoRenderer
@@ -29,6 +30,10 @@ class StereoCameraConfig(Config):
     """Delay from the exposure until the frame is published."""
     noise_levels: float | None = Setting(default=None, ge=0.0, le=60.0)
     """Standard deviation of the sensor noise, of 255."""
+    gaps_1_min: float | None = Setting(default=None, ge=0.0)
+    """Interruptions in a minute, in which frames are lost in a row."""
+    gap_s: float | None = Setting(default=None, ge=0.0)
+    """Mean duration of an interruption."""
     field: Field = Field()
     """Measures of the field."""
     robot: RobotModel = ROBOT
@@ -44,17 +49,19 @@ class StereoCamera(Component):
     ground_truth: Reads[ground_truth_t] = channel("world/ground_truth")
     stereo_image: VisionMaster
     config: StereoCameraConfig
+    clock: Clock
     log: Logger
     rng: np.random.Generator
 
     def init(self) -> None:
         cv2.setNumThreads(1)
         self._delayed = DelayedTruth(self.name, "stereo pictures", self.log)
+        self._gaps = Gaps(self.rng.spawn(1)[0])
         self._apply_settings()
 
     def loop(self) -> None:
         seen = self._delayed.expose(self.ground_truth, self._errors.latency_s)
-        if seen:
+        if seen and not self._gaps.blind(self.clock.now_us, self._errors.gaps_1_min, self._errors.gap_s):
             own, others = seen.own, [(robot.x_m, robot.y_m) for robot in seen.others]
             frame = self._renderer.render(Pose(own.x_m, own.y_m, own.heading_rad), others)
             noise = self._errors.noise_levels * self.rng.standard_normal(frame.shape, np.float32)

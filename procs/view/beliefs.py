@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from lcmtypes.soccer import world_model_t
-from procs.model.robot import team_of
 from procs.view.canvas import Canvas
 from procs.view.palette import TEAM_COLOURS, UNKNOWN_TEAM
 
@@ -13,9 +12,9 @@ _SIGMAS = 2.0
 _LIMIT_M = 3.0
 
 
-def draw_beliefs(canvas: Canvas, robot: str, belief: world_model_t) -> None:
-    """Draws a thin ring at the believed pose, and an ellipse of two standard deviations around the ball."""
-    colour = TEAM_COLOURS.get(team_of(robot), UNKNOWN_TEAM)
+def draw_beliefs(canvas: Canvas, team: str, belief: world_model_t) -> None:
+    """Draws, in the colour of a team, a ring at the believed pose and an ellipse of two deviations around the ball."""
+    colour = TEAM_COLOURS.get(team, UNKNOWN_TEAM)
     if belief.localized:
         canvas.ring((belief.x_m, belief.y_m), 0.28, 0.02, colour)
     covariance = np.array(belief.ball.covariance)[:2, :2]

@@ -2,7 +2,7 @@
 
 from lcmtypes.soccer import ground_truth_t, true_robot_t
 from procs.model.field import Field
-from procs.model.robot import number_of, team_of
+from procs.model.robot import number_in, team_in
 
 Line = list[tuple[str, str]]
 
@@ -36,7 +36,7 @@ def field_drawing(truth: ground_truth_t, columns: int, rows: int, field: Field |
 
 
 def _robot(robot: true_robot_t) -> tuple[str, str]:
-    return str(number_of(robot.name))[-1], _STYLES.get(team_of(robot.name), _PAINT)
+    return str(number_in(robot))[-1], _STYLES.get(team_in(robot), _PAINT)
 
 
 def _ground(column: int, row: int, width: int, height: int) -> tuple[str, str]:

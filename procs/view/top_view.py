@@ -10,7 +10,7 @@ import numpy as np
 from lcmtypes.soccer import game_state_t, ground_truth_t, true_robot_t, world_model_t
 from procs.model.ball import RADIUS_M as _BALL_RADIUS_M
 from procs.model.field import Field, field_of
-from procs.model.robot import ROBOT, number_of, team_of
+from procs.model.robot import ROBOT, number_in, team_in
 from procs.view.beliefs import draw_beliefs
 from procs.view.canvas import Canvas, Colour, Picture, write
 from procs.view.ground import draw_ground
@@ -57,8 +57,9 @@ class TopView:
     ) -> Picture:
         """A picture of the world; `beliefs` are the world models of some robots, by namespace."""
         canvas = self._canvas.on(self._canvas.picture.copy())
+        teams = {robot.name: team_in(robot) for robot in truth.robots}
         for name, belief in sorted((beliefs or {}).items()):
-            draw_beliefs(canvas, name, belief)
+            draw_beliefs(canvas, teams.get(name, ""), belief)
         for robot in truth.robots:
             self._draw_robot(canvas, robot)
         self._draw_ball(canvas, truth)
@@ -70,11 +71,11 @@ class TopView:
         canvas.disc((robot.x_m + 0.04, robot.y_m - 0.05), _ROBOT_RADIUS_M, SHADOW)
         canvas.polygon(_outline(robot, _ROBOT_RADIUS_M), EDGE)
         canvas.polygon(_outline(robot, _ROBOT_RADIUS_M - 0.03), BODY)
-        canvas.disc(place, 0.16, TEAM_COLOURS.get(team_of(robot.name), UNKNOWN_TEAM))
+        canvas.disc(place, 0.16, TEAM_COLOURS.get(team_in(robot), UNKNOWN_TEAM))
         nose = (robot.x_m + 0.24 * math.cos(robot.heading_rad), robot.y_m + 0.24 * math.sin(robot.heading_rad))
         base = (robot.x_m + 0.16 * math.cos(robot.heading_rad), robot.y_m + 0.16 * math.sin(robot.heading_rad))
         canvas.line(base, nose, 0.05, TEXT)
-        number = number_of(robot.name)
+        number = number_in(robot)
         canvas.text(str(number) if number else "?", place, 0.18, TEXT)
 
     def _draw_ball(self, canvas: Canvas, truth: ground_truth_t) -> None:

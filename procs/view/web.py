@@ -7,7 +7,7 @@ from fwk.web import Newest, OpenPage, Page, RunAccess, Scene, View
 from lcmtypes.soccer import ground_truth_t, pose_t, true_robot_t, world_model_t
 from procs.model.ball import RADIUS_M as BALL_RADIUS_M
 from procs.model.field import SIDES, Field, field_of
-from procs.model.robot import CYAN, MAGENTA, ROBOT, number_of, team_of
+from procs.model.robot import CYAN, MAGENTA, ROBOT, number_in, team_in
 from procs.view.camera_sight import CALIBRATION, SEES, draw_sight
 from procs.view.scoreboard import GAME_STATE, MEASURES, TRUTH, headline
 
@@ -71,7 +71,7 @@ class RefereePage(Page):
     icon = "sports"
     needs = ("world/referee_command@outside", GAME_STATE)
 
-    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game")
+    PLAIN = ("start", "stop", "drop_ball", "park", "half_time", "end_game", "reset")
     HALVES = ("first_half", "second_half", "first_half_overtime", "second_half_overtime")
     OF_TEAM = ("kickoff", "freekick", "goalkick", "throwin", "corner", "penalty", "goal", "subgoal")
     OF_ROBOT = ("yellow_card", "double_yellow", "red_card", "repair", "substitution")
@@ -129,7 +129,7 @@ def _draw_ground(scene: Scene, field: Field) -> None:
 
 
 def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
-    colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
+    colour = COLOURS.get(team_in(robot), _UNKNOWN)
     scene.layer("truth", of=robot.name)
     radius_m = ROBOT.radius_m
     scene.circle(
@@ -140,7 +140,7 @@ def _draw_robot(scene: Scene, robot: true_robot_t) -> None:
     )
     place = (robot.x_m, robot.y_m)
     scene.line([place, _beside(place, _NOSE_M, robot.heading_rad)], _WHITE, 0.05)
-    scene.text(robot.x_m, robot.y_m, str(number_of(robot.name) or "?"), "#101214", 0.22)
+    scene.text(robot.x_m, robot.y_m, str(number_in(robot) or "?"), "#101214", 0.22)
 
 
 def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
@@ -151,7 +151,7 @@ def _draw_ball(scene: Scene, truth: ground_truth_t) -> None:
 
 def _draw_mind(scene: Scene, newest: Newest, robot: true_robot_t) -> None:
     """Draws the positions of robot and ball in the belief of the robot, its target, role and skill."""
-    colour = COLOURS.get(team_of(robot.name), _UNKNOWN)
+    colour = COLOURS.get(team_in(robot), _UNKNOWN)
     model: world_model_t | None = newest(f"{robot.name}/world_model")
     pose: pose_t | None = newest(f"{robot.name}/pose")
     if model is not None:

@@ -18,7 +18,7 @@ SYSTEMS = {
     "soccer-refbox.yaml": (5, 5),
     "one-robot.yaml": (1, 0),
 }
-TOOLS = {"vision.yaml", "frames.yaml", "kidnapped.yaml", "soccer-baselines.yaml"}
+TOOLS = {"vision.yaml", "frames.yaml", "kidnapped.yaml", "soccer-baselines.yaml", "scenarios.yaml"}
 PARTS = {"msl-field.yaml", "msl-radio.yaml", "msl-robot.yaml", "msl-percepts.yaml", "msl-stereo.yaml", "msl-truth.yaml"}
 
 

@@ -38,3 +38,11 @@ def test_too_little_room_gives_no_drawing() -> None:
 def test_before_the_first_message_there_is_no_drawing() -> None:
     assert drawing(lambda _: None, 40, 12) == []
     assert drawing({TRUTH: truth()}.get, 40, 12)
+
+
+def test_robot_is_drawn_with_its_stated_number_and_team() -> None:
+    made = truth()
+    made.robots[0].name, made.robots[0].team, made.robots[0].number = "anna", "magenta", 4
+    letters = [piece for line in field_drawing(made, 53, 30) for piece in line]
+    style = next(style for text, style in letters if "4" in text)
+    assert style == next(style for text, style in letters if "3" in text)

@@ -1,5 +1,6 @@
 """`fwk eval FILE`: plays a launch file with many seeds at the same time, and measures it."""
 
+import hashlib
 import os
 import sys
 from importlib import import_module
@@ -12,6 +13,7 @@ from fwk.cli.arguments import seconds
 from fwk.cli.output import BAD_INPUT
 from fwk.cli.recordings.user_folders import use_folders
 from fwk.model.errors import PlanError
+from fwk.model.plan import Plan
 from fwk.plan.load import LaunchOptions, load_plan
 from fwk.testing.campaign import Campaign, CampaignError, Evaluation, executor_of
 
@@ -49,8 +51,11 @@ def eval(  # noqa: A001 - the name of the command
     use_folders(plan.folders)
     numbers, folder = _numbers(seeds), out or Path(f"eval-{plan.name}")
     try:
-        about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation} | ({"sets": sets} if sets else {})
-        campaign = Campaign(folder, about)
+        about = {"file": plan.file, "time_s": time_s, "by": plan.evaluation, "plan": _digest(plan)}
+        campaign = Campaign(folder, about | ({"sets": sets} if sets else {}))
+    except OSError as error:
+        typer.echo(f"error: --out {folder}: {error.strerror}", err=True)
+        raise typer.Exit(BAD_INPUT) from error
     except CampaignError as error:
         typer.echo(f"error: {error}", err=True)
         raise typer.Exit(1) from error
@@ -77,6 +82,15 @@ def _play(campaign: Campaign, work: Evaluation, file: str, time_s: float, seeds:
     except CampaignError as error:
         return str(error)
     return ""
+
+
+def _digest(plan: Plan) -> str:
+    """Returns a digest of the components with their settings, channels and turns: runs of others are not mixed in."""
+    played = [
+        (each.name, each.module, each.class_name, each.config, each.channels, each.every, each.offset)
+        for each in plan.components
+    ]
+    return hashlib.sha256(repr((plan.period_us, played)).encode()).hexdigest()[:16]
 
 
 def _numbers(text: str) -> range:

@@ -4,12 +4,11 @@ import itertools
 import math
 
 from procs.model.field import Point
-from procs.model.robot import RADIUS_M
 from procs.referee.ends import team_number
 from procs.referee.fouls.foul import Foul, Scene
 from procs.simulation.physics.events import Kind
 
-_CONTACT_M = 2 * RADIUS_M + 0.02
+_TOUCHING_M = 0.02  # robots whose gap is smaller touch each other
 _SHOVES_M_S = 0.1
 _REST = Point(0.0, 0.0)
 
@@ -32,8 +31,9 @@ class Pushing:
     def watch(self, scene: Scene) -> Foul | None:
         """Returns the foul of a robot that pushed a rival too far."""
         robots, pushed_m = scene.sight.robots, {}
+        contact_m = 2 * scene.rules.robot.radius_m + _TOUCHING_M
         for pusher, pushed in itertools.permutations(sorted(robots), 2):
-            if team_number(pusher) is team_number(pushed) or math.dist(robots[pusher], robots[pushed]) > _CONTACT_M:
+            if team_number(pusher) is team_number(pushed) or math.dist(robots[pusher], robots[pushed]) > contact_m:
                 continue
             both_m_s = min(self._towards_m_s(scene, pusher, pushed, of) for of in (pusher, pushed))
             before_m = self._pushed_m.get((pusher, pushed), 0.0)

@@ -3,6 +3,7 @@
 import pymunk
 
 from procs.model.field import SIDES, Field, Point
+from procs.simulation.physics.settings import ContactSettings
 
 WALL, BALL, ROBOT, HULL = 1, 2, 3, 4
 """Collision types; a robot's round body meets everything but the ball, its hull with the mouth only the ball."""
@@ -26,33 +27,31 @@ def ball_filter(over_robots: bool = False, over_goals: bool = False) -> pymunk.S
     return _BALL_FILTERS[over_robots, over_goals]
 
 
-_BOUNCE_WALL, _BOUNCE_POST, _BOUNCE_NET = 0.5, 0.7, 0.05
 _WALL_RADIUS_M = 0.05
 _NET_RADIUS_M = 0.02
 
 
-def build_arena(space: pymunk.Space, field: Field) -> None:
+def build_arena(space: pymunk.Space, field: Field, contacts: ContactSettings) -> None:
     """Adds the static shapes of a field to the space. The ball's own bounce is 1, so theirs is the bounce of a pair."""
+    friction = contacts.wall_friction
+
+    def add(shape: pymunk.Shape, bounce: float, meets: pymunk.ShapeFilter) -> None:
+        shape.collision_type, shape.filter = WALL, meets
+        shape.elasticity, shape.friction = bounce, friction
+        space.add(shape)
+
+    def add_net(start: Point, end: Point) -> None:
+        add(pymunk.Segment(space.static_body, start, end, _NET_RADIUS_M), contacts.net_bounce, GOAL_FILTER)
+
     x_m = field.half_length_m + field.border_m + _WALL_RADIUS_M
     y_m = field.half_width_m + field.border_m + _WALL_RADIUS_M
     corners = [Point(-x_m, -y_m), Point(x_m, -y_m), Point(x_m, y_m), Point(-x_m, y_m)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
-        _add(space, pymunk.Segment(space.static_body, start, end, _WALL_RADIUS_M), _BOUNCE_WALL, WALL_FILTER)
+        add(pymunk.Segment(space.static_body, start, end, _WALL_RADIUS_M), contacts.wall_bounce, WALL_FILTER)
     for side in SIDES:
         posts = field.goal_posts(side)
         back_m = side * (field.half_length_m + field.goal_depth_m + _NET_RADIUS_M)
         for post in posts:
-            circle = pymunk.Circle(space.static_body, field.post_diameter_m / 2, post)
-            _add(space, circle, _BOUNCE_POST, GOAL_FILTER)
-            _add_net(space, post, Point(back_m, post.y_m))
-        _add_net(space, Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m))
-
-
-def _add_net(space: pymunk.Space, start: Point, end: Point) -> None:
-    _add(space, pymunk.Segment(space.static_body, start, end, _NET_RADIUS_M), _BOUNCE_NET, GOAL_FILTER)
-
-
-def _add(space: pymunk.Space, shape: pymunk.Shape, bounce: float, meets: pymunk.ShapeFilter) -> None:
-    shape.collision_type, shape.filter = WALL, meets
-    shape.elasticity, shape.friction = bounce, 0.5
-    space.add(shape)
+            add(pymunk.Circle(space.static_body, field.post_diameter_m / 2, post), contacts.post_bounce, GOAL_FILTER)
+            add_net(post, Point(back_m, post.y_m))
+        add_net(Point(back_m, posts[0].y_m), Point(back_m, posts[1].y_m))

@@ -10,8 +10,6 @@ from procs.simulation.physics.arena import BALL, ball_filter
 from procs.simulation.physics.rolling import RollingFriction
 
 GRAVITY_M_S2 = 9.81
-_LEAST_REBOUND_M_S = 0.5  # the ball stays on the ground after a softer one
-_UPRIGHT_SPIN_S = 0.5  # time constant with which the ground stops a spin around the vertical
 
 
 class Ball:
@@ -30,7 +28,7 @@ class Ball:
         """Height of its lowest point above the ground."""
         self.vz_m_s = 0.0
         self._robot_height_m, self._goal_height_m = robot_height_m, goal_height_m
-        self._bounce = ball.bounce
+        self._bounce, self._least_rebound_m_s, self._spin_s = ball.bounce, ball.least_rebound_m_s, ball.spin_s
         self.radius_m = ball.radius_m
         self.mass_kg = ball.mass_kg
         self.friction = RollingFriction(ball, friction_scale)
@@ -59,14 +57,14 @@ class Ball:
         self.vz_m_s -= GRAVITY_M_S2 * duration_s
         if self.z_m <= 0.0:
             rebound_m_s = -self._bounce * self.vz_m_s
-            self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > _LEAST_REBOUND_M_S else 0.0
+            self.z_m, self.vz_m_s = 0.0, rebound_m_s if rebound_m_s > self._least_rebound_m_s else 0.0
         self._shape.filter = ball_filter(self.z_m > self._robot_height_m, self.z_m > self._goal_height_m)
 
     def rub(self, duration_s: float) -> None:
         """Lets the ground act on the ball for a while, unless it flies."""
         if self.flies:
             return
-        self.body.angular_velocity *= math.exp(-duration_s / _UPRIGHT_SPIN_S)
+        self.body.angular_velocity *= math.exp(-duration_s / self._spin_s)
         self.body.velocity = self.friction.advance(*self.body.velocity, duration_s)
 
     def put(self, x_m: float, y_m: float) -> None:

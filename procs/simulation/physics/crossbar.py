@@ -3,13 +3,13 @@
 from procs.model.field import Field
 from procs.simulation.physics.ball_body import Ball
 
-_BOUNCE = 0.7
-
 
 class Crossbar:
     """Sends a ball back that crosses the plane of a goal where the bar is."""
 
-    def __init__(self, field: Field, ball: Ball) -> None:
+    def __init__(self, field: Field, ball: Ball, bounce: float) -> None:
+        """`bounce` is the share of the ball's speed that is left."""
+        self._bounce = bounce
         self._ball = ball
         self._line_m = field.half_length_m - field.line_width_m / 2
         self._half_m = field.goal_width_m / 2
@@ -27,6 +27,6 @@ class Crossbar:
             return False
         vx_m_s, vy_m_s = ball.body.velocity
         ball.body.position = (before_m, y_m)
-        ball.body.velocity = (-_BOUNCE * vx_m_s, vy_m_s)
+        ball.body.velocity = (-self._bounce * vx_m_s, vy_m_s)
         self._before_m = before_m
         return True

@@ -19,6 +19,8 @@ class Drive:
     def __init__(self, robot: RobotModel, settings: DriveSettings, delay_s: float = 0.0) -> None:
         self.wheels_m_s: Wheels = (0.0, 0.0, 0.0)
         """Rim speeds now."""
+        self.stuck: frozenset[int] = frozenset()
+        """Wheels, 0 to 2, that do not turn whatever their motors are told."""
         self._robot = robot
         self._motor_time_s = settings.motor_time_s
         self._distance_m, self._full_slip_m_s = robot.wheel_distance_m, settings.full_slip_m_s
@@ -43,6 +45,9 @@ class Drive:
             self._step_s, self._share = duration_s, -math.expm1(-duration_s / self._motor_time_s)
         share, catching_up_s = self._share, self._motor_time_s * self._share
         (a, b, c), (to_a, to_b, to_c) = self.wheels_m_s, self._wanted_m_s
+        if self.stuck:
+            a, b, c = (0.0 if wheel in self.stuck else speed for wheel, speed in enumerate((a, b, c)))
+            to_a, to_b, to_c = (0.0 if wheel in self.stuck else speed for wheel, speed in enumerate((to_a, to_b, to_c)))
         self.wheels_m_s = a + (to_a - a) * share, b + (to_b - b) * share, c + (to_c - c) * share
         way_a, way_b, way_c = self._travelled_m
         self._travelled_m = (

@@ -11,8 +11,6 @@ from procs.simulation.physics.mouth import Mouth
 from procs.simulation.physics.realism import Noise
 from procs.simulation.physics.settings import KickerSettings
 
-_RELEASE_US = 100_000  # after a kick the handling wheels stand still, so that they do not brake the ball
-
 
 class KickerCommand(NamedTuple):
     """Command of the driver; a new `kick_id` with a speed above 0 is a new kick."""
@@ -71,7 +69,7 @@ class Kicker:
             if command.speed_m_s > 0 and command.kick_id != self.kick_id and self.charged(now_us):
                 self.kick_id = command.kick_id
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
-                self._handling_from_us = now_us + _RELEASE_US
+                self._handling_from_us = now_us + round(self._settings.release_s * 1e6)
                 push = self._fire(command.speed_m_s, command.elevation_rad)
         if ball_near and self._dribble and now_us >= self._handling_from_us and (place := self.mouth.held_ball()):
             push = Push(self.mouth.pull(place, duration_s), kicked=False)

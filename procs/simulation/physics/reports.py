@@ -34,14 +34,15 @@ def field_message(field: Field) -> field_t:
     return message
 
 
-def robot_message(robot: Robot, player: Player | None) -> true_robot_t:
-    """Returns a robot's true pose (heading within -pi..pi) and velocity in the world frame."""
+def robot_message(robot: Robot, player: Player | None, moves: bool = True) -> true_robot_t:
+    """Returns a robot's true pose (heading within -pi..pi) and velocity in the world frame; 0 unless it `moves`."""
     message = true_robot_t()
     message.name = robot.name
     if player:
         message.team, message.number = player.team, player.number
     message.x_m, message.y_m = robot.body.position
     message.heading_rad = math.remainder(robot.body.angle, 2 * math.pi)
-    message.vx_m_s, message.vy_m_s = robot.body.velocity
-    message.omega_rad_s = robot.body.angular_velocity
+    if moves:
+        message.vx_m_s, message.vy_m_s = robot.body.velocity
+        message.omega_rad_s = robot.body.angular_velocity
     return message

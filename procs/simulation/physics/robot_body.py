@@ -9,16 +9,18 @@ from procs.model.robot import RobotModel
 from procs.simulation.physics.arena import HULL, HULL_FILTER, ROBOT, ROBOT_FILTER
 from procs.simulation.physics.bodies import State
 from procs.simulation.physics.drive import Drive
+from procs.simulation.physics.settings import ContactSettings
 
 _HULL_CORNERS = 16
 _MOUTH_LIP_M = 0.005
-_BOUNCE_MOUTH, _BOUNCE_HULL, _BOUNCE_ROBOT = 0.2, 0.5, 0.3
 
 
 class Robot:
     """One robot; positions in the world frame."""
 
-    def __init__(self, space: pymunk.Space, name: str, robot: RobotModel, drive: Drive) -> None:
+    def __init__(
+        self, space: pymunk.Space, name: str, robot: RobotModel, drive: Drive, contacts: ContactSettings
+    ) -> None:
         self.name = name
         self.radius_m = robot.radius_m
         self.drive = drive
@@ -28,13 +30,19 @@ class Robot:
         self.body = pymunk.Body(robot.mass_kg, robot.mass_kg * robot.radius_m**2 / 2)
         half_mouth_m = robot.radius_m * math.sin(half_rad)
         circle = pymunk.Circle(self.body, robot.radius_m)
-        circle.collision_type, circle.elasticity, circle.friction = ROBOT, _BOUNCE_ROBOT, 0.3
+        circle.collision_type, circle.elasticity, circle.friction = (
+            ROBOT,
+            contacts.robot_bounce,
+            contacts.robot_friction,
+        )
         circle.filter = ROBOT_FILTER
         hull = pymunk.Poly(self.body, _hull(robot.radius_m, half_rad))
-        hull.collision_type, hull.elasticity, hull.friction, hull.filter = HULL, _BOUNCE_HULL, 0.22, HULL_FILTER
+        hull.collision_type, hull.filter = HULL, HULL_FILTER
+        hull.elasticity, hull.friction = contacts.hull_bounce, contacts.hull_friction
         lip_x_m = self.mouth_x_m - _MOUTH_LIP_M
         mouth = pymunk.Segment(self.body, (lip_x_m, -half_mouth_m), (lip_x_m, half_mouth_m), _MOUTH_LIP_M)
-        mouth.collision_type, mouth.elasticity, mouth.friction, mouth.filter = HULL, _BOUNCE_MOUTH, 0.8, HULL_FILTER
+        mouth.collision_type, mouth.filter = HULL, HULL_FILTER
+        mouth.elasticity, mouth.friction = contacts.mouth_bounce, contacts.mouth_friction
         space.add(self.body, circle, hull, mouth)
 
     @property

@@ -1,4 +1,7 @@
-"""Physical properties of motors, mouths and kickers; the defaults are those of the middle size league."""
+"""Physical properties of motors, mouths, kickers and contacts; the defaults are those of the middle size league.
+
+Values without a source are estimates.
+"""
 
 from typing import Annotated
 
@@ -42,6 +45,33 @@ class KickerSettings(_Settings):
     """Highest speed it gives to a resting ball."""
     recharge_s: PositiveFloat = 1.5
     """After a kick, until the next is possible."""
+    release_s: Annotated[float, Field(ge=0.0)] = 0.1
+    """After a kick the handling wheels stand still for this time, so that they do not brake the ball."""
+
+
+class ContactSettings(_Settings):
+    """Bounce (0..1: share of the closing speed that is left) and friction of bodies that touch."""
+
+    wall_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    """Ball at the low wall around the field."""
+    post_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.7
+    """Ball at a post or the bar of a goal."""
+    net_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.05
+    """Ball in the net of a goal."""
+    hull_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.5
+    """Ball at a robot's side or back. ER-Force measured 0.6, TIGERs 0.2 to 0.55."""
+    mouth_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.2
+    """Ball at a robot's mouth. ER-Force: 0.2 at the dribbler."""
+    robot_bounce: Annotated[float, Field(ge=0.0, le=1.0)] = 0.3
+    """Root of the bounce of two robots: 0.09 between them. At walls the product with theirs."""
+    wall_friction: Annotated[float, Field(ge=0.0)] = 0.5
+    """Friction of walls, posts and nets."""
+    hull_friction: Annotated[float, Field(ge=0.0)] = 0.22
+    """Friction between ball and hull. ER-Force measured 0.22."""
+    mouth_friction: Annotated[float, Field(ge=0.0)] = 0.8
+    """Friction between ball and mouth. ER-Force: 1.5 at the dribbler of a small robot."""
+    robot_friction: Annotated[float, Field(ge=0.0)] = 0.3
+    """Root of the friction of two robots."""
 
 
 class PhysicsSettings(_Settings):
@@ -50,6 +80,7 @@ class PhysicsSettings(_Settings):
     drive: DriveSettings = DriveSettings()
     handling: HandlingSettings = HandlingSettings()
     kicker: KickerSettings = KickerSettings()
+    contacts: ContactSettings = ContactSettings()
     step_s: Annotated[float, Field(gt=0.0, le=0.005)] = 0.005
     """Longest step of the integration; a tick is cut into equal steps no longer than this. In longer steps than 5 ms
     the force of a wheel, which is steep in its slip, oscillates."""

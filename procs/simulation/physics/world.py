@@ -51,16 +51,16 @@ class World:
         noise = noise or Noise()
         self._space = pymunk.Space()
         self._space.collision_slop = 0.001  # pymunk's default is meant for pixels: here it would be 10 cm
-        build_arena(self._space, self._field)
+        build_arena(self._space, self._field, self._physics.contacts)
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
         self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
-        self._bar = Crossbar(self._field, self.ball)
+        self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
         self._starts: dict[str, Pose] = {}
         for name in sorted(robots):
             drive = Drive(robot, self._physics.drive, noise.drive_delay_s)
-            body = self.robots[name] = Robot(self._space, name, robot, drive)
+            body = self.robots[name] = Robot(self._space, name, robot, drive, self._physics.contacts)
             self._starts[name] = (starts or {}).get(name) or starting_pose(players.get(name), self._field)
             body.put(*self._starts[name])
             mouth = Mouth(body, self.ball, self._physics.handling, 1.0 - noise.handling_loss)

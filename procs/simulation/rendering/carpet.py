@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -22,6 +23,9 @@ FLOOR_NUMBER = _COLOURS.index(FLOOR)
 """Number of the colour of everything beyond the carpet."""
 _SHIFT = 4  # fractional bits of OpenCV's drawing coordinates
 _ARC_STEP_RAD = math.radians(3.0)
+_BARE_PX = 3  # width of a place where paint is missing, about half a line
+_SPECK_M = 0.06  # radius of a speck: as wide as a line
+_WEAR_SEED = 1
 
 
 @dataclass(frozen=True)
@@ -48,9 +52,22 @@ def coloured(numbers: NDArray[np.uint8]) -> Picture:
     return np.asarray(cv2.applyColorMap(numbers, _PALETTE), np.uint8)
 
 
+class Wear(NamedTuple):
+    """Signs of use."""
+
+    worn: float = 0.0
+    """Part of the lines' paint that is missing, 0..1."""
+    clutter_1_m2: float = 0.0
+    """White specks on a square metre of the floor around the field."""
+
+
+NEW = Wear()
+"""A new carpet on a tidy floor."""
+
+
 @lru_cache(maxsize=4)
-def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
-    """Paints the field, its border and some of the floor around it."""
+def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX, wear: Wear = NEW) -> Carpet:
+    """Paints the field, its border and some of the floor around it; the same signs of use in every process."""
     half_m = (field.half_length_m + field.border_m + _FLOOR_M, field.half_width_m + field.border_m + _FLOOR_M)
     width, height = (2 * round(half / metres_per_px) for half in half_m)
     numbers = np.empty((height, width), np.uint8)
@@ -65,7 +82,26 @@ def lay_carpet(field: Field, metres_per_px: float = METRES_PER_PX) -> Carpet:
         _paint(carpet, _band(arc, line_m), WHITE)
     for mark in field.marks():
         _paint(carpet, _circle(mark, (field.mark_diameter_m - metres_per_px) / 2), WHITE)
+    rng = np.random.default_rng(_WEAR_SEED)
+    _rub_off(carpet, wear.worn, rng)
+    _litter(carpet, field, wear.clutter_1_m2, rng)
     return carpet
+
+
+def _rub_off(carpet: Carpet, worn: float, rng: np.random.Generator) -> None:
+    height, width = carpet.numbers.shape
+    bare = rng.random((height // _BARE_PX + 1, width // _BARE_PX + 1)) < worn
+    bare = bare.repeat(_BARE_PX, axis=0)[:height].repeat(_BARE_PX, axis=1)[:, :width]
+    carpet.numbers[bare & (carpet.numbers == _COLOURS.index(WHITE))] = _COLOURS.index(GREEN)
+
+
+def _litter(carpet: Carpet, field: Field, specks_1_m2: float, rng: np.random.Generator) -> None:
+    inner = np.array((field.half_length_m + field.border_m, field.half_width_m + field.border_m)) + _SPECK_M
+    outer = inner + _FLOOR_M
+    count = round(4 * float(outer.prod()) * specks_1_m2)
+    for x_m, y_m in (outer * rng.uniform(-1.0, 1.0, (count, 2))).tolist():
+        if abs(x_m) > inner[0] or abs(y_m) > inner[1]:
+            _paint(carpet, _circle(Point(x_m, y_m), _SPECK_M), WHITE)
 
 
 def _lay_floor(numbers: NDArray[np.uint8], patch_px: int) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from procs.model.algebra import Floats, product
 from procs.model.field import SIDES, Field
-from procs.simulation.rendering.carpet import lay_carpet
+from procs.simulation.rendering.carpet import NEW, Wear, lay_carpet
 from procs.simulation.rendering.ground_view import MARGIN_PX, GroundView
 from procs.simulation.rendering.shapes import Bodies, markers, pillars
 from procs.vision.colours import BLACK, ORANGE, WHITE, Bgr, Picture
@@ -43,10 +43,10 @@ class Scene:
 class Renderer:
     """Renders scenes: the carpet warped to the robot's view, then everything upright from far to near."""
 
-    def __init__(self, mirror: Mirror, field: Field, bodies: Bodies) -> None:
+    def __init__(self, mirror: Mirror, field: Field, bodies: Bodies, wear: Wear = NEW) -> None:
         self._mirror = mirror
         self._bodies = bodies
-        self._ground = GroundView(mirror, lay_carpet(field))
+        self._ground = GroundView(mirror, lay_carpet(field, wear=wear))
         self._posts_m = np.array([post for side in SIDES for post in field.goal_posts(side)])
         self._post_size_m = (field.post_diameter_m / 2, field.goal_height_m)
         self._unseen, self._mask = _unseen(mirror, bodies.robot_radius_m)

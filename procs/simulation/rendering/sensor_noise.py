@@ -22,6 +22,8 @@ class SensorNoise:
         self.spoil_lens(0.0, 0.0)
         self._brightness = brightness
         self._flicker = flicker
+        self.cast = np.ones(3)
+        """Factors on blue, green and red."""
 
     def spoil_lens(self, blur_px: float, vignette: float) -> None:
         """Sets the blur, and the part of the brightness that is missing at the picture's edge."""
@@ -41,8 +43,9 @@ class SensorNoise:
         if self._shade is not None:
             frame = np.asarray(cv2.multiply(frame, self._shade, scale=1 / 255), np.uint8)
         gain = self._brightness * (1.0 + self._flicker * rng.standard_normal())
-        if gain != 1.0:
-            levels = np.round(np.arange(256) * max(gain, 0.0)).clip(0, 255).astype(np.uint8)
+        if gain != 1.0 or (self.cast != 1.0).any():
+            factors = max(gain, 0.0) * self.cast
+            levels = np.round(np.arange(256)[:, None, None] * factors).clip(0, 255).astype(np.uint8)
             frame = np.asarray(cv2.LUT(frame, levels), np.uint8)
         if not self._noisy:
             return frame

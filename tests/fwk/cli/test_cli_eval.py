@@ -84,6 +84,20 @@ def test_folder_of_another_campaign_is_refused(launch: Path) -> None:
     assert "holds another campaign" in said
 
 
+def test_changed_launch_file_is_another_campaign(launch: Path) -> None:
+    assert evaluated(str(launch), "--seeds", "1", "--jobs", "1")[0] == 0
+    launch.write_text("# The same system.\n" + LAUNCH)
+    assert evaluated(str(launch), "--seeds", "1..2", "--jobs", "1")[:2] == (0, "1 2\n")
+    launch.write_text(LAUNCH + "period_s: 0.1\n")
+    code, _, said = evaluated(str(launch), "--seeds", "1..3", "--jobs", "1")
+    assert (code, "holds another campaign" in said) == (1, True)
+
+
+def test_folder_that_cannot_be_is_named(launch: Path) -> None:
+    code, _, said = evaluated(str(launch), "--seeds", "1", "--out", str(launch))
+    assert (code, said) == (2, f"error: --out {launch}: File exists\n")
+
+
 def test_overridden_settings_reach_each_run(launch: Path) -> None:
     words = (str(launch), "--seeds", "1", "--jobs", "1")
     assert evaluated(*words, "--set", "period_s=0.1")[0] == 0
@@ -156,6 +170,27 @@ def test_runs_of_a_killed_evaluation_end_with_it() -> None:
         worker = psutil.Process(int(killed.stdout.readline()))
         killed.kill()
     worker.wait(10)
+
+
+INTERRUPTED = """
+import os, signal, sys, threading
+from pathlib import Path
+from fwk.testing.campaign import Campaign, executor_of
+signal.signal(signal.SIGINT, signal.default_int_handler)
+def work(file, time_s, seed):
+    return signal.pause() if seed else os.getpid()
+with executor_of(1) as workers:
+    for _ in Campaign(Path(sys.argv[1]), {}).play(work, "it", 1.0, range(8), workers):
+        threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+"""
+
+
+def test_ctrl_c_does_not_wait_for_runs_that_have_begun(tmp_path: Path) -> None:
+    words = [sys.executable, "-c", INTERRUPTED, str(tmp_path)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=30)
+    assert done.stderr.endswith("KeyboardInterrupt\n")
+    assert "InvalidStateError" not in done.stderr
+    assert not psutil.pid_exists(json.loads((tmp_path / "seed-0.json").read_text()))
 
 
 @pytest.mark.slow

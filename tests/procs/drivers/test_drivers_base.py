@@ -45,6 +45,14 @@ def test_base_accelerates_within_its_limits() -> None:
     assert drive(base, 20, vx_m_s=1.0, enabled=True) == pytest.approx((1.0, 0.0, 0.0))
 
 
+def test_limits_change_during_the_run() -> None:
+    base = bench(acceleration_m_s2=2.0)
+    before = drive(base, 5, vx_m_s=2.0, enabled=True).vx_m_s
+    base.component.config.acceleration_m_s2 = 1.0
+    base.component.config_changed()
+    assert drive(base, 1, vx_m_s=2.0, enabled=True).vx_m_s == pytest.approx(before + 0.05)
+
+
 def test_wheel_commands_stay_within_the_limit() -> None:
     base = bench(robot={"wheel_limit_m_s": 2.0})
     drive(base, 60, vx_m_s=3.0, vy_m_s=1.0, omega_rad_s=0.5, enabled=True)

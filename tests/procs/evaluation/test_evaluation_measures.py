@@ -11,6 +11,7 @@ from lcmtypes.robot import kicker_state_t, motor_command_t
 from lcmtypes.soccer import (
     ball_estimate_t,
     ball_percept_t,
+    field_t,
     game_state_t,
     ground_truth_t,
     match_event_t,
@@ -341,3 +342,22 @@ def test_radio_and_reactions_are_measured_by_their_times() -> None:
     assert rows["radio, volume of a team"] == pytest.approx(0.01)
     assert rows["radio, messages of a robot"] == pytest.approx(1.0)
     assert rows["picture to motor command, 95 %"] == pytest.approx(0.035)
+
+
+def test_teams_and_field_are_those_of_the_match() -> None:
+    truth, field = ground_truth_t(), field_t()
+    truth.header.tick, field.length_m, field.width_m = 1, 12.0, 8.0
+    for name, team, number in (("anna", "cyan", 2), ("bert", "magenta", 1), ("cyan1", "", 0)):
+        made = true_robot_t()
+        made.name, made.team, made.number = name, team, number
+        truth.robots.append(made)
+    truth.n = 3
+    piece = piece_of({"world/ground_truth": [truth.encode()], "world/field": [field.encode()]}, 0.05)
+    assert (piece.measures.length_m, piece.measures.width_m) == (12.0, 8.0)
+    assert [piece.team(name) for name in ("anna", "bert", "cyan1", "magenta4")] == [
+        "cyan",
+        "magenta",
+        "cyan",
+        "magenta",
+    ]
+    assert [each.name for each in piece.rivals(1, "anna")] == ["bert"]

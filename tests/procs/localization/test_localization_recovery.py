@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from fwk.testing import Bench, settings_in
+from procs.localization.hypotheses import Hypotheses
 from procs.localization.localization import Localization
 from tests.procs.localization.localization_parts import (
     FakeRobot,
@@ -106,3 +107,23 @@ def test_robot_without_compass_is_declared_lost() -> None:
         known.append(bench.port("pose").sent[-1].localized)
     assert all(known[10:60])
     assert not known[-1]
+
+
+@pytest.mark.parametrize("interval_s", [0.02, 0.08, 0.12])
+def test_decision_takes_as_long_at_any_frame_rate(interval_s: float) -> None:
+    hypotheses, poses, taken_s = Hypotheses(), np.array([[1.0, 2.0, 0.3], [5.0, -2.0, 0.3]]), 0.0
+    scores = np.array([0.9, 0.2])
+    hypotheses.update(poses, scores, interval_s)
+    while hypotheses.decided(0.5) is None and taken_s < 3.0:
+        hypotheses.update(poses, scores, interval_s)
+        taken_s += interval_s
+    assert 0.35 < taken_s < 0.39 + interval_s
+
+
+@pytest.mark.parametrize("interval_s", [0.02, 0.08])
+def test_scores_fade_in_seconds_not_in_frames(interval_s: float) -> None:
+    hypotheses, pose = Hypotheses(), np.array([[1.0, 2.0, 0.3]])
+    hypotheses.update(pose, np.array([1.0]), interval_s)
+    for _ in range(round(0.48 / interval_s)):
+        hypotheses.update(pose, np.array([0.0]), interval_s)
+    assert hypotheses.known[0].score == pytest.approx(0.85**6, rel=0.01)

@@ -21,6 +21,10 @@ class BaseStation:
         *messages, self._data = self._data.split(b"\0", count)
         return [json.loads(message) for message in messages]
 
+    def say(self, data: bytes) -> None:
+        """Sends bytes, which no RefBox expects."""
+        self._connection.sendall(data)
+
     def close(self) -> None:
         """Leaves."""
         self._connection.close()

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from fwk.testing import Bench, MemorySystem
-from lcmtypes.soccer import game_state_t
+from lcmtypes.soccer import game_event_t, game_state_t
 from procs.refbox.client import RefBoxClient
 from procs.refbox.server import RefBoxServer
 from procs.referee.referee import Referee
@@ -61,6 +61,38 @@ def test_base_station_that_has_left_does_not_matter(server: Bench) -> None:
         assert names(station.heard(3))[0] == ("WELCOME", "")
 
 
+def test_server_forgets_stations_that_come_and_go(server: Bench) -> None:
+    for _ in range(60):
+        show(server, game_state_t.PLAY, 0, False)
+        BaseStation(server.component.port).close()
+    show(server, game_state_t.PLAY, 0, False)
+    show(server, game_state_t.PLAY, 0, False)
+    assert sum(line.text == "base station left" for line in server.logged) >= 59
+
+
+def test_server_turns_away_more_stations_than_it_serves() -> None:
+    bench = Bench(RefBoxServer, "world/refbox", port=0, stations=2)
+    with contextlib.ExitStack() as open_until_the_end:
+        open_until_the_end.callback(bench.finalize)
+        stations = [BaseStation(bench.component.port) for _ in range(3)]
+        for each in stations:
+            open_until_the_end.enter_context(contextlib.closing(each))
+        show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+        show(bench, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
+        assert [len(each.heard(4)) for each in stations[:2]] == [4, 4]
+        with pytest.raises(AssertionError, match="closed the connection"):
+            stations[2].heard(1)
+        assert any("is turned away: 2 are connected" in line.text for line in bench.logged)
+
+
+def test_server_is_deaf_to_what_stations_say(server: Bench) -> None:
+    with contextlib.closing(BaseStation(server.component.port)) as station:
+        show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+        station.say(b"\0\xff[[[{" * 20_000)
+        show(server, game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, False)
+        assert names(station.heard(4))[-1] == ("START", "")
+
+
 def test_client_leads_the_referee(refbox: socket.socket) -> None:
     system = MemorySystem(
         {
@@ -93,9 +125,24 @@ def test_client_tries_again_and_says_why(refbox: socket.socket) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         free = taken.getsockname()[1]
     bench = Bench(RefBoxClient, "world/refbox", port=free, retry_s=0.2)
-    bench.iterate(9)
+    bench.iterate(15)
     assert sum("no RefBox at 127.0.0.1" in line.text for line in bench.logged) == 3
     bench.finalize()
+
+
+def test_refbox_that_does_not_answer_holds_nothing_up(refbox: socket.socket) -> None:
+    refbox.listen(0)
+    with contextlib.ExitStack() as waiting:  # a full queue: the next connection is not answered
+        for _ in range(4):
+            other = waiting.enter_context(socket.socket())
+            other.setblocking(False)
+            other.connect_ex(refbox.getsockname())
+        bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], connect_s=0.3)
+        waiting.callback(bench.finalize)
+        bench.iterate()
+        assert not bench.logged  # it has not waited
+        bench.iterate(8)
+        assert any("no answer for 0.3 s" in line.text for line in bench.logged)
 
 
 def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
@@ -109,4 +156,29 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
             if any("is not JSON" in line.text for line in bench.logged):
                 break
     assert any("RefBox: b'hello' is not JSON" in line.text for line in bench.logged)
+    bench.finalize()
+
+
+def test_robots_have_the_numbers_of_the_players(refbox: socket.socket) -> None:
+    players = {"anna": {"team": "magenta", "number": 7}}
+    bench = Bench(RefBoxClient, "world/refbox", port=refbox.getsockname()[1], players=players)
+    bench.iterate()
+    connection, _ = refbox.accept()
+    with connection:
+        connection.sendall(say("REPAIR", MAGENTA, robotID=7) + say("REPAIR", CYAN, robotID=7))
+        while len(bench.port("referee_command").sent) < 2:
+            bench.iterate()
+    bench.finalize()
+    assert [each.robot for each in bench.port("referee_command").sent] == ["anna", "cyan7"]
+
+
+def test_card_is_sent_with_the_number_of_the_player() -> None:
+    bench = Bench(RefBoxServer, "world/refbox", port=0, players={"anna": {"team": "magenta", "number": 7}})
+    with contextlib.closing(BaseStation(bench.component.port)) as station:
+        show(bench, game_state_t.PLAY, 0, False)
+        card = game_event_t()
+        card.card, card.team, card.robot = game_event_t.RED, game_state_t.TEAM_MAGENTA, "anna"
+        bench.port("game_state").put(state=game_state_t.PLAY, half=1, history=[card])
+        bench.iterate()
+        assert station.heard(4)[-1] == {"command": "RED_CARD", "targetTeam": MAGENTA, "robotID": 7}
     bench.finalize()

@@ -42,6 +42,16 @@ def test_command_as_bytes_and_back(command: Command, data: bytes) -> None:
         (b'{"targetTeam": ""}', "has no command"),
         (b'{"command": "GOAL", "targetTeam": "10.0.0.1"}', "no team has the address '10.0.0.1'; there are 224"),
         (b'{"command": "REPAIR", "robotID": -1}', "-1 is not the number of a robot"),
+        (b'{"command": "REPAIR", "robotID": true}', "True is not the number of a robot"),
+        (b'{"command": "REPAIR", "robotID": "' + b"9" * 5000 + b'"}', "'9{59} is not the number of a robot"),
+        (b'{"command": "GOAL", "targetTeam": ["224.16.32.1"]}', "no team has the address .'224.16.32.1'.; there are"),
+        (b'{"command": "GOAL", "targetTeam": {}}', "no team has the address {}; there are"),
+        (b'{"command": "\\ud800"}', "is not the name of a command"),
+        (b'{"command": "A\\u0000B"}', "is not the name of a command"),
+        (b'{"command": "' + b"x" * 60_000 + b'"}', "'x{59} is not the name of a command"),
+        (b"[" * 60_000, "is not JSON"),
+        (b"\xff\xfe\x80", "is not JSON"),
+        (b"NaN", "has no command"),
     ],
 )
 def test_bytes_that_are_no_command(data: bytes, message: str) -> None:

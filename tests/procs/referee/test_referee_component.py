@@ -6,7 +6,7 @@ import pytest
 
 from fwk.testing import Bench
 from lcmtypes.core import answer_t
-from lcmtypes.soccer import game_state_t, match_event_t
+from lcmtypes.soccer import game_state_t, match_event_t, true_robot_t
 from procs.referee.referee import Referee
 
 
@@ -142,3 +142,72 @@ def test_led_by_hand_the_referee_calls_nothing() -> None:
     bench.port("match_events").put(ball_x_m=11.2, events=[make(match_event_t.GOAL, x_m=11.2)])
     bench.iterate()
     assert (state(bench).state, state(bench).score_cyan) == (game_state_t.PLAY, 0)
+
+
+def test_reset_begins_the_match_anew() -> None:
+    bench = playing()
+    goal = [make(match_event_t.TOUCH), make(match_event_t.GOAL, x_m=11.2)]
+    bench.port("match_events").put(ball_x_m=11.2, events=goal)
+    bench.port("referee_command").put(name="second_half")
+    bench.iterate()
+    assert (state(bench).score_cyan, state(bench).half, state(bench).cyan_side) == (1, 2, 1)
+    bench.port("referee_command").put(name="reset")
+    bench.iterate()
+    now = state(bench)
+    assert (now.score_cyan, now.half, now.cyan_side, now.time_in_half_s) == (0, 1, -1, 0.0)
+    assert (now.state, now.state_team, now.stopped) == (game_state_t.KICK_OFF, game_state_t.TEAM_CYAN, True)
+    assert [each.goal for each in now.history] == [False]
+
+
+PLAYERS = {
+    "anna": {"team": "cyan", "number": 1},
+    "bert": {"team": "cyan", "number": 2},
+    "cyan2": {"team": "magenta", "number": 1},
+    "dora": {"team": "magenta", "number": 3},
+}
+
+
+def with_names() -> Bench:
+    bench = Bench(Referee, "world/referee", kick_off_stoppage_s=0.5, positions_s=0.0, players=PLAYERS)
+    places = {"anna": -10.0, "bert": -1.0, "cyan2": 10.0, "dora": 5.0, "box": 0.3}
+    robots = [true_robot_t() for _ in places]
+    for robot, (name, x_m) in zip(robots, places.items(), strict=True):
+        robot.name, robot.x_m = name, x_m
+    bench.port("ground_truth").put(robots=robots)
+    for _ in range(12):
+        bench.port("match_events").put()
+        bench.iterate()
+    bench.port("match_events").put(ball_x_m=3.0)
+    bench.iterate()
+    return bench
+
+
+def test_teams_and_numbers_are_those_of_the_players() -> None:
+    bench = with_names()
+    bench.port("match_events").put(ball_x_m=3.0, events=[make(match_event_t.TOUCH, "anna", -2.0)])
+    bench.iterate()
+    scored = [make(match_event_t.TOUCH, "bert", 3.0), make(match_event_t.GOAL, "bert", 11.2)]
+    bench.port("match_events").put(ball_x_m=11.2, events=scored)
+    bench.port("referee_command").put(name="red_card", robot="cyan2")
+    bench.iterate()
+    now = state(bench)
+    assert (now.score_cyan, now.score_magenta, now.sent_off) == (1, 0, ["cyan2"])
+    assert (now.history[-1].robot, now.history[-1].team) == ("cyan2", game_state_t.TEAM_MAGENTA)
+
+
+def test_robot_is_named_by_its_namespace_in_answers() -> None:
+    bench = with_names()
+    bench.port("referee_command").put(name="repair", robot="cyan1")
+    bench.iterate()
+    answer = bench.port("referee_command").sent[-1].answer
+    assert answer.reason == "no robot 'cyan1'; there are anna, bert, cyan2, dora"
+
+
+def test_what_plays_in_neither_team_commits_no_foul() -> None:
+    for robot, other, whistled in (("box", "anna", False), ("anna", "box", False), ("anna", "dora", True)):
+        bench = with_names()
+        hit = make(match_event_t.COLLISION, robot)
+        hit.other = other
+        bench.port("match_events").put(ball_x_m=3.0, events=[hit])
+        bench.iterate()
+        assert (state(bench).state == game_state_t.FREE_KICK) == whistled

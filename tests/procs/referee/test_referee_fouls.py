@@ -264,6 +264,15 @@ def test_pushing_a_rival_away_is_a_foul(speed_m_s: float, foul: bool) -> None:
     assert not foul or script.state == FREE_KICK_MAGENTA
 
 
+@pytest.mark.parametrize(("radius_m", "foul"), [(0.25, False), (0.3, True)])
+def test_pushing_depends_on_the_size_of_robots(radius_m: float, foul: bool) -> None:
+    script = Script(robot={"radius_m": radius_m}).playing()
+    script.robots |= {"cyan2": Point(1.0, 1.0), "magenta2": Point(1.6, 1.0)}
+    for _ in range(20):
+        script.tick(cyan2=Point(0.5, 0.0), magenta2=Point(0.5, 0.0))
+    assert ("pushing" in script.reasons) == foul
+
+
 def test_two_that_push_against_each_other_may() -> None:
     script = Script().playing()
     script.robots |= {"cyan2": Point(1.0, 1.0), "magenta2": Point(1.5, 1.0)}

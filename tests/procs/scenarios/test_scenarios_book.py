@@ -1,11 +1,13 @@
 """All scenarios of the book succeed, and their runner says what goes wrong."""
 
+import json
 from pathlib import Path
 
 import pytest
 
 from fwk.testing import ExpressionError
 from procs.scenarios import __main__ as command
+from procs.scenarios import evaluation
 from procs.scenarios.scenario import BOOK, ScenarioError, read, run
 
 SCENARIOS = sorted(BOOK.glob("*.yaml"))
@@ -44,7 +46,22 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "error", "message"),
     [
-        ("robot: [cyan2]", ScenarioError, "mine.yaml"),
+        ("robot: [cyan2]", ScenarioError, "mine.yaml: no key 'robot'; did you mean 'robots'?"),
+        ("", ScenarioError, "mine.yaml: holds no keys"),
+        ("- cyan2", ScenarioError, "mine.yaml: holds no keys"),
+        ("robots: [cyan2]", ScenarioError, "nothing has to happen; give eventually, in_order"),
+        ("robots: [cyan2]\ndummies: [cyan2]", ScenarioError, "'cyan2' is named 2 times"),
+        ("robots: [my robot]", ScenarioError, "'my robot' is not a name"),
+        ("robots: [cyan2]\nplaces: {cyan3: [0, 0, 0]}", ScenarioError, "places: no robot 'cyan3'; there are cyan2"),
+        ("ball: {x: 1}", ScenarioError, "ball: there is no 'x'; there are x_m"),
+        ("realism: best", ScenarioError, "realism: .*'harsh'"),
+        ("seed: -1", ScenarioError, "seed: "),
+        ("rules: {half: 1}", ScenarioError, "rules: no key 'half'; did you mean 'half_s'?"),
+        ("settings: {cyan2/agent: {}}\nrobots: [cyan1]", ScenarioError, "no component 'cyan2/agent'; did you mean"),
+        ("settings: {world/referee: {half_s: -1}}", ScenarioError, "world/referee.half_s: Input should be greater"),
+        ("commands: [{at_s: 1}]", ScenarioError, "commands.0: give one of place_ball, place_robot, referee"),
+        ("commands: [{place_ball: {x: 1}}]", ScenarioError, "commands.0: place_ball: there is no 'x'; there are x_m"),
+        ("commands: [{place_robot: {x_m: left}}]", ScenarioError, "x_m is 'left'; it should be a number"),
         ("robots: [", ScenarioError, "mine.yaml"),
         ("eventually: ['x(ball']", ExpressionError, "never closed"),
         ("dummies: [cyan2]\neventually: [x(cyan3) > 0]", ExpressionError, "no robot 'cyan3'"),
@@ -52,8 +69,52 @@ def test_scenario_that_fails_names_the_condition(tmp_path: Path) -> None:
     ],
 )
 def test_bad_scenario_is_named(tmp_path: Path, text: str, error: type[Exception], message: str) -> None:
-    with pytest.raises(error, match=message):
+    with pytest.raises(error, match=message.replace("?", r"\?")):
         run(written(tmp_path, text))
+
+
+def test_file_of_bytes_is_not_a_scenario(tmp_path: Path) -> None:
+    path = tmp_path / "mine.yaml"
+    path.write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(ScenarioError, match=r"mine.yaml: .*utf-8"):
+        run(path)
+
+
+def test_all_mistakes_of_all_files_come_at_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bad = written(tmp_path, "robots: [cyan1, cyan1]\nplaces: {cyan2: [0, 0, 0]}\n")
+    monkeypatch.setattr("sys.argv", ["scenarios", "match-ends", str(bad), "no-such"])
+    assert command.main() == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert [line.count("mine.yaml") for line in printed.err.splitlines()] == [1, 1, 1, 0]
+
+
+def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
+    text = "dummies: [cyan2]\ncommands: [{referee: {name: pause}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
+    (refused,) = run(written(tmp_path, text)).broken
+    assert refused.startswith("refused: no command 'pause'; there are kickoff")
+
+
+def test_evaluation_of_the_book_counts_seeds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    written(tmp_path, "dummies: [cyan2]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n")
+    (tmp_path / "bad.yaml").write_text("dummies: [cyan2]\nalways: [x(cyan2) > 0]\ntime_s: 0.3\n")
+    monkeypatch.setattr(evaluation, "BOOK", tmp_path)
+    results = [evaluation.played("scenarios.yaml", 25.0, seed) for seed in (1, 2)]
+    assert results == [{"bad": ["0.05 s: not x(cyan2) > 0"], "mine": []}] * 2
+    out = tmp_path / "out"
+    out.mkdir()
+    text = evaluation.report(results, out)
+    rows = {row["name"]: row for row in json.loads((out / "table.json").read_text())}
+    assert {name: row["value"] for name, row in rows.items()} == {evaluation.ALL: 0.5, "bad": 0.0, "mine": 1.0}
+    assert text.endswith("bad: 0.05 s: not x(cyan2) > 0")
+    assert sorted(file.name for file in out.iterdir()) == ["measures.png", "table.csv", "table.json"]
+
+
+@pytest.mark.parametrize(("successes", "low", "high"), [(0, 0.0, 0.278), (5, 0.237, 0.763), (10, 0.722, 1.0)])
+def test_interval_of_shares_is_wilsons(successes: int, low: float, high: float) -> None:
+    assert evaluation.interval(successes, 10) == pytest.approx((low, high), abs=1e-3)
 
 
 def test_command_prints_a_line_for_each_scenario(

@@ -10,6 +10,7 @@ from procs.model.kinematics import Velocity, wheels_of
 from procs.simulation.physics.events import Event, Kind
 from procs.simulation.physics.kick_mechanism import KickerCommand
 from procs.simulation.physics.realism import PRESETS, Noise
+from procs.simulation.physics.settings import ContactSettings, KickerSettings, PhysicsSettings
 from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
@@ -345,3 +346,32 @@ def test_handling_loses_the_ball_in_a_fast_turn_only() -> None:
         world = ball_in_mouth(PRESETS["realistic"].model_copy(update={"drive_delay_s": 0.0}))
         dribble(world, Velocity(0.0, 0.0, omega_rad_s))
         assert world.kickers["cyan1"].mouth.holds_ball is kept
+
+
+def rebound_m_s(vx_m_s: float, vy_m_s: float, **contacts: float) -> float:
+    """Returns the ball's speed after it has met what lies ahead, 0.6 m away in the field's middle or the wall."""
+    physics = PhysicsSettings(contacts=ContactSettings(**contacts))
+    world = World(["cyan1"], np.random.default_rng(1), physics=physics, starts={"cyan1": Pose(0.0, 0.0, 0.0)})
+    world.ball.put(*((0.0, 0.6) if vy_m_s < 0 else (0.6, 0.0) if vx_m_s < 0 else (11.5, 4.0)))
+    shoot(world, vx_m_s, vy_m_s)
+    run(world, 5)
+    return math.hypot(*world.ball.body.velocity)
+
+
+@pytest.mark.parametrize(
+    ("name", "velocity"), [("wall_bounce", (8.0, 0.0)), ("hull_bounce", (0.0, -6.0)), ("mouth_bounce", (-6.0, 0.0))]
+)
+def test_bounce_is_a_setting(name: str, velocity: tuple[float, float]) -> None:
+    assert rebound_m_s(*velocity, **{name: 0.0}) + 1.0 < rebound_m_s(*velocity, **{name: 0.9})
+
+
+def test_handling_rests_after_a_kick_as_long_as_set() -> None:
+    fetched = []
+    for release_s in (0.0, 1.0):
+        physics = PhysicsSettings(kicker=KickerSettings(release_s=release_s))
+        world = World(["cyan1"], np.random.default_rng(1), physics=physics, starts={"cyan1": Pose(0.0, 0.0, 0.0)})
+        world.ball.put(IN_MOUTH_M, 0.0)
+        world.kickers["cyan1"].command(KickerCommand(1, 0.3, dribble=True), 0)
+        run(world, 12)
+        fetched.append(world.kickers["cyan1"].mouth.holds_ball)
+    assert fetched == [True, False]

@@ -66,6 +66,8 @@ def test_frozen_world_stands_still_and_continues() -> None:
         places.append(world.port("ground_truth").sent[-1].ball_x_m)
         assert not any(world.port("wheel_state", "cyan1").sent[-1].measured_m_s)
     assert len(set(places)) == 1
+    truth, report = world.port("ground_truth").sent[-1], world.port("match_events").sent[-1]
+    assert (truth.ball_vx_m_s, report.ball_speed_m_s, truth.robots[0].omega_rad_s) == (0.0, 0.0, 0.0)
     world.port("freeze").put(frozen=False)
     world.iterate()
     assert world.port("ground_truth").sent[-1].ball_x_m == pytest.approx(places[-1] + 0.09, abs=0.02)

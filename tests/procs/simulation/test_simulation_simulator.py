@@ -26,7 +26,8 @@ from lcmtypes.robot import (
 from lcmtypes.soccer import ball_placement_t, game_state_t, ground_truth_t, match_event_t, match_events_t
 from procs.drivers.base import Base
 from procs.drivers.kicker import Kicker
-from procs.simulation.simulator import Simulator
+from procs.referee.referee import Referee
+from procs.simulation.simulator import Simulator, SimulatorConfig
 
 ROBOTS = ("cyan1", "cyan2", "magenta1")
 
@@ -71,13 +72,40 @@ def test_start_of_a_robot_that_does_not_exist_is_refused() -> None:
 
 
 def test_simulator_sets_the_time_of_the_next_tick() -> None:
-    world = bench()
-    world.iterate()
-    assert world.runner.time_source.next_us == world.time_us + 50_000
-    world.component.config.period_s = 0.02
-    world.component.init()
-    world.iterate()
-    assert world.runner.time_source.next_us == world.time_us + 20_000
+    for period_s, expected_us in ((0.0, 50_000), (0.02, 20_000)):  # 0: the period of the system
+        system = MemorySystem(
+            {"world/simulator": Simulator, "world/referee": Referee},
+            settings={"world/simulator": {"period_s": period_s}},
+        )
+        system.tick()
+        began_us = system.now_us
+        system.tick()
+        assert system.now_us == began_us + expected_us
+
+
+def test_stuck_wheel_lames_its_robot_and_comes_free() -> None:
+    world, forward = bench(stuck_wheels={"cyan1": [1]}), [-0.866, 0.0, 0.866]
+    truth = tick(world, 20, cyan1=forward, cyan2=forward)
+    lame, sound = truth.robots[0], truth.robots[1]
+    assert sound.vx_m_s == pytest.approx(1.0, abs=0.01)
+    assert lame.vx_m_s < 0.7
+    assert abs(lame.omega_rad_s) > 0.5
+    assert world.port("wheel_state", "cyan1").sent[-1].measured_m_s[0] == 0.0
+    world.component.config.stuck_wheels = {}
+    world.component.config_changed()
+    assert abs(tick(world, 20, cyan1=forward).robots[0].omega_rad_s) < 0.05
+
+
+def test_fault_of_a_robot_that_is_not_there_is_named() -> None:
+    with pytest.raises(ValueError, match="stuck_wheels: no robot 'cyan9'; there are: cyan1, cyan2, magenta1"):
+        bench(stuck_wheels={"cyan9": [1]})
+    with pytest.raises(ValueError, match="stuck_wheels"):
+        bench(stuck_wheels={"cyan1": [4]})
+
+
+def test_settings_of_the_finished_world_are_fixed() -> None:
+    live = {name for name, field in SimulatorConfig.model_fields.items() if not field.frozen}
+    assert live - {"log_level"} == {"command_timeout_s", "stuck_wheels"}
 
 
 def test_wheels_turn_and_are_measured() -> None:

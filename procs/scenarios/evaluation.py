@@ -1,0 +1,60 @@
+"""Evaluation of the book of scenarios for `fwk eval`: plays each scenario once with a seed, and reports all seeds."""
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from fwk.testing.campaign import INSTALL
+from procs.evaluation.plots import plot
+from procs.evaluation.table import Row, as_csv, as_json, as_text
+from procs.scenarios.scenario import BOOK, outcome, read
+
+_Z = 1.96  # of a normal distribution, 95 % lie within so many deviations
+
+ALL = "all scenarios"
+"""Name of the row that counts every scenario."""
+
+
+def played(_file: str, time_s: float, seed: int) -> dict[str, list[str]]:
+    """Plays every scenario of the book, each with its own system; returns the conditions that do not hold by scenario.
+
+    Args:
+        time_s: limit of a scenario's logical time, besides its own, in s.
+        seed: seed of each scenario instead of its own.
+    """
+    found = {}
+    for path in sorted(BOOK.glob("*.yaml")):
+        scenario = read(path)
+        changes = {"seed": seed, "time_s": min(time_s, scenario.time_s)}
+        found[path.stem] = outcome(scenario.model_copy(update=changes)).broken
+    return found
+
+
+def report(results: Sequence[Mapping[str, Sequence[str]]], folder: Path) -> str:
+    """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table."""
+    names = sorted({name for result in results for name in result})
+    outcomes = {name: [not result[name] for result in results if name in result] for name in names}
+    rows = [_row(ALL, [ok for each in outcomes.values() for ok in each])]
+    rows += [_row(name, each) for name, each in outcomes.items()]
+    (folder / "table.csv").write_text(as_csv(rows))
+    (folder / "table.json").write_text(as_json(rows))
+    broken = sorted({f"{name}: {text}" for result in results for name, texts in result.items() for text in texts})
+    text = "\n".join([as_text(rows), *broken])
+    try:
+        plot(rows, folder / "measures.png")
+    except ImportError:
+        return f"{text}\nno picture: matplotlib is not installed; type: {INSTALL}"
+    return text
+
+
+def _row(name: str, outcomes: Sequence[bool]) -> Row:
+    share, (low, high) = sum(outcomes) / len(outcomes), interval(sum(outcomes), len(outcomes))
+    return Row(name, share, low, high, len(outcomes), "share", "1")
+
+
+def interval(successes: int, trials: int) -> tuple[float, float]:
+    """Returns the limits between which the probability of a success lies with 95 % (Wilson's score interval, 1927)."""
+    share, square = successes / trials, _Z**2 / trials
+    middle = (share + square / 2) / (1 + square)
+    half = _Z * math.sqrt(share * (1 - share) / trials + square / (4 * trials)) / (1 + square)
+    return max(0.0, middle - half), min(1.0, middle + half)

@@ -1,0 +1,76 @@
+"""Mistakes in scenario files, in words that say where they are and what would be right."""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from difflib import get_close_matches
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+
+_NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
+
+
+def texts_of(error: ValidationError, where: str = "", known: Sequence[str] = ()) -> list[str]:
+    """Returns one text for each mistake that pydantic found; `known` are the keys of the outermost level."""
+    found = []
+    for each in error.errors(include_url=False):
+        path = [*([where] if where else []), *map(str, each["loc"])]
+        if each["type"] == "extra_forbidden":
+            found.append(": ".join(filter(None, (".".join(path[:-1]), _unknown(path[-1], known)))))
+        else:
+            found.append(f"{'.'.join(path)}: {each['msg'].removeprefix('Value error, ')}")
+    return found
+
+
+def field_mistakes(fields: Mapping[str, Any], message: Any) -> list[str]:
+    """Returns what is wrong with fields that are given for a message: unknown names, and values of another type."""
+    known = [name for name in message.__slots__ if name not in ("header", "command")]
+    found = []
+    for name, value in fields.items():
+        if name not in known:
+            found.append(f"there is no '{name}'; there are {', '.join(known)}")
+            continue
+        wanted = type(getattr(message, name))
+        fits = isinstance(value, (int, float)) if wanted is float else isinstance(value, wanted)
+        if not fits or (isinstance(value, bool) and wanted is not bool):
+            found.append(f"{name} is {value!r}; it should be a {'number' if wanted is float else wanted.__name__}")
+    return found
+
+
+def robot_mistakes(robots: Sequence[str], dummies: Sequence[str], places: Mapping[str, Any]) -> Iterator[str]:
+    """Yields what is wrong with the names of robots."""
+    everyone = [*robots, *dummies]
+    for name in dict.fromkeys(everyone):
+        if not _NAME.fullmatch(name):
+            yield f"robots: '{name}' is not a name; use letters, digits, '_' and '-', such as cyan1"
+        if everyone.count(name) > 1:
+            yield f"robots: '{name}' is named {everyone.count(name)} times"
+    for name in places:
+        if name not in everyone:
+            yield f"places: no robot '{name}'; there are {', '.join(sorted(everyone)) or 'none'}"
+
+
+def settings_mistakes(
+    settings: Mapping[str, Mapping[str, Any]], configs: Mapping[str, type[BaseModel] | None]
+) -> Iterator[str]:
+    """Yields what is wrong with the settings of components; `configs` has the model of each component's settings."""
+    for name, values in settings.items():
+        if name not in configs:
+            near = get_close_matches(name, configs, 1)
+            right = f"did you mean '{near[0]}'?" if near else f"there are {', '.join(configs)}"
+            yield f"settings: no component '{name}'; {right}"
+            continue
+        model = configs[name]
+        if model is None:
+            if values:
+                yield f"settings: {name} has no settings"
+            continue
+        try:
+            model.model_validate(values)
+        except ValidationError as error:
+            yield from texts_of(error, name, list(model.model_fields))
+
+
+def _unknown(key: str, known: Sequence[str]) -> str:
+    near = get_close_matches(key, known, 1)
+    return f"no key '{key}'" + (f"; did you mean '{near[0]}'?" if near else "")
