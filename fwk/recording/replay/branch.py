@@ -11,10 +11,10 @@ from fwk.lcm import envelope
 from fwk.model.channel_table import facts_in
 from fwk.model.names import LINES
 from fwk.model.plain_values import value_messages
+from fwk.model.plan import NOBODY
 from fwk.model.tick_events import (
     ChannelsChanged,
     HostLost,
-    HostStarted,
     MainLoopGiven,
     StageBegun,
     TickEvent,
@@ -169,7 +169,7 @@ class Branch(LiveReplay):
         self._begin_tick(record.tick, record.time_us, record.channels)
         for settings in record.settings:
             self._set(settings, record.tick)
-        before, holder, after, stages = _boundary_of(tick.events)
+        before, holder, after, stages = self._boundary_of(tick.events)
         events = self._taken(before)
         if schedule.asked:
             schedule.decide()
@@ -187,12 +187,31 @@ class Branch(LiveReplay):
 
     def _take_events(self, events: Sequence[TickEvent]) -> None:
         """Takes the events of a recorded tick before the branch."""
-        before, holder, after, stages = _boundary_of(events)
+        before, holder, after, stages = self._boundary_of(events)
         self._taken(before)
         self.decisions.check_holder(self._holder if holder is None else holder, self._now)
         if holder is not None:
             self._taken([MainLoopGiven(holder)])
         self._taken([*after, *stages])
+
+    def _boundary_of(
+        self, events: Sequence[TickEvent]
+    ) -> tuple[Sequence[TickEvent], int | None, Sequence[TickEvent], Sequence[TickEvent]]:
+        """Divides the events of a tick at the decision about the main loop.
+
+        Returns:
+            Events before the decision, the new holder (None: the holder stayed), those after it, and those from the
+            first stage on. A holder that stays although its host ended had been confirmed before.
+        """
+        end = next((at for at, event in enumerate(events) if isinstance(event, STAGES)), len(events))
+        boundary = events[:end]
+        given = next((at for at, event in enumerate(boundary) if isinstance(event, MainLoopGiven)), None)
+        if given is not None:
+            holder = cast(MainLoopGiven, boundary[given]).component
+            return boundary[:given], holder, boundary[given + 1 :], events[end:]
+        lost = HostLost(self._run_plan.components[self._holder].host if self._holder != NOBODY else NOBODY)
+        at = boundary.index(lost) if lost in boundary else end
+        return boundary[:at], None, boundary[at:], events[end:]
 
     def _take_event(self, event: TickEvent) -> None:
         if isinstance(event, ChannelsChanged):
@@ -216,26 +235,6 @@ class Branch(LiveReplay):
             self.decisions.advance(time_us)  # the recorded time counts
             self.decisions.participants.forget()
         super()._begin_tick(tick, time_us, channels)
-
-
-def _boundary_of(
-    events: Sequence[TickEvent],
-) -> tuple[Sequence[TickEvent], int | None, Sequence[TickEvent], Sequence[TickEvent]]:
-    """Divides the events of a tick at the decision about the main loop.
-
-    Returns:
-        Events before the decision, the new holder (None: the holder stayed), those after it, and those from the first
-        stage on. Without a new holder the first event that can only come after the decision tells where it was.
-    """
-    end = next((at for at, event in enumerate(events) if isinstance(event, STAGES)), len(events))
-    boundary = events[:end]
-    given = next((at for at, event in enumerate(boundary) if isinstance(event, MainLoopGiven)), None)
-    if given is not None:
-        holder = cast(MainLoopGiven, boundary[given]).component
-        return boundary[:given], holder, boundary[given + 1 :], events[end:]
-    later = HostLost, ChannelsChanged, HostStarted
-    at = next((at for at, event in enumerate(boundary) if isinstance(event, later)), end)
-    return boundary[:at], None, boundary[at:], events[end:]
 
 
 class _Frames:

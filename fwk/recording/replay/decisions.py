@@ -54,11 +54,11 @@ class Decisions:
             self.participants.ask(done.tick, place_of(done), starts)
 
     def crosses(self) -> None:
-        """Notes that hosts leave at a boundary, which has taken its requests by then."""
-        self._crosses = True
+        """Notes that a host leaves at a boundary: lockstep waits for it, with the requests that came before."""
+        self._crosses = self._plan.clock == "simulated"
 
     def crossed(self) -> None:
-        """Notes that a boundary has ended."""
+        """Notes that a boundary has decided its requests; a run that is paused crosses another one before the tick."""
         held, self._held, self._crosses = self._held, [], False
         for done in held:
             self.heed(done)

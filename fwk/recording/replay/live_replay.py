@@ -152,12 +152,12 @@ class LiveReplay(Replay):
             self.decisions.left(event.host)
             if isinstance(event, HostStopped):
                 self.decisions.crosses()
-        elif isinstance(event, STAGES):
-            self.decisions.crossed()
         elif isinstance(event, IterationDone):
             for index in self._run_plan.hosts[event.host].components:
                 self._iterations[index] = event.iteration, self._time_us
         super()._take_event(event)
+        if isinstance(event, (HostStarted, ChannelsChanged, *STAGES)):
+            self.decisions.crossed()
 
     def _set(self, change: settings_change_t, tick: int) -> None:
         self.decisions.newest_change = max(change.number, self.decisions.newest_change)
