@@ -117,12 +117,13 @@ class World:
     ) -> list[State]:
         """Moves the world on by one step; returns the new states of the ball and the robots, in this order."""
         pushes: dict[str, Push] = {}
-        now_us, (ball_x_m, ball_y_m, *_) = self.time_us, states[0]
+        now_us, ball = self.time_us, states[0]
+        ball_x_m, ball_y_m = ball[0], ball[1]
         effects = [0.0, 0.0, 0.0]  # on the ball
         for (name, robot, kicker), state in zip(self._in_order, states[1:], strict=True):
             x_m, y_m = ball_x_m - state[0], ball_y_m - state[1]
             effects += robot.move(now_us, duration_s, state)
-            push = kicker.act(now_us, duration_s, ball_near=x_m * x_m + y_m * y_m <= self._near_m2)
+            push = kicker.act(now_us, duration_s, ball if x_m * x_m + y_m * y_m <= self._near_m2 else None)
             if push is not None:
                 pushes[name] = push
         self._bodies.push(effects)
@@ -139,7 +140,9 @@ class World:
             states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
         if touching:
-            touched |= {robot: self._ball_event(Kind.TOUCH, robot) for robot in touching}
+            x_m, y_m, _, vx_m_s, vy_m_s, _ = states[0]
+            speed_m_s = math.hypot(vx_m_s, vy_m_s)
+            touched |= {robot: Event(Kind.TOUCH, robot, "", x_m, y_m, speed_m_s) for robot in touching}
             self.last_touch = touching.pop() if len(touching) == 1 else min(touching, key=self._distance_to_ball)
         call = self._judge.judge(*states[0][:2], self.ball.z_m)
         if call is not None:
