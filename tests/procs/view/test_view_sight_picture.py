@@ -22,9 +22,13 @@ def test_findings_are_drawn_where_they_were_found() -> None:
     lines.x_m, lines.y_m = [-1.5], [-1.0]
     picture = drawn(np.zeros((400, 400, 3), np.uint8), MIRROR, ball, obstacles, lines)
     assert picture.shape == (800, 800, 3)
-    for colour, place in ((BALL, (2.0, 0.0)), (OBSTACLE, (0.0, 2.0)), (LINE, (-1.5, -1.0))):
+    for colour, place in (
+        (BALL, (2.0, 0.0, 0.11)),
+        (OBSTACLE, (0.0, 2.0, 0.0)),
+        (LINE, (-1.5, -1.0, 0.0)),
+    ):
         rows, columns = np.nonzero((picture == colour).all(axis=2))
-        (expected,) = 2 * MIRROR.project(np.array([[*place, 0.0]]))
+        (expected,) = 2 * MIRROR.project(np.array([place]))
         assert np.hypot(columns.mean() - expected[0], rows.mean() - expected[1]) < 8.0
 
 
