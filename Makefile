@@ -66,9 +66,10 @@ docs: types $(DOCS_READY)  ## Writes docs/commands.md, the index of commands, an
 	$(BIN)/python -m fwk.cli.reference docs/commands.md
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --config-file .mkdocs.yml
 
-pictures: types  ## Plays a match and draws docs/match.png and docs/display.svg from its recording
+pictures: types  ## Plays a match and draws docs/match.png, docs/display.svg and docs/camera-sight.jpg
 	$(BIN)/fwk-launch soccer.yaml --hosting robot --seed 7 --speed max --time 30 --plain --record build/match.log
 	$(BIN)/python -m tools.docs.pictures build/match.log --tick 560
+	$(BIN)/python -m procs.view.sight_picture docs/camera-sight.jpg
 
 rerun-picture: types  ## Plays a match and takes docs/rerun.png of 'fwk view --web' in a headless Chromium
 	$(BIN)/fwk-launch soccer.yaml --ticks 560 --speed max --run rerun-picture --record build/view.lcm

@@ -14,7 +14,7 @@ from procs.evaluation.delays import delays
 from procs.evaluation.piece import Piece, piece_of
 from procs.evaluation.plots import plot
 from procs.evaluation.possession import possession
-from procs.evaluation.table import MEASURES, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
+from procs.evaluation.table import MEASURES, Measure, as_csv, as_json, as_text, rate, ratio, root_ratio, rows_of
 from procs.evaluation.team_ball import team_ball
 from procs.model.frames import Floats
 
@@ -38,9 +38,11 @@ def samples_of(piece: Piece) -> Samples:
 def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], folder: Path) -> str:
     """Writes table.csv and table.json into the folder, and measures.png if matplotlib is there; returns the table.
 
-    Measures without a value are left out: no match has all.
+    Measures without a value are left out: no match has all, and a result of former code may have others.
     """
-    pieces: list[Samples] = [{name: _samples(values, name) for name, values in result.items()} for result in results]
+    pieces: list[Samples] = [
+        {each.name: _samples(result.get(each.name, []), each) for each in MEASURES} for result in results
+    ]
     rows = [row for row in rows_of(pieces) if not math.isnan(row.value)]
     (folder / "table.csv").write_text(as_csv(rows))
     (folder / "table.json").write_text(as_json(rows))
@@ -51,7 +53,7 @@ def report(results: Sequence[Mapping[str, list[float] | list[list[float]]]], fol
     return as_text(rows)
 
 
-def _samples(values: list[float] | list[list[float]], name: str) -> Floats:
+def _samples(values: list[float] | list[list[float]], measure: Measure) -> Floats:
     """Returns samples as they were measured; an empty list of pairs gets its two columns back."""
-    pairs = next(each.statistic for each in MEASURES if each.name == name) in (rate, ratio, root_ratio)
+    pairs = measure.statistic in (rate, ratio, root_ratio)
     return np.array(values, np.float64).reshape(-1, 2) if pairs else np.array(values, np.float64)

@@ -6,6 +6,8 @@ from fwk import Component, Config, Reads, Transform, Transforms, TransformTree, 
 from lcmtypes.core import transforms_t
 from lcmtypes.soccer import pose_t
 from procs.model.geometry import plausible
+from procs.model.robot import ROBOT, RobotModel
+from procs.vision.calibration import MirrorConfig
 
 
 class Mounting(Config):
@@ -40,8 +42,18 @@ class FrameTreeConfig(Config):
     """Frame of the field: origin in its centre."""
     base: str = Field("base", frozen=True)
     """Frame of the robot: on the ground below its centre, x forward, y left."""
-    mounted: dict[str, Mounting] = Field({"camera": Mounting(z_m=0.75), "kicker": Mounting(x_m=0.24)}, frozen=True)
-    """Frames that do not move on the robot."""
+    mirror: MirrorConfig = Field(MirrorConfig(), frozen=True)
+    """Calibration of the camera, whose viewpoint is the frame `camera`."""
+    robot: RobotModel = Field(ROBOT, frozen=True)
+    """Geometry of the robot; the middle of its mouth is the frame `kicker`."""
+    mounted: dict[str, Mounting] = Field({}, frozen=True)
+    """Further frames that do not move on the robot, or other places of those two."""
+
+    @property
+    def mountings(self) -> dict[str, Mounting]:
+        """All frames that do not move on the robot."""
+        usual = {"camera": Mounting(z_m=self.mirror.height_m), "kicker": Mounting(x_m=self.robot.mouth_m)}
+        return usual | self.mounted
 
 
 class FrameTree(Component):
@@ -57,11 +69,11 @@ class FrameTree(Component):
         """Cycles and frames with two parents are refused here."""
         config, tree = self.config, TransformTree()
         tree.put(config.world, config.base, 0, Transform.of((0.0, 0.0, 0.0)))
-        for name, mounting in config.mounted.items():
+        for name, mounting in config.mountings.items():
             tree.put(mounting.parent, name, 0, mounting.transform, fixed=True)
         self._mounted = [
             transform_message(mounting.parent, name, 0, mounting.transform, fixed=True)
-            for name, mounting in config.mounted.items()
+            for name, mounting in config.mountings.items()
         ]
 
     def loop(self) -> None:

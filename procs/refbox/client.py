@@ -61,8 +61,10 @@ class RefBoxClient(Component):
                 self.log.warning(f"the referee does not obey: {call.reason}")
         if self._connection is None and self.clock.now_us >= self._again_us:
             self._connect()
-        for message in self._messages():
-            self._hand_on(message)
+        mistakes = [mistake for message in self._messages() if (mistake := self._hand_on(message))]
+        if mistakes:
+            more = f" (and {len(mistakes) - 1} more)" if len(mistakes) > 1 else ""
+            self.log.warning(f"RefBox: {mistakes[0]}{more}")
 
     def finalize(self) -> None:
         """Leaves the RefBox."""
@@ -111,14 +113,15 @@ class RefBoxClient(Component):
         self._connection, self._again_us = None, self.clock.now_us + round(self.config.retry_s * 1e6)
         return []
 
-    def _hand_on(self, message: bytes) -> None:
+    def _hand_on(self, message: bytes) -> str:
+        """Hands a command on; returns why a message is none, or an empty text."""
         try:
             command = decode(message, self.config.addresses)
         except ProtocolError as error:
-            self.log.warning(f"RefBox: {error}")
-            return
+            return str(error)
         if command.name not in _IGNORED:
             self._call(command)
+        return ""
 
     def _call(self, command: Command) -> None:
         asked = self.referee_command.value

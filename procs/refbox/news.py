@@ -29,6 +29,8 @@ def news(before: game_state_t | None, now: game_state_t, number: Callable[[str],
     """
     if before is None:
         return _half(now) + _stopped(now) + ([] if now.stopped else [Command("START")])
+    if len(now.history) < len(before.history):
+        return [Command("RESET"), *news(None, now)]
     commands = _scores(before, now) + _cards(before, now, number)
     breaks = (game_state_t.HALF_TIME, game_state_t.FROZEN)
     if now.state != before.state and now.state in breaks:

@@ -39,10 +39,12 @@ class Cards:
         self._fouls[robot] += 1
         if self._fouls[robot] % rules.fouls_per_card:
             return Card.NONE
-        return self.show(robot, Card.DOUBLE_YELLOW if robot in self._yellow else Card.YELLOW, rules)
+        return self.show(robot, Card.YELLOW, rules)
 
     def show(self, robot: str, card: Card, rules: Rules) -> Card:
-        """Shows a card; a red one is for the rest of the match."""
+        """Shows a card and returns it: a second yellow one is double; a red one is for the rest of the match."""
+        if card is Card.YELLOW and robot in self._yellow:
+            card = Card.DOUBLE_YELLOW
         if card is Card.YELLOW:
             self._yellow.add(robot)
         else:

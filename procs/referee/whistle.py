@@ -156,8 +156,8 @@ class Whistle:
 
     def card(self, robot: str, card: Card) -> None:
         """Shows a card."""
-        self.cards.show(robot, card, self.rules)
-        self.calls.append(Call(self.state, team_number(robot), robot=robot, card=card))
+        shown = self.cards.show(robot, card, self.rules)
+        self.calls.append(Call(self.state, team_number(robot), robot=robot, card=shown))
 
     def _misplaced(self, sight: Sight) -> list[str]:
         """Returns the robots that are misplaced: distances are those to the ball, which may lie beside the spot."""

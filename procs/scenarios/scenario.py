@@ -123,8 +123,9 @@ def system_of(scenario: Scenario) -> MemorySystem:
         "world/simulator": {"starts": scenario.places, "realism": scenario.realism},
         "world/referee": rules,
         CREW: {"actions": [action.model_dump(exclude_none=True) for action in actions]},
-        **scenario.settings,
     }
+    for component, more in scenario.settings.items():
+        settings[component] = settings.get(component, {}) | more
     return MemorySystem(_components(scenario), settings=settings, seed=scenario.seed)
 
 

@@ -5,6 +5,7 @@ import math
 from fwk import Serves
 from lcmtypes.soccer import freeze_world_t, place_ball_t, place_robot_t, reset_world_t
 from procs.model.field import Field
+from procs.simulation.physics.start_places import Pose
 from procs.simulation.physics.world import World
 
 
@@ -36,7 +37,8 @@ class FieldCrew:
             if mistake:
                 robot.reject(mistake)
                 continue
-            self._world.robots[robot.value.robot].put(robot.value.x_m, robot.value.y_m, robot.value.heading_rad)
+            wanted = robot.value
+            self._world.place_robot(wanted.robot, Pose(wanted.x_m, wanted.y_m, wanted.heading_rad))
             robot.done()
         for ball in place_ball:
             mistake = self._mistake_in_ball(ball.value)

@@ -36,6 +36,8 @@ class PerceptErrors(BaseModel):
     """Part of the line points that are not found."""
     ball_phantoms_1_s: float = 0.0
     """Balls a second that are not there. B-Human: 0.0005 a frame."""
+    mouth_phantoms_1_s: float = 0.0
+    """Balls a second that seem to lie in the own mouth. ER-Force: 0.05 at each robot's dribbler."""
     robot_phantoms_1_s: float = 0.0
     """Robots a second that are not there. B-Human: 0.005 a frame."""
     line_phantoms: float = 0.0
@@ -90,6 +92,7 @@ PRESETS: dict[Realism, PerceptErrors] = {
         robot_missed=0.04,
         line_missed=0.2,
         ball_phantoms_1_s=0.05,
+        mouth_phantoms_1_s=0.05,
         robot_phantoms_1_s=0.1,
         line_phantoms=0.04,
         tilt_sd_deg=0.3,

@@ -52,6 +52,8 @@ class PerceptsConfig(Config):
     """Part of the frames in which a visible robot is not found."""
     ball_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Balls a second that are not there."""
+    mouth_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
+    """Balls a second that seem to lie in the own mouth."""
     robot_phantoms_1_s: float | None = Setting(default=None, ge=0.0)
     """Robots a second that are not there."""
     tilt_sd_deg: float | None = Setting(default=None, ge=0.0, le=2.0)
@@ -100,7 +102,7 @@ class Percepts(Component):
     def init(self) -> None:
         self._delayed = DelayedTruth(self.name, "percepts", self.log)
         self._before_us = -1
-        built, interrupted = self.rng.spawn(2)
+        built, interrupted, self._mouth_rng = self.rng.spawn(3)
         self._tilts = built.standard_normal(2)
         self._gaps = Gaps(interrupted)
         self._apply_settings()
@@ -155,6 +157,9 @@ class Percepts(Component):
         if not percept.visible and phantom < -math.expm1(-errors.ball_phantoms_1_s * passed_s):
             range_m, angle_rad = 0.5 + distance * (self.config.ball_reach_m - 0.5), direction * math.tau
             percept = self._ball(range_m * np.array((math.cos(angle_rad), math.sin(angle_rad))), _LEAST_VISIBLE)
+        if not percept.visible and self._mouth_rng.random() < -math.expm1(-errors.mouth_phantoms_1_s * passed_s):
+            in_mouth_m = self.config.robot.held_ball_m(self.config.ball)
+            percept = self._ball(np.array((in_mouth_m, 0.0)), _LEAST_VISIBLE)
         self.ball_percept.value = percept
 
     def _lengthened(self, height_m: float) -> float:

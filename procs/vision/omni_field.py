@@ -13,14 +13,16 @@ from procs.vision.line_finder import LineFinder
 from procs.vision.obstacle_finder import Obstacle, ObstacleFinder
 from procs.vision.scan import Scan
 
+_BESIDE_BODY_M = 0.03
+
 
 class OmniFieldConfig(DetectorConfig):
     """Settings of the detector of lines and obstacles."""
 
     rays: int = Setting(default=180, ge=16, le=720)
     """Scan lines around the robot."""
-    nearest_m: float = Setting(default=0.28, gt=0.0)
-    """Begin of the rays: just outside the robot's own body."""
+    nearest_m: float | None = Setting(default=None, gt=0.0)
+    """Begin of the rays; by default just outside the robot's own body."""
     farthest_m: float = Setting(default=7.0, gt=0.5)
     """End of the rays."""
     ring_distances_m: tuple[float, ...] = (0.7, 1.1, 1.6, 2.2, 2.9, 3.7, 4.6)
@@ -100,7 +102,8 @@ class OmniField(Detector):
 
 
 def _star(config: OmniFieldConfig) -> Scan:
-    return Scan.star(config.mirror.mirror(), config.rays, config.nearest_m, config.farthest_m)
+    nearest_m = config.nearest_m or config.robot.radius_m + _BESIDE_BODY_M
+    return Scan.star(config.mirror.mirror(), config.rays, nearest_m, config.farthest_m)
 
 
 def _rings(config: OmniFieldConfig) -> Scan:

@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-import pymunk
 
+from procs.simulation.physics.bodies import State
 from procs.simulation.physics.delay import DelayLine
 from procs.simulation.physics.mouth import Mouth
 from procs.simulation.physics.realism import Noise
@@ -25,7 +25,7 @@ class KickerCommand(NamedTuple):
 class Push(NamedTuple):
     """Effect of a kicker on the ball in a step."""
 
-    change_m_s: pymunk.Vec2d
+    change_m_s: tuple[float, float]
     """Change of the ball's velocity, world frame."""
     kicked: bool
     lift_m_s: float = 0.0
@@ -55,13 +55,13 @@ class Kicker:
         """Returns whether a kick is possible."""
         return now_us >= self._charged_from_us
 
-    def act(self, now_us: int, duration_s: float, ball_near: bool) -> Push | None:
+    def act(self, now_us: int, duration_s: float, near: State | None) -> Push | None:
         """Handles or kicks the ball for one step; returns None without an effect on the ball.
 
         Args:
             now_us: logical time at the beginning of the step.
             duration_s: duration of the step.
-            ball_near: whether the ball may be in the mouth; a ball that is not near is not looked for.
+            near: present state of the ball if it is not further away than `far_m` of the mouth; otherwise None.
         """
         push = None
         for command in self._line.due(now_us) if self._line.next_us <= now_us else ():
@@ -71,8 +71,10 @@ class Kicker:
                 self._charged_from_us = now_us + round(self._settings.recharge_s * 1e6)
                 self._handling_from_us = now_us + round(self._settings.release_s * 1e6)
                 push = self._fire(command.speed_m_s, command.elevation_rad)
-        if ball_near and self._dribble and now_us >= self._handling_from_us and (place := self.mouth.held_ball()):
-            push = Push(self.mouth.pull(place, duration_s), kicked=False)
+        if near is not None and self._dribble and now_us >= self._handling_from_us:
+            place = self.mouth.place_of(near[0], near[1])
+            if place is not None:
+                push = Push(self.mouth.pull(place, near, duration_s), kicked=False)
         return push
 
     def charge(self, now_us: int) -> float:

@@ -5,6 +5,7 @@ import math
 import pymunk
 
 from procs.simulation.physics.ball_body import Ball
+from procs.simulation.physics.bodies import State
 from procs.simulation.physics.robot_body import Robot
 from procs.simulation.physics.settings import HandlingSettings
 
@@ -30,34 +31,46 @@ class Mouth:
 
     def held_ball(self) -> pymunk.Vec2d | None:
         """Returns the place of the ball in the robot frame in m, if it is in the mouth; otherwise None."""
-        away = self._ball.body.position - self._robot.body.position
-        if self._ball.z_m > self._handling.highest_m or away.dot(away) > self.far_m**2:
+        at = self._ball.body.position
+        away = at - self._robot.body.position
+        return None if away.dot(away) > self.far_m**2 else self.place_of(*at)
+
+    def place_of(self, x_m: float, y_m: float) -> pymunk.Vec2d | None:
+        """Returns the same for a ball at a place of the world that is not further away than `far_m`."""
+        if self._ball.z_m > self._handling.highest_m:
             return None
-        place = self._robot.body.world_to_local(self._ball.body.position)
+        place = self._robot.body.world_to_local((x_m, y_m))
         gap_m = place.x - self._robot.mouth_x_m - self._ball.radius_m
         held = gap_m <= self._handling.reach_m and abs(place.y) <= self._handling.half_width_m and place.x > 0
         return place if held else None
 
-    def pull(self, place: pymunk.Vec2d, duration_s: float) -> pymunk.Vec2d:
+    def pull(self, place: pymunk.Vec2d, ball: State, duration_s: float) -> tuple[float, float]:
         """Draws the ball to the middle of the mouth with limited force, for one step.
 
         Args:
             place: place of the ball as `held_ball` returns it.
+            ball: present state of the ball.
             duration_s: duration of the step.
 
         Returns:
             Change of the ball's velocity in m/s, for the world to apply; the recoil has reached the robot.
         """
-        robot, handling = self._robot.body, self._handling
-        x_m, y_m = place
+        robot, centring_s = self._robot.body, self._handling.centring_s
+        x_m, y_m, _, vx_m_s, vy_m_s, _ = ball
         wanted_x_m = self._robot.mouth_x_m + self._ball.radius_m + _GAP_M
-        approach = pymunk.Vec2d(wanted_x_m - x_m, -y_m) / handling.centring_s
-        mouth_velocity = robot.velocity_at_local_point((x_m, y_m))
-        change = mouth_velocity + approach.rotated(robot.angle) - self._ball.body.velocity
-        limit_m_s = self._pull_m_s2 * duration_s
-        return self._recoil(change if change.length <= limit_m_s else change.scale_to_length(limit_m_s))
+        ahead_m_s, aside_m_s = (wanted_x_m - place.x) / centring_s, -place.y / centring_s
+        mouth_x_m_s, mouth_y_m_s = robot.velocity_at_local_point(place)
+        cos, sin = math.cos(robot.angle), math.sin(robot.angle)
+        change_x = mouth_x_m_s + (ahead_m_s * cos - aside_m_s * sin) - vx_m_s
+        change_y = mouth_y_m_s + (ahead_m_s * sin + aside_m_s * cos) - vy_m_s
+        limit_m_s, change_m_s = self._pull_m_s2 * duration_s, math.sqrt(change_x**2 + change_y**2)
+        if change_m_s > limit_m_s:
+            change_x, change_y = change_x * limit_m_s / change_m_s, change_y * limit_m_s / change_m_s
+        mass_kg = self._ball.mass_kg
+        robot.apply_impulse_at_world_point((-mass_kg * change_x, -mass_kg * change_y), (x_m, y_m))
+        return change_x, change_y
 
-    def kick(self, speed_m_s: float, direction_error_rad: float) -> pymunk.Vec2d:
+    def kick(self, speed_m_s: float, direction_error_rad: float) -> tuple[float, float]:
         """Drives the ball out: `speed_m_s` is along the mouth's direction and relative to the robot.
 
         Returns the change of the ball's velocity like `pull`.
@@ -65,8 +78,6 @@ class Mouth:
         robot, ball = self._robot.body, self._ball.body
         direction_rad = robot.angle + direction_error_rad
         away = speed_m_s * pymunk.Vec2d(math.cos(direction_rad), math.sin(direction_rad))
-        return self._recoil(robot.velocity_at_world_point(ball.position) + away - ball.velocity)
-
-    def _recoil(self, change: pymunk.Vec2d) -> pymunk.Vec2d:
-        self._robot.body.apply_impulse_at_world_point(-self._ball.mass_kg * change, self._ball.body.position)
+        change = robot.velocity_at_world_point(ball.position) + away - ball.velocity
+        robot.apply_impulse_at_world_point(-self._ball.mass_kg * change, ball.position)
         return change

@@ -54,6 +54,7 @@ class World:
         build_arena(self._space, self._field, self._physics.contacts)
         friction_scale = 1.0 + noise.friction_spread * rng.uniform(-1.0, 1.0)
         self.ball = Ball(self._space, ball, friction_scale, robot.height_m, self._field.goal_height_m)
+        self._clearance_m = robot.radius_m + ball.radius_m + _FREE_M
         self._bar = Crossbar(self._field, self.ball, self._physics.contacts.post_bounce)
         self.robots: dict[str, Robot] = {}
         self.kickers: dict[str, Kicker] = {}
@@ -79,7 +80,14 @@ class World:
     def return_to_starts(self) -> None:
         """Sets all robots down at the places where they began."""
         for name, pose in self._starts.items():
-            self.robots[name].put(*pose)
+            self.place_robot(name, pose)
+
+    def place_robot(self, name: str, pose: Pose) -> None:
+        """Sets a robot down at rest; a ball that lies in its way is put beside it."""
+        self.robots[name].put(*pose)
+        at, ball = Point(pose.x_m, pose.y_m), self.ball
+        if not ball.flies and math.dist(at, ball.body.position) < self._robot.mouth_m:
+            ball.put(*free_place(Point(*ball.body.position), [at], self._clearance_m))
 
     def place_ball(self, x_m: float, y_m: float) -> None:
         """Puts the ball down at rest: inside the border, beside a robot that stands in the way."""
@@ -87,8 +95,7 @@ class World:
         y_limit_m = self._field.half_width_m + self._field.border_m - self.ball.radius_m
         x_m, y_m = min(x_limit_m, max(-x_limit_m, x_m)), min(y_limit_m, max(-y_limit_m, y_m))
         middles = [Point(*robot.body.position) for robot in self.robots.values()]
-        clearance_m = self._robot.radius_m + self.ball.radius_m + _FREE_M
-        place = free_place(Point(x_m, y_m), middles, clearance_m)
+        place = free_place(Point(x_m, y_m), middles, self._clearance_m)
         self.ball.put(*place)
         self.last_touch = ""
         self._judge.ball_in_field = self._field.in_field(*place, self.ball.radius_m)
@@ -117,12 +124,13 @@ class World:
     ) -> list[State]:
         """Moves the world on by one step; returns the new states of the ball and the robots, in this order."""
         pushes: dict[str, Push] = {}
-        now_us, (ball_x_m, ball_y_m, *_) = self.time_us, states[0]
+        now_us, ball = self.time_us, states[0]
+        ball_x_m, ball_y_m = ball[0], ball[1]
         effects = [0.0, 0.0, 0.0]  # on the ball
         for (name, robot, kicker), state in zip(self._in_order, states[1:], strict=True):
             x_m, y_m = ball_x_m - state[0], ball_y_m - state[1]
             effects += robot.move(now_us, duration_s, state)
-            push = kicker.act(now_us, duration_s, ball_near=x_m * x_m + y_m * y_m <= self._near_m2)
+            push = kicker.act(now_us, duration_s, ball if x_m * x_m + y_m * y_m <= self._near_m2 else None)
             if push is not None:
                 pushes[name] = push
         self._bodies.push(effects)
@@ -139,7 +147,9 @@ class World:
             states = self._bodies.states()
         touching = self._contacts.take_touches() | pushes.keys()
         if touching:
-            touched |= {robot: self._ball_event(Kind.TOUCH, robot) for robot in touching}
+            x_m, y_m, _, vx_m_s, vy_m_s, _ = states[0]
+            speed_m_s = math.hypot(vx_m_s, vy_m_s)
+            touched |= {robot: Event(Kind.TOUCH, robot, "", x_m, y_m, speed_m_s) for robot in touching}
             self.last_touch = touching.pop() if len(touching) == 1 else min(touching, key=self._distance_to_ball)
         call = self._judge.judge(*states[0][:2], self.ball.z_m)
         if call is not None:

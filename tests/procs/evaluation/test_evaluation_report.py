@@ -46,6 +46,12 @@ def test_measures_without_a_value_are_left_out(tmp_path: Path) -> None:
     assert "pose jumps" not in text
 
 
+def test_results_of_former_code_can_be_reported(tmp_path: Path) -> None:
+    text = report([{"ball known": [1.0, 0.0], "a measure of last year": [3.0]}], tmp_path)
+    assert [row["name"] for row in json.loads((tmp_path / "table.json").read_text())] == ["ball known"]
+    assert "last year" not in text
+
+
 def test_a_match_starts_without_the_drawing_library() -> None:
     program = "import sys, procs.evaluation.match; print('matplotlib' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

@@ -37,13 +37,20 @@ def edges(bench: Bench) -> dict[tuple[str, str], Any]:
 def test_tree_has_mounted_frames_and_the_pose_once_known() -> None:
     bench = Bench(FrameTree, mounted={"camera": {"z_m": 0.5, "yaw_rad": math.pi}})
     bench.iterate()
-    assert list(edges(bench)) == [("base", "camera")]
+    assert list(edges(bench)) == [("base", "camera"), ("base", "kicker")]
     camera = edges(bench)["base", "camera"]
     assert (camera.fixed, camera.z_m, camera.qw, camera.qz) == (True, 0.5, pytest.approx(0.0), pytest.approx(1.0))
     bench.port("pose").put(x_m=1.0, y_m=2.0, heading_rad=math.pi / 2, localized=True)
     bench.iterate()
     base = edges(bench)["world", "base"]
     assert (base.fixed, base.x_m, base.y_m, base.qz) == (False, 1.0, 2.0, pytest.approx(math.sin(math.pi / 4)))
+
+
+def test_camera_and_kicker_are_where_the_shared_settings_say() -> None:
+    bench = Bench(FrameTree, mirror={"height_m": 0.6}, robot={"radius_m": 0.3, "mouth_half_angle_deg": 60.0})
+    bench.iterate()
+    found = edges(bench)
+    assert (found["base", "camera"].z_m, found["base", "kicker"].x_m) == pytest.approx((0.6, 0.15))
 
 
 def test_frame_tree_with_wrong_frames_does_not_start() -> None:

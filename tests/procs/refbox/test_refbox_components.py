@@ -150,12 +150,14 @@ def test_nonsense_of_a_refbox_is_named(refbox: socket.socket) -> None:
     bench.iterate()
     connection, _ = refbox.accept()
     with connection:
-        connection.sendall(b"hello\0")
+        connection.sendall(b"hello\0" + b"?\0" * 500)
         for _ in range(100):
             bench.iterate()
             if any("is not JSON" in line.text for line in bench.logged):
                 break
-    assert any("RefBox: b'hello' is not JSON" in line.text for line in bench.logged)
+    assert [line.text for line in bench.logged if "RefBox:" in line.text] == [
+        "RefBox: b'hello' is not JSON (and 500 more)"
+    ]
     bench.finalize()
 
 

@@ -91,3 +91,11 @@ def test_card_names_team_and_robot() -> None:
     event.card, event.team, event.robot = game_event_t.DOUBLE_YELLOW, game_state_t.TEAM_MAGENTA, "magenta4"
     now.history = [event]
     assert news(PLAY, now) == [Command("DOUBLE_YELLOW", "magenta", 4)]
+
+
+def test_match_that_begins_anew_is_a_reset() -> None:
+    before = state(game_state_t.PLAY, stopped=False, score_cyan=2)
+    before.history = [game_event_t(), game_event_t()]
+    now = state(game_state_t.KICK_OFF, game_state_t.TEAM_CYAN)
+    now.history = [game_event_t()]
+    assert [command.name for command in news(before, now)] == ["RESET", "FIRST_HALF", "KICKOFF"]

@@ -6,7 +6,7 @@ import pytest
 
 from fwk.testing import Bench
 from lcmtypes.core import answer_t
-from lcmtypes.soccer import game_state_t, match_event_t, true_robot_t
+from lcmtypes.soccer import game_event_t, game_state_t, match_event_t, true_robot_t
 from procs.referee.referee import Referee
 
 
@@ -211,3 +211,13 @@ def test_what_plays_in_neither_team_commits_no_foul() -> None:
         bench.port("match_events").put(ball_x_m=3.0, events=[hit])
         bench.iterate()
         assert (state(bench).state == game_state_t.FREE_KICK) == whistled
+
+
+def test_second_yellow_card_by_hand_is_double() -> None:
+    bench = with_names()
+    for expected in ([], ["dora"], ["dora"]):  # the third is a first one again
+        bench.port("referee_command").put(name="yellow_card", robot="dora")
+        bench.iterate()
+        assert state(bench).sent_off == expected
+    kinds = [event.card for event in state(bench).history if event.card]
+    assert kinds == [game_event_t.YELLOW, game_event_t.DOUBLE_YELLOW, game_event_t.YELLOW]

@@ -91,6 +91,15 @@ def test_all_mistakes_of_all_files_come_at_once(
     assert [line.count("mine.yaml") for line in printed.err.splitlines()] == [1, 1, 1, 0]
 
 
+def test_settings_are_added_to_places_and_rules(tmp_path: Path) -> None:
+    text = (
+        "robots: [cyan2]\nplaces: {cyan2: [3, 1, 0]}\nrules: {half_s: 0.2}\nalways: [x(cyan2) > 2.9]\ntime_s: 0.3\n"
+        "settings: {world/simulator: {stuck_wheels: {cyan2: [1]}}, world/referee: {half_time_s: 9}}\n"
+        'at_end: [state("half_time")]\n'
+    )
+    assert run(written(tmp_path, text)).broken == []
+
+
 def test_command_that_is_refused_breaks_a_scenario(tmp_path: Path) -> None:
     text = "dummies: [cyan2]\ncommands: [{referee: {name: pause}}]\nalways: [x(cyan2) < 0]\ntime_s: 0.3\n"
     (refused,) = run(written(tmp_path, text)).broken

@@ -25,6 +25,19 @@ def test_robot_is_set_down_elsewhere() -> None:
     assert world.port("place_robot").sent[-1].answer.state == answer_t.DONE
 
 
+@pytest.mark.parametrize("x_m", [4.0, 4.1, 3.8])
+def test_robot_on_the_ball_pushes_it_aside(x_m: float) -> None:
+    world = bench()
+    world.port("place_ball").put(x_m=4.0, y_m=3.0)
+    world.iterate()
+    world.port("place_robot").put(robot="cyan1", x_m=x_m, y_m=3.0)
+    world.iterate()
+    truth = world.port("ground_truth").sent[-1]
+    robot = truth.robots[0]
+    assert math.dist((robot.x_m, robot.y_m), (truth.ball_x_m, truth.ball_y_m)) > 0.36
+    assert math.hypot(truth.ball_vx_m_s, truth.ball_vy_m_s) < 0.1
+
+
 def test_ball_is_thrown() -> None:
     world = bench()
     world.port("place_ball").put(x_m=2.0, z_m=0.5, vx_m_s=3.0, vz_m_s=2.0)

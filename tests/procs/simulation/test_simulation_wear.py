@@ -95,3 +95,10 @@ def test_tilt_and_cast_change_the_picture() -> None:
     assert (bare._renderer._mirror.roll_rad, bare._noise.cast.tolist()) == (0.0, [1.0, 1.0, 1.0])
     assert 0.0 < abs(tilted._renderer._mirror.roll_rad) < 0.1
     assert 0.0 < np.abs(tilted._noise.cast - 1.0).max() < 0.5
+
+
+def test_phantoms_lie_in_the_own_mouth() -> None:
+    far = {"ball_reach_m": 1.0}  # the real ball is out of reach
+    assert not any(each.visible for each in frames_of(Percepts, "ball_percept", **far))
+    seen = frames_of(Percepts, "ball_percept", mouth_phantoms_1_s=1e6, **far)[1:]
+    assert {(round(each.x_m, 3), each.y_m) for each in seen} == {(round(0.25 * 0.75**0.5 + 0.11, 3), 0.0)}

@@ -195,3 +195,11 @@ def test_fresh_processes_give_the_same_bytes() -> None:
     ]
     assert digests == [digest(1)] * 2
     assert digest(2) != digest(1)
+
+
+@pytest.mark.parametrize("radius_m", [0.25, 0.4])
+def test_rays_begin_beside_the_own_body(radius_m: float) -> None:
+    component = Bench(OmniField, name="cyan1/omni_field", robot={"radius_m": radius_m}).component
+    assert isinstance(component, OmniField)
+    begins_m = np.hypot(component._star.ground_m[:, 0, 0], component._star.ground_m[:, 0, 1])
+    assert begins_m == pytest.approx(radius_m + 0.03, abs=0.01)

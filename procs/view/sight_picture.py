@@ -1,0 +1,126 @@
+"""A camera's picture with what the detectors found in it: `python -m procs.view.sight_picture FILE`.
+
+Without the web console, which draws the same over live pictures.
+"""
+
+import argparse
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TypeVar
+
+import cv2
+import numpy as np
+
+from fwk.testing import MemorySystem, settings_in, system_of
+from lcmtypes.core import picture_t
+from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t
+from procs.model.algebra import Floats
+from procs.model.ball import RADIUS_M
+from procs.view.canvas import Colour
+from procs.vision.calibration import MirrorConfig
+from procs.vision.colours import Picture
+from procs.vision.mirror import Mirror
+
+T = TypeVar("T", ball_percept_t, obstacle_percepts_t, line_points_t)
+
+BALL: Colour = (88, 238, 255)
+OBSTACLE: Colour = (129, 64, 255)
+LINE: Colour = (255, 229, 0)
+"""Colours of what was found, blue, green, red."""
+_SHIFT = 4  # OpenCV takes coordinates in sixteenths of a pixel
+_STEPS = 32
+_ROBOT = "cyan3"
+_LAUNCH = (
+    "include: {file}\nname: sight\ncomponents: {{world/pictures: {{use: procs.view.pictures, config: {config}}}}}\n"
+)
+_FINE = "{format: png, rate_hz: 0}"
+
+
+def drawn(
+    pixels: Picture,
+    mirror: Mirror,
+    ball: ball_percept_t,
+    obstacles: obstacle_percepts_t,
+    lines: line_points_t,
+    scale: int = 2,
+) -> Picture:
+    """Returns the picture of a camera (size, size, 3), `scale` times larger, with what was found in it.
+
+    Points on lines are dots, the feet of robots and the ball's outline are rings.
+    """
+    picture = cv2.resize(pixels, None, fx=scale, fy=scale, interpolation=cv2.INTER_NEAREST)
+    points_m = np.column_stack((lines.x_m, lines.y_m, np.zeros(len(lines.x_m))))
+    for place in _fine(mirror.project(points_m), scale):
+        cv2.circle(picture, place.tolist(), scale << _SHIFT, LINE, cv2.FILLED, cv2.LINE_AA, _SHIFT)
+    around = np.linspace(0.0, 2 * np.pi, _STEPS, endpoint=False)
+    rim = np.column_stack((np.cos(around), np.sin(around), np.zeros(_STEPS)))
+    for each in obstacles.obstacles:
+        foot = mirror.project(rim * each.radius_m + (each.x_m, each.y_m, 0.0))
+        cv2.polylines(picture, [_fine(foot, scale)], True, OBSTACLE, scale, cv2.LINE_AA, _SHIFT)
+    if ball.visible:
+        *middle, radius_px = mirror.sphere((ball.x_m, ball.y_m, RADIUS_M), RADIUS_M)
+        (place,) = _fine(np.array([middle]), scale)
+        radius = round((radius_px + 2.0) * scale * (1 << _SHIFT))
+        cv2.circle(picture, place.tolist(), radius, BALL, scale, cv2.LINE_AA, _SHIFT)
+    return np.asarray(picture, np.uint8)
+
+
+def _fine(pixels: Floats, scale: int) -> np.ndarray[tuple[int, int], np.dtype[np.int32]]:
+    """Returns pixels (n, 2) of the camera as OpenCV's fixed-point numbers in the larger picture."""
+    larger = (pixels + 0.5) * scale - 0.5
+    return np.round(larger.clip(-4096, 4096) * (1 << _SHIFT)).astype(np.int32)
+
+
+def sight_in(system: MemorySystem, robot: str, mirror: Mirror) -> Picture | None:
+    """Returns the newest picture of a robot's camera with the findings of its tick; None if there is none.
+
+    The system needs a component `world/pictures` that publishes every picture.
+    """
+    for data in reversed(system.sent["world/pictures"]):
+        seen = picture_t.decode(data)
+        if seen.camera != f"{robot}/image":
+            continue
+        pixels = np.asarray(cv2.imdecode(np.frombuffer(seen.data, np.uint8), cv2.IMREAD_COLOR), np.uint8)
+        tick = seen.header.tick
+        ball = _of_tick(system.sent[f"{robot}/ball_percept"], ball_percept_t, tick)
+        obstacles = _of_tick(system.sent[f"{robot}/obstacle_percepts"], obstacle_percepts_t, tick)
+        return drawn(
+            pixels, mirror, ball, obstacles, _of_tick(system.sent[f"{robot}/line_points"], line_points_t, tick)
+        )
+    return None
+
+
+def _of_tick(sent: Sequence[bytes], kind: type[T], tick: int) -> T:
+    """Returns the message of a tick; an empty one if there is none."""
+    found: Iterator[T] = map(kind.decode, sent)
+    return next((each for each in found if each.header.tick == tick), kind())
+
+
+def main() -> None:
+    """Plays the beginning of a match and writes the picture."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path, help="picture to write, .png or .jpg")
+    parser.add_argument("--launch", default="soccer.yaml", help="launch file; default: soccer.yaml")
+    parser.add_argument("--robot", default=_ROBOT, help=f"robot whose camera is shown; default: {_ROBOT}")
+    parser.add_argument("--time", type=float, default=9.0, help="logical time in s; default: 9")
+    parser.add_argument("--seed", type=int, default=7, help="seed of the match; default: 7")
+    asked = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "sight.yaml"
+        file.write_text(_LAUNCH.format(file=asked.launch, config=_FINE))
+        try:
+            mirror = MirrorConfig(**settings_in(str(file), f"{asked.robot}/camera")["mirror"]).mirror()
+        except KeyError as error:
+            raise SystemExit(f"{asked.launch}: no camera of {asked.robot}") from error
+        system = system_of(str(file), seed=asked.seed)
+        while system.now_us < asked.time * 1e6:
+            system.tick()
+        picture = sight_in(system, asked.robot, mirror)
+    if picture is None:
+        raise SystemExit(f"no picture of {asked.robot}/image")
+    cv2.imwrite(str(asked.file), picture)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,53 @@
+"""The picture of a camera with what was found in it."""
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from lcmtypes.soccer import ball_percept_t, line_points_t, obstacle_percepts_t, obstacle_t
+from procs.view import sight_picture
+from procs.view.sight_picture import BALL, LINE, OBSTACLE, drawn
+from procs.vision.mirror import Mirror
+
+MIRROR = Mirror()
+
+
+def test_findings_are_drawn_where_they_were_found() -> None:
+    ball, obstacles, lines, obstacle = ball_percept_t(), obstacle_percepts_t(), line_points_t(), obstacle_t()
+    ball.visible, ball.x_m = True, 2.0
+    obstacle.y_m, obstacle.radius_m = 2.0, 0.25
+    obstacles.obstacles = [obstacle]
+    lines.x_m, lines.y_m = [-1.5], [-1.0]
+    picture = drawn(np.zeros((400, 400, 3), np.uint8), MIRROR, ball, obstacles, lines)
+    assert picture.shape == (800, 800, 3)
+    for colour, place in (
+        (BALL, (2.0, 0.0, 0.11)),
+        (OBSTACLE, (0.0, 2.0, 0.0)),
+        (LINE, (-1.5, -1.0, 0.0)),
+    ):
+        rows, columns = np.nonzero((picture == colour).all(axis=2))
+        (expected,) = 2 * MIRROR.project(np.array([place]))
+        assert np.hypot(columns.mean() - expected[0], rows.mean() - expected[1]) < 8.0
+
+
+def test_nothing_found_leaves_the_picture_as_it_is() -> None:
+    frame = np.full((400, 400, 3), 77, np.uint8)
+    empty = drawn(frame, MIRROR, ball_percept_t(), obstacle_percepts_t(), line_points_t(), scale=1)
+    assert (empty == frame).all()
+
+
+@pytest.mark.slow
+def test_command_draws_the_camera_of_a_match(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = tmp_path / "sight.png"
+    words = ["sight_picture", str(file), "--launch", "soccer-1v1.yaml", "--robot", "cyan1", "--time", "0.4"]
+    monkeypatch.setattr("sys.argv", words)
+    sight_picture.main()
+    picture = cv2.imread(str(file))
+    assert picture is not None
+    assert picture.shape == (720, 720, 3)
+    assert (picture == LINE).all(axis=2).sum() > 100
+    monkeypatch.setattr("sys.argv", [*words[:-4], "--robot", "cyan9", "--time", "0.1"])
+    with pytest.raises(SystemExit, match="no camera of cyan9"):
+        sight_picture.main()
