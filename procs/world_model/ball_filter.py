@@ -1,9 +1,13 @@
-"""Interacting multiple models of the ball: it rests, rolls, slides, is handled by a robot, or was hit just now.
+"""Interacting multiple models of the ball: it rests, runs freely, is handled by a robot, or was hit just now.
 
-Five Kalman filters with one state each (x, y in m, vx, vy in m/s, world frame) run side by side; after each step the
-filters exchange what they believe, by the probabilities of passing from one model to another (Blom and Bar-Shalom,
-1988). Robots near the ball make hits and handling probable; elsewhere the ball keeps rolling, and its velocity becomes
-precise.
+Four Kalman filters run side by side; after each step the filters exchange what they believe, by the probabilities of
+passing from one model to another (Blom and Bar-Shalom, 1988). Robots near the ball make hits and handling probable;
+elsewhere the ball runs freely, and its velocity becomes precise.
+
+A free ball slides until its spin fits its speed, then it rolls. Sliding takes the velocity straight to one that can be
+told from the start, the settled velocity: three fifths of the velocity and two fifths of the velocity at which the ball
+would roll with its spin, for a thin shell. Each filter therefore has seven states: x, y in m, vx, vy in m/s, settled
+ux, uy in m/s, world frame, and the carpet, a factor of both decelerations, which is learnt from every slide.
 """
 
 import math
@@ -14,58 +18,63 @@ import numpy as np
 
 from procs.model.ball import ROLLING_SHARE, SLIDING_M_S2
 from procs.model.frames import Floats
-from procs.world_model.batch import corrected, drift, innovation
+from procs.world_model.batch import corrected, innovation
 
 
 class Mode(IntEnum):
     """Motion models."""
 
     RESTS = 0
-    ROLLS = 1
-    SLIDES = 2
-    HANDLED = 3
-    HIT = 4
+    FREE = 1
+    HANDLED = 2
+    HIT = 3
 
 
 _MODES = len(Mode)
+_STATES = 7
 _EACH = np.arange(_MODES)
-_AXES, _OTHER = np.array((0, 1, 2, 3)), np.array((2, 3, 0, 1))  # x, y, vx, vy, and the partner of each
-_NOISE_M2_S3 = np.array((0.0002, 0.01, 0.1, 5.0, 0.3))
+_PLACE, _VELOCITY, _SETTLED, _CARPET = slice(0, 2), slice(2, 4), slice(4, 6), 6
+_SPUN_SHARE = 1.0 - ROLLING_SHARE  # of the velocity at which the ball would roll with its spin, in the settled one
+_BRAKES = np.array((0.0, 1.0, 0.0, 1.0))  # models in which friction acts on the velocity
+_SPINS = np.array((0.0, 0.0, ROLLING_SHARE, 0.0))  # share by which it turns the settled velocity instead
+_NOISE_M2_S3 = np.array((0.0002, 0.01, 5.0, 0.01))
 """Spectral density of the acceleration that each model leaves open."""
+_SPIN_NOISE_M2_S3 = 0.01  # the same for the settled velocity
 _HIT_M_S = 8.0  # deviation of the velocity that a hit adds
-_SLOW_M_S = 0.15  # a rolling ball this slow is about to rest
+_HIT_SPIN_M_S = 0.3  # deviation of the settled velocity by the spin that a hit adds
+_SLOW_M_S = 0.15  # a free ball this slow is about to rest
 _UNKNOWN_SPEED_M_S = 3.0
-_CLUTTER_1_M2 = 1e-4  # density of false sightings; a sighting that is less probable does not fit
-_BOUNCE = 0.5  # share of the speed that a wall leaves
+_UNKNOWN_SLIP_M_S = 0.8
+_CARPET_SD = 0.18  # published decelerations differ by a third
+_CARPET_NOISE_1_S = 1e-5
+_CLUTTER_1_M2 = 4e-3  # density of false sightings; a sighting that is less probable does not fit
 _LEAST = 1e-6  # probability that every model keeps
 _KICK_SPEED_SD = 0.06  # relative error of a kick's speed
 _KICK_DIRECTION_SD = 0.03  # rad
-_TURNS_M_S2 = SLIDING_M_S2 * ROLLING_SHARE / (1.0 - ROLLING_SHARE)
-"""A ball that was hit t seconds ago and slides at v m/s begins to roll when v is t times this."""
-_ROLLS_BELOW_M_S2, _SLIDES_ABOVE_M_S2 = 0.7 * _TURNS_M_S2, 1.4 * _TURNS_M_S2  # carpets differ by a third
 _KICK_TIME_SD_S = 0.012  # the kick lies somewhere in the tick before its report: 40 ms by the root of 12
+_SPIN_SD_M_S = 1.0  # deviation of the spin from that of a rolling ball, before the track is asked
+_HELD_SPIN_M_S = 0.4  # deviation of the spin of a ball in a mouth, which follows the robot late
 _FREE_1_S = np.array(
     (
-        (0.0, 0.02, 0.0, 0.003, 0.003),
-        (0.3, 0.0, 0.0, 0.003, 0.003),
-        (0.0, 1.5, 0.0, 0.003, 0.003),
-        (0.5, 6.0, 2.0, 0.0, 0.5),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.02, 0.003, 0.003),
+        (0.02, 0.0, 0.003, 0.003),
+        (0.5, 8.0, 0.0, 0.5),
+        (0.0, 0.0, 0.0, 0.0),
     )
 )
 """Rates of passing from one model (row) to another (column) without a robot near the ball; `HIT` lasts one step."""
 _CONTACT_1_S = np.array(
     (
-        (0.0, 0.1, 0.0, 1.5, 0.8),
-        (0.3, 0.0, 0.0, 3.0, 1.6),
-        (0.0, 1.5, 0.0, 3.0, 1.6),
-        (0.3, 1.0, 0.5, 0.0, 1.6),
-        (0.0, 0.0, 0.0, 0.0, 0.0),
+        (0.0, 0.1, 1.5, 0.8),
+        (0.02, 0.0, 3.0, 1.6),
+        (0.3, 1.5, 0.0, 1.6),
+        (0.0, 0.0, 0.0, 0.0),
     )
 )
 """The same with a robot or a wall within reach."""
-_AFTER_HIT = np.array((0.0, 0.02, 0.83, 0.15, 0.0))
-_FIRST = np.array((0.3, 0.3, 0.15, 0.2, 0.05))
+_LEVELS = 20  # to which the probability of a contact is rounded
+_AFTER_HIT = np.array((0.0, 0.85, 0.15, 0.0))
+_FIRST = np.array((0.3, 0.45, 0.2, 0.05))
 
 
 class BallFilter:
@@ -74,15 +83,18 @@ class BallFilter:
     def __init__(self, position_m: Floats, covariance_m2: Floats) -> None:
         """Starts from one sighting (2) with its covariance (2, 2); the velocity is unknown."""
         # Copies share arrays: methods replace them, or change those that they have just made.
-        self._x = np.zeros((_MODES, 4))
-        self._x[:, :2] = position_m
-        self._p = np.zeros((_MODES, 4, 4))
-        self._p[:, :2, :2] = covariance_m2
-        self._p[:, 2:, 2:] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
-        self._p[Mode.RESTS, 2:, 2:] = np.eye(2) * 1e-4
+        self._x = np.zeros((_MODES, _STATES))
+        self._x[:, _PLACE] = position_m
+        self._x[:, _CARPET] = 1.0
+        self._p = np.zeros((_MODES, _STATES, _STATES))
+        self._p[:, _PLACE, _PLACE] = covariance_m2
+        moves = self._p[1:]
+        moves[:, _VELOCITY, _VELOCITY] = np.eye(2) * _UNKNOWN_SPEED_M_S**2
+        moves[:, _VELOCITY, _SETTLED] = moves[:, _SETTLED, _VELOCITY] = np.eye(2) * _UNKNOWN_SPEED_M_S**2 * 0.85
+        moves[:, _SETTLED, _SETTLED] = np.eye(2) * (_UNKNOWN_SPEED_M_S**2 * 0.85**2 + _UNKNOWN_SLIP_M_S**2)
+        self._p[Mode.RESTS, 2:6, 2:6] = np.eye(4) * 1e-4
+        self._p[:, _CARPET, _CARPET] = _CARPET_SD**2
         self._weights = _FIRST.copy()
-        self._rolls_below_m_s = 0.0  # after a known kick the ball slides until it is slower
-        self._free_s = math.nan  # time since a robot or a wall was near
 
     def copy(self) -> "BallFilter":
         """Returns the same mixture; neither follows what happens to the other."""
@@ -93,51 +105,111 @@ class BallFilter:
     @property
     def state(self) -> Floats:
         """(4): x, y, vx, vy."""
-        return np.asarray(self._weights @ self._x)
+        return np.asarray(self._weights @ self._x[:, :4])
 
     @property
     def covariance(self) -> Floats:
         """(4, 4) of the state."""
-        apart = self._x - self.state
-        return np.asarray(
-            (self._weights @ self._p.reshape(_MODES, 16)).reshape(4, 4) + (apart.T * self._weights) @ apart
-        )
+        return self._moments()[1][:4, :4]
+
+    @property
+    def settled_m_s(self) -> Floats:
+        """(2): velocity at which the ball will begin to roll."""
+        return np.asarray(self._weights @ self._x[:, _SETTLED])
 
     @property
     def weights(self) -> Floats:
-        """(5): probability of each `Mode`."""
+        """(4): probability of each `Mode`."""
         return self._weights
 
-    def predict(self, duration_s: float, rolling_m_s2: float, contact: bool = False) -> None:
+    @property
+    def carpet(self) -> tuple[float, float]:
+        """Factor of the decelerations on this carpet, and its variance."""
+        factors = self._x[:, _CARPET]
+        mean = float(self._weights @ factors)
+        return mean, float(self._weights @ (self._p[:, _CARPET, _CARPET] + (factors - mean) ** 2))
+
+    def lie_on(self, carpet: tuple[float, float]) -> None:
+        """Takes the carpet that another track learnt, as `carpet` returns it."""
+        self._x, self._p = self._x.copy(), self._p.copy()
+        self._x[:, _CARPET] = carpet[0]
+        self._p[:, _CARPET] = self._p[:, :, _CARPET] = 0.0
+        self._p[:, _CARPET, _CARPET] = carpet[1]
+
+    def predict(self, duration_s: float, rolling_m_s2: float, contact: float = 0.0) -> None:
         """Moves the ball on by `duration_s`.
 
         Args:
             duration_s: the step.
-            rolling_m_s2: deceleration of the rolling ball.
-            contact: a robot, a post or a wall may touch the ball.
+            rolling_m_s2: deceleration of the rolling ball on the usual carpet.
+            contact: probability that a robot, a post or a wall reaches the ball.
         """
-        if contact and self._free_s > 0.0:
-            self._rolls_below_m_s = 0.0  # a robot that was not at the ball may have hit it
-        self._free_s = 0.0 if contact else self._free_s + duration_s
-        self._mix(self._moves(duration_s, contact))
-        x, p = self._x, self._p
-        velocities_m_s = x[:, 2:]
-        speeds_m_s = np.hypot(x[:, 2], x[:, 3]) + 1e-9
-        kept = np.maximum(0.0, 1.0 - _losses_m_s(duration_s, rolling_m_s2) / speeds_m_s)
-        x[:, :2] += velocities_m_s * (duration_s * (1.0 + kept) / 2)[:, None]
-        velocities_m_s *= kept[:, None]
-        p[Mode.RESTS, 2:] = p[Mode.RESTS, :, 2:] = 0.0
-        drift(p, duration_s)
-        p += _noise(duration_s)
+        _, _, vx_m_s, vy_m_s, ux_m_s, uy_m_s, _ = self._x[Mode.FREE].tolist()
+        slow = max(math.hypot(vx_m_s, vy_m_s), math.hypot(ux_m_s, uy_m_s)) < _SLOW_M_S
+        self._mix(_passes(duration_s, round(contact * _LEVELS) / _LEVELS, slow))
+        x = self._x
+        motion = self._rub(duration_s, rolling_m_s2)
+        self._p = motion @ self._p @ motion.transpose(0, 2, 1) + _noise(duration_s)
+        np.maximum(x[:, _CARPET], 0.3, out=x[:, _CARPET])
 
-    def stay_within(self, x_m: float, y_m: float) -> None:
-        """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them."""
+    def _rub(self, duration_s: float, rolling_m_s2: float) -> Floats:
+        """Lets the ball move and the carpet act on it; returns the derivatives (modes, 7, 7) of the new states.
+
+        The direction of the slip is that of a normal distribution: it fades where the slip is uncertain, and where
+        the slip ends within the step.
+        """
+        x, p = self._x, self._p
+        before_m_s = x[:, _VELOCITY].copy()
+        slips_m_s = before_m_s - x[:, _SETTLED]
+        per_carpet_m_s = SLIDING_M_S2 * duration_s
+        steps_m_s = per_carpet_m_s * x[:, _CARPET]
+        unsure_m2_s2 = (
+            p[:, 2, 2] + p[:, 3, 3] + p[:, 4, 4] + p[:, 5, 5] - 2 * (p[:, 2, 4] + p[:, 3, 5])
+        ) / 2  # per axis
+        scales = 1.0 / np.sqrt((slips_m_s**2).sum(axis=1) + np.maximum(unsure_m2_s2, 0.0) + steps_m_s**2 + 1e-12)
+        directions = slips_m_s * scales[:, None]
+        slides = (directions**2).sum(axis=1)
+        turns = (np.eye(2) - directions[:, :, None] * directions[:, None]) * (steps_m_s * scales)[:, None, None]
+        settled_m_s = x[:, _SETTLED]
+        speeds_m_s = np.hypot(settled_m_s[:, 0], settled_m_s[:, 1]) + 1e-9
+        rolls_s = _BRAKES * (1.0 - np.sqrt(slides)) * duration_s
+        slower_m_s = np.minimum(rolling_m_s2 * x[:, _CARPET] * rolls_s, speeds_m_s)
+        rolled_m_s = settled_m_s * (slower_m_s / speeds_m_s)[:, None]
+        rubbed_m_s = directions * steps_m_s[:, None]
+        x[:, _VELOCITY] -= _BRAKES[:, None] * rubbed_m_s + rolled_m_s
+        x[:, _SETTLED] += _SPINS[:, None] * rubbed_m_s - rolled_m_s
+        x[Mode.RESTS, 2:6] = 0.0
+        x[:, _PLACE] += duration_s / 2 * (before_m_s + x[:, _VELOCITY])
+        x[Mode.RESTS, _PLACE] -= duration_s / 2 * before_m_s[Mode.RESTS]
+        motion = np.zeros((_MODES, _STATES, _STATES))
+        motion[:, np.arange(_STATES), np.arange(_STATES)] = 1.0
+        brakes, spins = _BRAKES[:, None, None] * turns, _SPINS[:, None, None] * turns
+        motion[:, _VELOCITY, _VELOCITY] -= brakes
+        motion[:, _VELOCITY, _SETTLED] = brakes
+        motion[:, _SETTLED, _VELOCITY] = spins
+        motion[:, _SETTLED, _SETTLED] -= spins
+        by_rolling = settled_m_s / speeds_m_s[:, None] * (rolling_m_s2 * rolls_s)[:, None]
+        motion[:, _VELOCITY, _CARPET] = -_BRAKES[:, None] * per_carpet_m_s * directions - by_rolling
+        motion[:, _SETTLED, _CARPET] = _SPINS[:, None] * per_carpet_m_s * directions - by_rolling
+        motion[Mode.RESTS, 2:6] = 0.0
+        motion[:, _PLACE, 2:] = duration_s / 2 * motion[:, _VELOCITY, 2:]
+        motion[1:, 0, 2] += duration_s / 2
+        motion[1:, 1, 3] += duration_s / 2
+        return motion
+
+    def stay_within(self, x_m: float, y_m: float, bounce: float) -> None:
+        """Lets a ball beyond the walls, at plus and minus these places of its middle, bounce off them.
+
+        `bounce` is the share of the speed that a wall leaves.
+        """
         limits_m = np.array((x_m, y_m))
-        beyond = np.abs(self._x[:, :2]) > limits_m
+        beyond = np.abs(self._x[:, _PLACE]) > limits_m
         if beyond.any():
             self._x = self._x.copy()
-            self._x[:, :2] = np.clip(self._x[:, :2], -limits_m, limits_m)
-            self._x[:, 2:][beyond] *= -_BOUNCE
+            self._x[:, _PLACE] = np.clip(self._x[:, _PLACE], -limits_m, limits_m)
+            changes_m_s = np.where(beyond, (-bounce - 1.0) * self._x[:, _VELOCITY], 0.0)
+            self._x[:, _VELOCITY] += changes_m_s
+            self._x[:, _SETTLED] += ROLLING_SHARE * changes_m_s
 
     def see(self, position_m: Floats, covariance_m2: Floats) -> bool:
         """Takes a sighting (2) with its covariance (2, 2); returns False if it does not fit."""
@@ -154,47 +226,73 @@ class BallFilter:
     def hold(self, state: Floats, covariance: Floats) -> None:
         """Takes the ball in a mouth: its state (4) with the covariance (4, 4), which replace the track's.
 
-        The error of a robot's pose stays from tick to tick, so several ticks tell no more than one.
+        The error of a robot's pose stays from tick to tick, so several ticks tell no more than one. The spin follows
+        the mouth as fast as the carpet can turn the ball.
         """
-        self._x, self._p = np.tile(state, (_MODES, 1)), np.tile(covariance, (_MODES, 1, 1))
+        spin_m_s, spin_m2_s2 = self._spin(state[2:], _HELD_SPIN_M_S)
+        self._set(state, covariance, spin_m_s, spin_m2_s2)
         self._become(Mode.HANDLED)
-        self._rolls_below_m_s = 0.0
 
-    def kick(self, velocity_m_s: Floats) -> None:
-        """Takes a kick that gave the ball about this velocity (2), world frame."""
+    def kick(self, velocity_m_s: Floats, position_m: Floats | None = None, covariance_m2: Floats | None = None) -> None:
+        """Takes a kick that gave the ball about this velocity (2), world frame.
+
+        Args:
+            velocity_m_s: (2), world frame.
+            position_m: (2), where the ball was, if that is not what the track says.
+            covariance_m2: (2, 2) of that position.
+        """
         speed_m_s = float(np.hypot(*velocity_m_s))
         along = velocity_m_s / max(speed_m_s, 1e-9)
         across = np.array((-along[1], along[0]))
-        position_m, covariance_m2 = self.state[:2], self.covariance[:2, :2]
-        self._x, self._p = np.tile((*position_m, *velocity_m_s), (_MODES, 1)), np.zeros((_MODES, 4, 4))
-        self._p[:, :2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
-        self._p[:, 2:, 2:] = (
+        if position_m is None or covariance_m2 is None:
+            position_m, covariance_m2 = self.state[:2], self.covariance[:2, :2]
+        covariance = np.zeros((4, 4))
+        covariance[:2, :2] = covariance_m2 + np.outer(along, along) * (speed_m_s * _KICK_TIME_SD_S) ** 2
+        covariance[2:, 2:] = (
             np.outer(along, along) * (_KICK_SPEED_SD * speed_m_s + 0.2) ** 2
             + np.outer(across, across) * (_KICK_DIRECTION_SD * speed_m_s + 0.1) ** 2
         )
-        self._become(Mode.SLIDES)
-        self._rolls_below_m_s, self._free_s = ROLLING_SHARE * speed_m_s, 0.0
+        self._set(np.concatenate((position_m, velocity_m_s)), covariance, *self._spin(self.state[2:], 0.0))
+        self._become(Mode.FREE)
+
+    def _spin(self, rolling_m_s: Floats, least_m_s: float) -> tuple[Floats, Floats]:
+        """Returns the velocity (2) at which the ball would roll with its spin, and its covariance (2, 2).
+
+        What the track tells is weighed against a ball that rolls at a velocity (2); `least_m_s` is the least deviation.
+        """
+        mean, covariance = self._moments()
+        of_velocity, of_settled = -ROLLING_SHARE / _SPUN_SHARE, 1.0 / _SPUN_SHARE
+        told_m_s = of_velocity * mean[_VELOCITY] + of_settled * mean[_SETTLED]
+        told_m2_s2 = (
+            of_velocity**2 * np.trace(covariance[_VELOCITY, _VELOCITY])
+            + of_settled**2 * np.trace(covariance[_SETTLED, _SETTLED])
+            + 2 * of_velocity * of_settled * np.trace(covariance[_VELOCITY, _SETTLED])
+        ) / 2
+        share = _SPIN_SD_M_S**2 / (_SPIN_SD_M_S**2 + max(0.0, float(told_m2_s2)))
+        return rolling_m_s + share * (told_m_s - rolling_m_s), np.eye(2) * max(least_m_s**2, share * float(told_m2_s2))
+
+    def _set(self, state: Floats, covariance: Floats, spin_m_s: Floats, spin_m2_s2: Floats) -> None:
+        """Sets all models to one state (4) with its covariance (4, 4), and one spin (2) with its covariance (2, 2)."""
+        factor, variance = self.carpet
+        to_all = np.zeros((_STATES, 4))
+        to_all[_EACH[:4], _EACH[:4]] = 1.0
+        to_all[4, 2] = to_all[5, 3] = ROLLING_SHARE
+        x, p = to_all @ state, to_all @ covariance @ to_all.T
+        x[_SETTLED] += _SPUN_SHARE * spin_m_s
+        p[_SETTLED, _SETTLED] += _SPUN_SHARE**2 * spin_m2_s2
+        x[_CARPET], p[_CARPET, _CARPET] = factor, variance
+        self._x, self._p = np.tile(x, (_MODES, 1)), np.tile(p, (_MODES, 1, 1))
 
     def _become(self, mode: Mode) -> None:
         self._weights = np.full(_MODES, _LEAST)
         self._weights[mode] = 1.0 - _LEAST * (_MODES - 1)
 
-    def _moves(self, duration_s: float, contact: bool) -> Floats:
-        """Returns the probabilities (old, new) of passing from model to model.
-
-        A fast ball does not rest. After a kick the ball slides until it has lost so much of its speed that it rolls:
-        below a known speed if the kick is known, otherwise by the time since a robot could have hit it.
-        """
-        slow = math.hypot(*self._x[Mode.ROLLS, 2:]) < _SLOW_M_S
-        slides: bool | None = None
-        sliding_m_s = math.hypot(*self._x[Mode.SLIDES, 2:])
-        if self._rolls_below_m_s:
-            slides = sliding_m_s > self._rolls_below_m_s
-        elif sliding_m_s > _SLIDES_ABOVE_M_S2 * self._free_s:
-            slides = True
-        elif sliding_m_s < _ROLLS_BELOW_M_S2 * self._free_s:
-            slides = False
-        return _passes(duration_s, contact, slow, slides, self._rolls_below_m_s > 0.0)
+    def _moments(self) -> tuple[Floats, Floats]:
+        """Returns mean (7) and covariance (7, 7) of the mixture."""
+        mean = self._weights @ self._x
+        apart = self._x - mean
+        within = (self._weights @ self._p.reshape(_MODES, -1)).reshape(_STATES, _STATES)
+        return mean, within + (apart.T * self._weights) @ apart
 
     def _mix(self, moves: Floats) -> None:
         """Lets the models exchange their beliefs by the probabilities (old, new) of passing from one to another."""
@@ -203,30 +301,22 @@ class BallFilter:
         mixed = shares @ self._x
         apart = self._x[None] - mixed[:, None]
         spread = (apart * shares[:, :, None]).transpose(0, 2, 1) @ apart
-        self._p = (shares @ self._p.reshape(_MODES, 16)).reshape(_MODES, 4, 4) + spread
+        self._p = (shares @ self._p.reshape(_MODES, -1)).reshape(_MODES, _STATES, _STATES) + spread
         self._x, self._weights = mixed, weights / weights.sum()
 
 
 @lru_cache(maxsize=128)
-def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None, kicked: bool) -> Floats:
+def _passes(duration_s: float, contact: float, slow: bool) -> Floats:
     """Returns the probabilities (old, new) of passing from model to model; cached.
 
     Args:
         duration_s: the step.
-        contact: a robot or a wall may touch the ball.
-        slow: a rolling ball is about to rest.
-        slides: whether a ball that was hit is still too fast to roll; None if that is not known.
-        kicked: the kick is known.
+        contact: probability that a robot or a wall reaches the ball.
+        slow: a free ball is about to rest.
     """
-    rates_1_s = (_CONTACT_1_S if contact else _FREE_1_S).copy()
-    rates_1_s[Mode.ROLLS, Mode.RESTS] = 3.0 if slow else 0.02
-    if slides is not None:
-        rates_1_s[Mode.SLIDES, Mode.ROLLS] = 0.3 if slides else 15.0
-        likely, unlikely = (Mode.SLIDES, Mode.ROLLS) if slides else (Mode.ROLLS, Mode.SLIDES)
-        rates_1_s[Mode.HANDLED, likely] += rates_1_s[Mode.HANDLED, unlikely]
-        rates_1_s[Mode.HANDLED, unlikely] = 0.0
-        if slides and kicked:
-            rates_1_s[Mode.ROLLS, Mode.SLIDES] = 15.0
+    rates_1_s = contact * _CONTACT_1_S + (1.0 - contact) * _FREE_1_S
+    if slow:
+        rates_1_s[Mode.FREE, Mode.RESTS] = 3.0
     leaves_1_s = rates_1_s.sum(axis=1) + 1e-9
     stays = np.exp(-leaves_1_s * duration_s)
     moves = rates_1_s * ((1.0 - stays) / leaves_1_s)[:, None]
@@ -236,19 +326,24 @@ def _passes(duration_s: float, contact: bool, slow: bool, slides: bool | None, k
 
 
 @lru_cache(maxsize=32)
-def _losses_m_s(duration_s: float, rolling_m_s2: float) -> Floats:
-    """Returns the speed (5) that each model takes from the ball in a step: all of it at rest; cached."""
-    return np.array((np.inf, rolling_m_s2 * duration_s, SLIDING_M_S2 * duration_s, 0.0, 0.0))
-
-
-@lru_cache(maxsize=32)
 def _noise(duration_s: float) -> Floats:
-    """Returns the covariances (5, 4, 4) that the models' accelerations add in a step; cached."""
+    """Returns the covariances (modes, 7, 7) that the models' accelerations add in a step; cached."""
     along = np.array((duration_s**3 / 3, duration_s**2 / 2, duration_s))
-    noise = _NOISE_M2_S3[:, None] * along
-    noise[Mode.HIT] += _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
-    noise[Mode.RESTS] = (_NOISE_M2_S3[Mode.RESTS] * duration_s, 0.0, 1e-4)
-    matrices = np.zeros((_MODES, 4, 4))
-    matrices[:, _AXES, _AXES] = noise[:, (0, 0, 2, 2)]
-    matrices[:, _AXES, _OTHER] = noise[:, 1:2]
+    matrices = np.zeros((_MODES, _STATES, _STATES))
+    for mode in Mode:
+        place, both, velocity = _NOISE_M2_S3[mode] * along
+        if mode is Mode.HIT:
+            place, both, velocity = _HIT_M_S**2 * np.array((duration_s**2 / 3, duration_s / 2, 1.0))
+        share = ROLLING_SHARE if mode in (Mode.HIT, Mode.HANDLED) else 0.0
+        spin = _HIT_SPIN_M_S**2 if mode is Mode.HIT else _SPIN_NOISE_M2_S3 * duration_s
+        if mode is Mode.RESTS:
+            place, both, velocity, spin = _NOISE_M2_S3[mode] * duration_s, 0.0, 1e-4, 1e-4
+        for axis in (0, 1):
+            axes = np.array((axis, axis + 2, axis + 4))
+            matrices[mode][np.ix_(axes, axes)] = (
+                (place, both, share * both),
+                (both, velocity, share * velocity),
+                (share * both, share * velocity, share**2 * velocity + spin),
+            )
+        matrices[mode, _CARPET, _CARPET] = _CARPET_NOISE_1_S * duration_s
     return matrices

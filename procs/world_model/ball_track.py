@@ -8,13 +8,18 @@ Order of the sources of sightings:
 
 A sighting that does not fit the track is dropped if a better source has confirmed the track at the same exposure.
 Otherwise it is kept as a doubt, until a better source confirms the track; two doubts that fit each other begin a new
-track: the ball was kicked, bounced or was placed elsewhere.
+track: the ball was kicked, bounced or was placed elsewhere. Two doubts of one robot do not suffice if another robot has
+confirmed the track meanwhile.
 """
 
-from dataclasses import dataclass, field
+import math
+from dataclasses import dataclass
+from dataclasses import field as of_class
 
 import numpy as np
 
+from procs.model.ball import BallModel
+from procs.model.field import Field
 from procs.model.frames import Floats
 from procs.model.units import US_PER_S
 from procs.world_model.ball_filter import BallFilter
@@ -24,6 +29,9 @@ _SECOND_SIGHT_US = 300_000
 _FASTEST_M_S = 13.0
 _OWN_BONUS = 4.0  # factor by which the own camera counts as better than a mate's of the same variance
 _NEVER_US = -(1 << 60)
+_WALL_BOUNCE, _NET_BOUNCE = 0.5, 0.05  # shares of the speed that they leave
+_POST_M = 0.2  # a ball touches a post at most that far from it
+_MARGIN_M, _MOST_M = 0.05, 0.2  # of a ball near a wall; a less certain place counts as if it were that certain
 _HELD_M = 0.03  # deviation of a held ball's place in the mouth
 _HELD_M_S = 0.1
 
@@ -36,12 +44,34 @@ class Walls:
     y_m: float
     net_x_m: float
     """In a goal, where the net takes the place of the wall."""
+    goal_x_m: float
+    """Of the posts."""
     goal_half_width_m: float
+
+    @classmethod
+    def of(cls, field: Field, ball: BallModel) -> "Walls":
+        """Returns the walls around a field and the nets of its goals."""
+        return cls(
+            x_m=field.half_length_m + field.border_m - ball.radius_m,
+            y_m=field.half_width_m + field.border_m - ball.radius_m,
+            net_x_m=field.half_length_m + field.goal_depth_m - ball.radius_m,
+            goal_x_m=field.half_length_m,
+            goal_half_width_m=field.goal_width_m / 2,
+        )
 
     def contain(self, ball: BallFilter) -> None:
         """Lets a ball beyond the walls bounce off them."""
         in_goal = abs(ball.state[1]) < self.goal_half_width_m
-        ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m)
+        ball.stay_within(self.net_x_m if in_goal else self.x_m, self.y_m, _NET_BOUNCE if in_goal else _WALL_BOUNCE)
+
+    def near(self, ball: BallFilter, duration_s: float) -> bool:
+        """Returns whether the ball may reach a wall, a net or a post within `duration_s`."""
+        (x_m, y_m, vx_m_s, vy_m_s), covariance = np.abs(ball.state).tolist(), ball.covariance
+        margin_m = _MARGIN_M + duration_s * math.hypot(vx_m_s, vy_m_s)
+        margin_m += min(_MOST_M, math.sqrt(2 * (covariance[0, 0] + covariance[1, 1])))
+        at_posts = x_m > self.goal_x_m - margin_m and abs(y_m - self.goal_half_width_m) < margin_m + _POST_M
+        in_net = x_m > self.net_x_m - margin_m and y_m < self.goal_half_width_m
+        return bool(x_m > self.x_m - margin_m or y_m > self.y_m - margin_m or at_posts or in_net)
 
 
 @dataclass(frozen=True)
@@ -66,8 +96,8 @@ class Step:
 
     rolling_m_s2: float = 0.0
     """Deceleration of the rolling ball."""
-    contact: bool = False
-    """A robot or a wall is near the ball."""
+    contact: float = 0.0
+    """Probability that a robot or a wall reaches the ball."""
     timeout_us: int = 2 * US_PER_S
     """The ball is forgotten after that time without a sighting."""
     walls: Walls | None = None
@@ -82,15 +112,17 @@ class BallTrack:
     """None while the ball is not known."""
     seen_us: int = _NEVER_US
     """Exposure of the newest sighting."""
-    confirmed: dict[str, tuple[int, float]] = field(default_factory=dict)
+    confirmed: dict[str, tuple[int, float]] = of_class(default_factory=dict)
     """Robot to exposure and weakness of its newest sighting in the track."""
     doubts: tuple[tuple[int, Sighting], ...] = ()
     """Exposures and sightings that did not fit."""
+    carpet: tuple[float, float] | None = None
+    """Carpet that the last filter learnt, if the ball is not known."""
 
     def moved(self, time_us: int, step: Step) -> "BallTrack":
         """Returns the track at a later time; this one stays as it is."""
         if self.filter is None or time_us - self.seen_us > step.timeout_us:
-            return BallTrack(time_us, None, self.seen_us)
+            return BallTrack(time_us, None, self.seen_us, carpet=self._carpet())
         ball = self.filter.copy()
         ball.predict((time_us - self.time_us) / US_PER_S, step.rolling_m_s2, step.contact)
         if step.walls is not None:
@@ -110,7 +142,7 @@ class BallTrack:
     def hold(self, robot: str, state: Floats, covariance: Floats) -> None:
         """Takes a ball in the own mouth; see `BallTracker.hold`."""
         if self.filter is None or np.hypot(*(self.filter.state[:2] - state[:2])) > 0.3:
-            self.filter = BallFilter(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
+            self.filter = self._new(state[:2], np.eye(2) * 0.05**2 + covariance[:2, :2])
         self.filter.hold(state, covariance + np.diag(np.square((_HELD_M, _HELD_M, _HELD_M_S, _HELD_M_S))))
         self.confirmed = {robot: (self.time_us, 0.0)}
         self.seen_us = self.time_us
@@ -118,13 +150,26 @@ class BallTrack:
 
     def kick(self, velocity_m_s: Floats, mouth: Seen) -> None:
         """Takes a kick at the time of the track; see `BallTracker.kick`."""
-        for position_m, covariance_m2 in zip(mouth.positions_m, mouth.covariances_m2, strict=True):
-            self.filter = BallFilter(position_m, covariance_m2)
+        if len(mouth.positions_m):
+            place = mouth.positions_m[0], mouth.covariances_m2[0]
+            if self.filter is None:
+                self.filter = self._new(*place)
+            self.filter.kick(velocity_m_s, *place)
             self.seen_us = self.time_us
-        if self.filter is not None:
+        elif self.filter is not None:
             self.filter.kick(velocity_m_s)
         self.confirmed = {}
         self.doubts = ()
+
+    def _new(self, position_m: Floats, covariance_m2: Floats) -> BallFilter:
+        """Returns a filter that begins with a sighting, on the carpet that is known."""
+        made, carpet = BallFilter(position_m, covariance_m2), self._carpet()
+        if carpet is not None:
+            made.lie_on(carpet)
+        return made
+
+    def _carpet(self) -> tuple[float, float] | None:
+        return self.carpet if self.filter is None else self.filter.carpet
 
     def _overruled(self, sighting: Sighting) -> bool:
         """Returns whether a better source has confirmed the track at the sighting's exposure."""
@@ -133,12 +178,17 @@ class BallTrack:
             for robot, (seen_us, weakness) in self.confirmed.items()
         )
 
+    def _contradicted(self, robot: str, since_us: int) -> bool:
+        """Returns whether another robot has confirmed the track since then: one robot may be wrong about its place."""
+        return any(name != robot and seen_us >= since_us for name, (seen_us, _) in self.confirmed.items())
+
     def _doubt(self, sighting: Sighting, rolling_m_s2: float) -> None:
         """Keeps a sighting that does not fit; begins a new track from two that fit each other."""
         for exposed_us, other in reversed(self.doubts):
             between_s = (self.time_us - exposed_us) / US_PER_S
             spread_m = 3 * np.sqrt(np.trace(sighting.covariance_m2 + other.covariance_m2))
-            if np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m:
+            near = np.hypot(*(sighting.position_m - other.position_m)) <= _FASTEST_M_S * between_s + spread_m
+            if near and (other.robot != sighting.robot or not self._contradicted(sighting.robot, exposed_us)):
                 self.confirmed = {}
                 self._begin(other)
                 assert self.filter is not None
@@ -149,7 +199,7 @@ class BallTrack:
         self.doubts = (*self.doubts, (self.time_us, sighting))
 
     def _begin(self, sighting: Sighting) -> None:
-        self.filter = BallFilter(sighting.position_m, sighting.covariance_m2)
+        self.filter = self._new(sighting.position_m, sighting.covariance_m2)
         self.doubts = ()
         self._confirm(sighting)
 

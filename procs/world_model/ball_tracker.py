@@ -76,7 +76,7 @@ class BallTracker:
         duration_s: float,
         timeout_s: float,
         rolling_m_s2: float,
-        contact: bool = False,
+        contact: float = 0.0,
         walls: Walls | None = None,
     ) -> None:
         """Moves the track on by `duration_s`; forgets a ball without a sighting for `timeout_s`.
@@ -85,7 +85,7 @@ class BallTracker:
             duration_s: time since the last call.
             timeout_s: longest time without a sighting.
             rolling_m_s2: deceleration of the rolling ball.
-            contact: a robot or a wall is near the ball.
+            contact: probability that a robot or a wall reaches the ball.
             walls: limits of the ball's way.
         """
         self._now_us += round(duration_s * US_PER_S)
@@ -128,7 +128,7 @@ class BallTracker:
         """
         kicked_us = self._now_us - round(age_s * US_PER_S)
         self._steps = [
-            (end_us, replace(step, contact=False) if end_us > kicked_us else step) for end_us, step in self._steps
+            (end_us, replace(step, contact=0.0) if end_us > kicked_us else step) for end_us, step in self._steps
         ]
         self._take(_KICKED, age_s, lambda track: track.kick(velocity_m_s, mouth))
 

@@ -28,7 +28,7 @@ from procs.model.robot import PLAYERS, ROBOT, Players, RobotModel
 from procs.model.units import US_PER_S
 from procs.world_model.ball_track import Sighting, Walls
 from procs.world_model.ball_tracker import BallTracker
-from procs.world_model.contact import may_touch
+from procs.world_model.contact import touch_probability
 from procs.world_model.opponents import OpponentSettings, strangers
 from procs.world_model.own_view import OwnView
 from procs.world_model.robot_tracks import RobotTracks
@@ -104,6 +104,7 @@ class WorldModel(Component):
     def init(self) -> None:
         self._robot = self.name.rpartition("/")[0]
         self._ball = BallTracker()
+        self._walls = Walls.of(self.config.field, self.config.ball)
         self._opponents = RobotTracks()
         self._team = Team()
         self._view: OwnView | None = None
@@ -156,8 +157,8 @@ class WorldModel(Component):
             message.kicks, message.kick_us = kicker.kicks, self.clock.now_us - round(passed_s / 2 * US_PER_S)
             message.kick_vx_m_s, message.kick_vy_m_s = velocity_m_s.tolist()
         self._take_mates_kicks(told, passed_s)
-        contact = self._in_contact(view, mates, passed_s)
-        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls())
+        contact = self._contact(view, mates, passed_s)
+        self._ball.advance(passed_s, config.ball_timeout_s, config.ball.rolling_m_s2, contact, self._walls)
         if kicker.ball_held and view.localized and not kicked:
             self._ball.hold(self._robot, *view.held_ball(self._mouth_m))
         if self.ball_percept.refreshed:
@@ -173,29 +174,21 @@ class WorldModel(Component):
             if mate.holds_ball and mate.localized and told_s <= _STALE_S:
                 self._ball.hold(mate.name, *held_by(mate, self._mouth_m), told_s)
 
-    def _walls(self) -> Walls:
-        """Returns how far the middle of the ball can get: to the wall, or to the net of a goal."""
-        field, radius_m = self.config.field, self.config.ball.radius_m
-        return Walls(
-            x_m=field.half_length_m + field.border_m - radius_m,
-            y_m=field.half_width_m + field.border_m - radius_m,
-            net_x_m=field.half_length_m + field.goal_depth_m - radius_m,
-            goal_half_width_m=field.goal_width_m / 2,
-        )
-
-    def _in_contact(self, view: OwnView, mates: list[Mate], passed_s: float) -> bool:
-        """Returns whether a robot, or the wall around the field, may touch the ball in a tick."""
+    def _contact(self, view: OwnView, mates: list[Mate], passed_s: float) -> float:
+        """Returns the probability that a robot, a post or the wall around the field reaches the ball in a tick."""
         if not self._ball.known:
-            return False
-        field, track = self.config.field, self._ball.track
-        ball_x_m, ball_y_m, *_ = track.state.tolist()
-        wall_m = field.half_width_m + field.border_m - _NEAR_M
-        if abs(ball_x_m) > field.half_length_m - _NEAR_M or abs(ball_y_m) > wall_m:
-            return True
-        robots = [np.array((*mate.position_at(self.clock.now_s), *mate.velocity_m_s)) for mate in mates]
-        if view.localized:
-            robots.append(np.array((*view.pose[:2], *view.velocity_m_s)))
-        return may_touch(track, np.array((*robots, *self._opponents.states)).reshape(-1, 4), self._mouth_m, passed_s)
+            return 0.0
+        track = self._ball.track
+        if self._walls.near(track, passed_s):
+            return 1.0
+        known = [*mates, view.as_mate(self._robot, self.clock.now_s)] if view.localized else mates
+        rivals = self._opponents
+        places_m, places_m2 = Places(known).at(self.clock.now_s)
+        velocities_m_s = np.array([mate.velocity_m_s for mate in known]).reshape(-1, 2)
+        robots = np.concatenate((np.column_stack((places_m, velocities_m_s)), rivals.states))
+        spreads_m2 = np.concatenate((places_m2, rivals.covariances[:, :2, :2]))
+        variances_m2 = (spreads_m2[:, 0, 0] + spreads_m2[:, 1, 1]) / 2
+        return touch_probability(track, robots, variances_m2, self._mouth_m, passed_s)
 
     def _see(self, robot: str, seen: Seen, age_s: float) -> None:
         """Hands a sighting of the ball (0 or 1) to the tracker, unless it is too old or from the future."""

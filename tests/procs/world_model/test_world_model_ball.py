@@ -238,7 +238,7 @@ def test_ball_stays_within_the_walls() -> None:
     track.kick(np.array((8.0, 1.0)))
     for _ in range(20):
         track.predict(PERIOD_S, ROLLING_M_S2)
-        track.stay_within(11.89, 7.89)
+        track.stay_within(11.89, 7.89, 0.5)
         assert track.state[0] <= 11.89
     assert track.state[2] < 0.0, "it comes back"
 
