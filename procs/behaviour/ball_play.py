@@ -13,6 +13,8 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
+_LOB_M, _LOB_PRESSED_M = 7.5, 9.0  # from further away a lob is too rarely between keeper and bar
+_LOB_RAD = 0.03  # room beside a robot that a lob must have
 _ROOM_MAKER_M = 7.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
@@ -73,7 +75,7 @@ class BallPlay:
         """Returns the order in free play."""
         kept = self._keep(view) if self._kick_s < _COMMITTED_S else None
         order = kept or self._choose(view)
-        kicks = order is not None and order.skill in ("shoot", "pass", "push")
+        kicks = order is not None and order.skill in ("shoot", "lob", "pass", "push")
         if kicks and not kept:
             self._kick_s = 0.0
         self._kick = order if kicks else None
@@ -91,8 +93,11 @@ class BallPlay:
     def take_penalty(self, view: View) -> Order:
         """Returns the order of a penalty's taker."""
         if self._kick is None or self._kick_s > _COMMITTED_S:
-            self._kick, self._kick_s = self._shot(view, room_m=0.0) or self._clear(view), 0.0
+            self._kick, self._kick_s = self._penalty(view), 0.0
         return self._kick
+
+    def _penalty(self, view: View) -> Order:
+        return self._shot(view, _ROOM_M) or self._lob(view, math.inf) or self._shot(view, 0.0) or self._clear(view)
 
     def best_pass(self, view: View) -> Order | None:
         """Returns the pass that the robot would play if it had to play one now."""
@@ -109,7 +114,9 @@ class BallPlay:
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
         order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
         if order is None:
-            order = self._try_shot(view) or self._cross(view)
+            order = self._lob(view, _LOB_PRESSED_M if pressed or impatient else _LOB_M)
+        if order is None:
+            order = (self._try_shot(view) if pressed or impatient else None) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
@@ -128,6 +135,8 @@ class BallPlay:
         if kick.intention == "pass":
             mates = [mate for mate in view.mates if mate.name == kick.receiver]
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
+        if kick.intention == "lob":
+            return kick if aim.best_lob(view.ball.place, view.others, self.field).free_rad > 0.0 else None
         rivals = self._before_keeper(view) if kick.intention == "try" else view.opponents
         return kick if aim.lane_rad(view.ball.place, kick.place, rivals) > 0.0 else None
 
@@ -179,6 +188,16 @@ class BallPlay:
         if best.free_rad * math.dist(start, best.place) < room_m:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
+
+    def _lob(self, view: View, range_m: float) -> Order | None:
+        """Kicks over the robots and under the bar."""
+        start = view.ball.place
+        if not self._in_range(start) or math.dist(start, self.field.goal_centre(1.0)) > range_m:
+            return None
+        best = aim.best_lob(start, view.others, self.field)
+        if best.free_rad < _LOB_RAD:
+            return None
+        return Order("lob", best.place, bearing_rad(start, best.place), "lob")
 
     def _in_range(self, start: Point) -> bool:
         near = start.x_m > _HALFWAY_M and math.dist(start, self.field.goal_centre(1.0)) < _SHOT_RANGE_M

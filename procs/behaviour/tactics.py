@@ -80,7 +80,7 @@ class Tactics:
         before, self._last = self._last, self._order(view, game, job, holds_ball)
         stops = game.stopped and not self._taking
         lost = not holds_ball and before.skill in _WITH_BALL
-        if stops or lost or self._last.skill in ("shoot", "push"):
+        if stops or lost or self._last.skill in ("shoot", "lob", "push"):
             self.passing.announce("")
         return self._last
 
@@ -95,7 +95,7 @@ class Tactics:
         """Returns for how long the robot leaves the ball alone after a set piece that it has taken."""
         if game.stopped or not view.mates or holds_ball:
             return 0.0
-        if self._taking and self._last.skill in ("pass", "shoot"):
+        if self._taking and self._last.skill in ("pass", "shoot", "lob"):
             return _BARRED_S  # it held the ball in the last tick and does not any more
         if self._taking and not game.free_play and self._fumbled(view):
             return _BARRED_S

@@ -1,4 +1,4 @@
-"""Skills with the ball in the mouth: dribble, shoot, pass."""
+"""Skills with the ball in the mouth: dribble, shoot, lob, pass."""
 
 import math
 from abc import abstractmethod
@@ -127,6 +127,10 @@ class _Kick(_WithBall):
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
         """Returns the speed over the ground at which the ball leaves for a place that far away."""
 
+    def _lift_m_s(self, _distance_m: float) -> float:
+        """Returns the speed upwards at which the ball leaves for a place that far away."""
+        return 0.0
+
     @abstractmethod
     def _tolerance_rad(self, distance_m: float) -> float:
         """Returns the largest error of the heading at that distance."""
@@ -187,7 +191,9 @@ class _Kick(_WithBall):
 
     def _kick(self, scene: Scene) -> Step:
         self._asked_for = True
-        return self._turn(scene)._replace(kick_m_s=self._kick_m_s)
+        lift_m_s = self._lift_m_s(math.dist(scene.view.own.place, scene.place))
+        elevation_rad = math.atan2(lift_m_s, self._kick_m_s)
+        return self._turn(scene)._replace(kick_m_s=self._kick_m_s, elevation_rad=elevation_rad)
 
     def _hold(self, _scene: Scene) -> Step:
         return Step(dribble=True)
@@ -218,6 +224,16 @@ class Shoot(_Kick):
 
     def _tolerance_rad(self, distance_m: float) -> float:
         return clamp(0.15 / max(distance_m, 0.1), 0.02, 0.1)
+
+
+class Lob(Shoot):
+    """Kicks over robots at a place on the goal line, under the bar."""
+
+    def _speed_m_s(self, _scene: Scene, distance_m: float) -> float:
+        return ballistics.lob(distance_m - _MOUTH_M).speed_m_s
+
+    def _lift_m_s(self, distance_m: float) -> float:
+        return ballistics.lob(distance_m - _MOUTH_M).lift_m_s
 
 
 class Pass(_Kick):

@@ -102,12 +102,39 @@ def test_shot_once_begun_keeps_its_target() -> None:
 
 def test_shot_past_a_keeper_is_given_up_when_a_rival_steps_in() -> None:
     tactics, free = Tactics(FIELD), with_ball(1.0, 0.0)
-    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(6)]
+    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(20)]
     tried = orders[-1]
     assert (tried.skill, tried.intention) == ("shoot", "try")
     blocked = with_ball(1.0, 0.0, robot("", 3.0, tried.place.y_m / 5))
     order = tactics.decide(blocked, PLAY, job(ATTACKER), True, 0.05)
     assert (order.skill, order.place) != (tried.skill, tried.place)
+
+
+WALL = tuple(robot("", 8.3, y_m) for y_m in (-1.2, -0.6, 0.0, 0.6, 1.2))
+
+
+def test_ball_is_lobbed_over_a_wall_before_the_goal() -> None:
+    order = decide(with_ball(4.6, 0.0, *WALL), holds_ball=True, ticks=4)
+    assert (order.skill, order.place.x_m) == ("lob", 11.0)
+    assert abs(order.place.y_m) < 0.8
+    assert decide(with_ball(3.0, 0.0, *WALL), holds_ball=True, ticks=4).skill != "lob", "too far away without need"
+    assert decide(with_ball(3.0, 0.0, *WALL), holds_ball=True, ticks=40).skill == "lob"
+
+
+def test_rival_just_before_the_ball_blocks_a_lob() -> None:
+    tactics, free = Tactics(FIELD), with_ball(4.6, 0.0, *WALL)
+    orders = [tactics.decide(free, PLAY, job(ATTACKER), True, 0.05) for _ in range(4)]
+    assert orders[-1].skill == "lob"
+    blocked = with_ball(4.6, 0.0, *WALL, robot("", 5.6, orders[-1].place.y_m / 6))
+    order = tactics.decide(blocked, PLAY, job(ATTACKER), True, 0.05)
+    assert (order.skill, order.place) != ("lob", orders[-1].place)
+
+
+def test_penalty_is_lobbed_over_a_keeper_in_the_middle() -> None:
+    spot, penalty = Point(7.4, 0.0), Game(State.PENALTY, stopped=False, whose=Whose.OURS, spot=Point(7.4, 0.0))
+    keeper = robot("", 10.5, 0.0), robot("", 10.5, 0.6), robot("", 10.5, -0.6)
+    seen = view(robot("cyan2", 7.07, 0.0), ball(*spot), (), keeper)
+    assert decide(seen, penalty, holds_ball=True, ticks=6).skill == "lob"
 
 
 def test_while_stopped_the_taker_waits_behind_the_ball() -> None:
