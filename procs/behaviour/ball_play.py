@@ -13,9 +13,9 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
-_LOB_M, _LOB_PRESSED_M = 7.5, 9.0  # from further away a lob is too rarely between keeper and bar
+_LOB_M, _LOB_PRESSED_M = 8.5, 10.5  # from further away a lob is too rarely between keeper and bar
 _LOB_RAD = 0.03  # room beside a robot that a lob must have
-_ROOM_MAKER_M = 7.0  # so near to the goal a robot rather makes room for a shot than drives on
+_ROOM_MAKER_M = 8.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
 _ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
@@ -114,9 +114,7 @@ class BallPlay:
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
         order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
         if order is None:
-            order = self._lob(view, _LOB_PRESSED_M if pressed or impatient else _LOB_M)
-        if order is None:
-            order = (self._try_shot(view) if pressed or impatient else None) or self._cross(view)
+            order = self._lob(view, _LOB_PRESSED_M if pressed or impatient else _LOB_M) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
@@ -137,8 +135,7 @@ class BallPlay:
             return self._pass(view, mates, math.inf, 0.0, kick.receiver)
         if kick.intention == "lob":
             return kick if aim.best_lob(view.ball.place, view.others, self.field).free_rad > 0.0 else None
-        rivals = self._before_keeper(view) if kick.intention == "try" else view.opponents
-        return kick if aim.lane_rad(view.ball.place, kick.place, rivals) > 0.0 else None
+        return kick if aim.lane_rad(view.ball.place, kick.place, view.opponents) > 0.0 else None
 
     def _dribble(self, view: View) -> Order:
         """Takes the ball along where the way is free, towards the goal if possible."""
@@ -162,7 +159,7 @@ class BallPlay:
         return Order("dribble", target, bearing_rad(target, goal), "dribble")
 
     def _make_room(self, view: View, goal_rad: float) -> Order:
-        """Takes the ball to where a shot has the most room, mostly sideways, with the mouth towards the goal."""
+        """Takes the ball to where a shot or a lob has the most room, mostly sideways, mouth towards the goal."""
         ball, others = view.ball.place, view.others
         start = self._held_from or ball
         places = [ahead(ball, goal_rad + turn_rad, _ASIDE_M) for turn_rad in _ASIDE_RAD]
@@ -170,7 +167,8 @@ class BallPlay:
 
         def room_rad(place: Point) -> float:
             kept = math.dist(place, self._room_at) < _ASIDE_M if self._room_at else False
-            return aim.best_shot(place, others, self.field).free_rad + 0.1 * kept
+            shot, lob = (best(place, others, self.field).free_rad for best in (aim.best_shot, aim.best_lob))
+            return max(shot, lob) + 0.1 * kept
 
         self._room_at = max(possible, key=room_rad, default=ball)
         target = aim.best_shot(self._room_at, others, self.field).place
@@ -219,22 +217,6 @@ class BallPlay:
             if math.dist(mate.place, goal) < min(_CROSS_M, own_m - 1.0) and self._mouth_rad(mate.place) > _MOUTH_RAD
         ]
         return self._pass(view, mates, math.inf, aim.LANE_RAD, "")
-
-    def _try_shot(self, view: View) -> Order | None:
-        """Shoots past the field players to the corner that the goalkeeper covers least; a save leaves a rebound."""
-        start = view.ball.place
-        if not self._in_range(start):
-            return None
-        best = aim.best_shot(start, view.others, self.field)
-        if aim.lane_rad(start, best.place, (*self._before_keeper(view), *view.mates)) < 0.0:
-            return None
-        return Order("shoot", best.place, bearing_rad(start, best.place), "try")
-
-    def _before_keeper(self, view: View) -> list[Robot]:
-        """Returns the opponents without the one nearest to its goal."""
-        goal = self.field.goal_centre(1.0)
-        keeper = min(view.opponents, key=lambda other: math.dist(other.place, goal), default=None)
-        return [other for other in view.opponents if other is not keeper]
 
     def _clear(self, view: View) -> Order:
         """Kicks the ball away hard: upfield, where the way is free and the robot need not turn far."""
