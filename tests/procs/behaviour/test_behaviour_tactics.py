@@ -298,3 +298,13 @@ def test_taker_that_bumped_the_ball_away_leaves_it_to_a_mate() -> None:
     for game, where in ((waiting, ball(2.0, 0.0)), (waiting._replace(stopped=False), ball(2.5, 0.0))):
         tactics.decide(seen._replace(ball=where), game, job(ATTACKER), False, 0.05)
     assert tactics.barred
+
+
+def test_ball_that_a_mate_bumped_away_is_taken_by_the_next_robot() -> None:
+    tactics, mates = Tactics(FIELD), (robot("cyan3", 0.0, 3.0, role=SUPPORTER),)
+    waiting = Game(State.FREE_KICK, stopped=True, whose=Whose.OURS, spot=Point(2.0, 0.0))
+    game = waiting._replace(stopped=False)
+    for seen_game, own_x_m, ball_x_m in ((waiting, -1.0, 2.0), (game, -1.0, 2.5), (game, 1.8, 2.5)):
+        seen = view(robot("cyan2", own_x_m, 0.0), ball(ball_x_m, 0.0), mates)
+        tactics.decide(seen, seen_game, job(ATTACKER), False, 0.05)
+    assert not tactics.barred
