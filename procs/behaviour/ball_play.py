@@ -13,7 +13,6 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
-_LOB_M, _LOB_PRESSED_M = 8.5, 10.5  # from further away a lob is too rarely between keeper and bar
 _LOB_RAD = 0.03  # room beside a robot that a lob must have
 _ROOM_MAKER_M = 8.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
@@ -37,6 +36,7 @@ _PUSH_M_S = 1.2
 _SLOW_BALL_M_S = 2.5
 _CLEARING_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)  # directions of a clearance
 _CLEARED_M = 6.0  # and the way that should be free
+_UPFIELD_1_M = 0.03  # a metre gained before the ball is out is worth so much
 _AIMED_M = 1.5  # a clearance is aimed at a point so near: roughly
 _WAYS_RAD = (0.0, 0.4, -0.4, 0.8, -0.8, 1.2, -1.2)
 _DETOUR_RAD = 0.3  # a radian off the way to the goal costs so much free path
@@ -97,7 +97,7 @@ class BallPlay:
         return self._kick
 
     def _penalty(self, view: View) -> Order:
-        return self._shot(view, _ROOM_M) or self._lob(view, math.inf) or self._shot(view, 0.0) or self._clear(view)
+        return self._shot(view, _ROOM_M) or self._lob(view) or self._shot(view, 0.0) or self._clear(view)
 
     def best_pass(self, view: View) -> Order | None:
         """Returns the pass that the robot would play if it had to play one now."""
@@ -114,7 +114,7 @@ class BallPlay:
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
         order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
         if order is None:
-            order = self._lob(view, _LOB_PRESSED_M if pressed or impatient else _LOB_M) or self._cross(view)
+            order = self._lob(view) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
@@ -187,10 +187,10 @@ class BallPlay:
             return None
         return Order("shoot", best.place, bearing_rad(start, best.place), "shoot")
 
-    def _lob(self, view: View, range_m: float) -> Order | None:
+    def _lob(self, view: View) -> Order | None:
         """Kicks over the robots and under the bar."""
         start = view.ball.place
-        if not self._in_range(start) or math.dist(start, self.field.goal_centre(1.0)) > range_m:
+        if not self._in_range(start):
             return None
         best = aim.best_lob(start, view.others, self.field)
         if best.free_rad < _LOB_RAD:
@@ -224,10 +224,16 @@ class BallPlay:
 
         def worth(way_rad: float) -> float:
             free_rad = aim.lane_rad(ball, ahead(ball, way_rad, _CLEARED_M), view.others)
-            return min(0.3, free_rad) - aim.TURN_1_RAD * abs(wrap_rad(way_rad - own_rad))
+            turn_rad = abs(wrap_rad(way_rad - own_rad))
+            return min(0.3, free_rad) - aim.TURN_1_RAD * turn_rad + _UPFIELD_1_M * self._upfield_m(ball, way_rad)
 
         way_rad = max(_CLEARING_RAD, key=worth)
         return Order("shoot", ahead(ball, way_rad, _AIMED_M), way_rad, "clear")
+
+    def _upfield_m(self, ball: Point, way_rad: float) -> float:
+        """Returns how much ground a clearance gains before it leaves the field over a touch line, at most 10 m."""
+        beside_m = self.field.half_width_m - math.copysign(1.0, math.sin(way_rad)) * ball.y_m
+        return min(10.0, max(0.0, beside_m) / max(1e-3, abs(math.tan(way_rad))))
 
     def _push(self, view: View) -> Order:
         """Sets the ball free, so that the robot can take it again: a slow pass ahead, where the way is free."""

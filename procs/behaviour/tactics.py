@@ -103,7 +103,7 @@ class Tactics:
         return 0.0 if view.ball.is_near(view.others, _TOUCHED_M) else self._barred_s
 
     def _fumbled(self, view: View) -> bool:
-        """Returns whether the robot has bumped the ball of the set piece away; another robot may have done so before."""
+        """Returns whether the robot has bumped the ball of the set piece away; another may have done so before."""
         laid, ball = self._laid, view.ball.place
         gone, near = laid is not None and math.dist(ball, laid) > _FUMBLED_M, math.dist(view.own.place, ball) < _NEAR_M
         self._moved = self._moved or (gone and not near)

@@ -127,7 +127,7 @@ class _Kick(_WithBall):
     def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
         """Returns the speed over the ground at which the ball leaves for a place that far away."""
 
-    def _lift_m_s(self, _distance_m: float) -> float:
+    def _lift_m_s(self, _scene: Scene, _distance_m: float) -> float:
         """Returns the speed upwards at which the ball leaves for a place that far away."""
         return 0.0
 
@@ -191,7 +191,7 @@ class _Kick(_WithBall):
 
     def _kick(self, scene: Scene) -> Step:
         self._asked_for = True
-        lift_m_s = self._lift_m_s(math.dist(scene.view.own.place, scene.place))
+        lift_m_s = self._lift_m_s(scene, math.dist(scene.view.own.place, scene.place))
         elevation_rad = math.atan2(lift_m_s, self._kick_m_s)
         return self._turn(scene)._replace(kick_m_s=self._kick_m_s, elevation_rad=elevation_rad)
 
@@ -229,11 +229,11 @@ class Shoot(_Kick):
 class Lob(Shoot):
     """Kicks over robots at a place on the goal line, under the bar."""
 
-    def _speed_m_s(self, _scene: Scene, distance_m: float) -> float:
-        return ballistics.lob(distance_m - _MOUTH_M).speed_m_s
+    def _speed_m_s(self, scene: Scene, distance_m: float) -> float:
+        return _lob(scene, distance_m).speed_m_s
 
-    def _lift_m_s(self, distance_m: float) -> float:
-        return ballistics.lob(distance_m - _MOUTH_M).lift_m_s
+    def _lift_m_s(self, scene: Scene, distance_m: float) -> float:
+        return _lob(scene, distance_m).lift_m_s
 
 
 class Pass(_Kick):
@@ -249,6 +249,12 @@ class Pass(_Kick):
 
 class Push(Pass):
     """Sets the ball free, slowly, for the robot that kicks it."""
+
+
+def _lob(scene: Scene, distance_m: float) -> ballistics.Lob:
+    own, way_rad = scene.view.own, bearing_rad(scene.view.own.place, scene.place)
+    carried_m_s = own.velocity_m_s.x_m * math.cos(way_rad) + own.velocity_m_s.y_m * math.sin(way_rad)
+    return ballistics.lob(distance_m - _MOUTH_M, max(0.0, carried_m_s))
 
 
 def _mouth_velocity_m_s(own: Robot, turn_rad_s: float) -> Point:

@@ -151,9 +151,13 @@ def test_lob_lifts_the_ball_over_robots_and_under_the_bar() -> None:
     assert ROBOT.height_m < height_m < 1.0 - 2 * BALL.radius_m
     driving = held._replace(view=view(OWN._replace(velocity_m_s=Point(1.0, 0.0)), ball(0.33, 0.0)))
     moved = Lob().step(driving)
-    assert moved.kick_m_s == pytest.approx(lob.kick_m_s - 1.0)
+    assert moved.kick_m_s == pytest.approx(lob.kick_m_s, abs=0.1), (
+        "the robot's own speed makes the lob faster and flatter"
+    )
     lifts = [step.kick_m_s * math.tan(step.elevation_rad) for step in (lob, moved)]
-    assert lifts[0] == pytest.approx(lifts[1])
+    assert lifts[0] > lifts[1] + 0.05
+    far = Lob().step(scene(view(OWN, ball(0.33, 0.0)), 10.5, holds_ball=True))
+    assert far.kick_m_s / math.cos(far.elevation_rad) < 12.0, "more than the kicker can"
     assert Shoot().step(held).elevation_rad == 0.0
 
 

@@ -107,8 +107,8 @@ def test_ball_is_lobbed_over_a_wall_before_the_goal() -> None:
     order = decide(with_ball(4.6, 0.0, *WALL), holds_ball=True, ticks=4)
     assert (order.skill, order.place.x_m) == ("lob", 11.0)
     assert abs(order.place.y_m) < 0.8
-    assert decide(with_ball(1.5, 0.0, *WALL), holds_ball=True, ticks=4).skill != "lob", "too far away without need"
-    assert decide(with_ball(1.5, 0.0, *WALL), holds_ball=True, ticks=40).skill == "lob"
+    assert decide(with_ball(1.5, 0.0, *WALL), holds_ball=True, ticks=4).skill == "lob"
+    assert decide(with_ball(0.2, 0.0, *WALL), holds_ball=True, ticks=4).skill != "lob", "too far away"
 
 
 def test_rival_just_before_the_ball_blocks_a_lob() -> None:
@@ -308,3 +308,9 @@ def test_ball_that_a_mate_bumped_away_is_taken_by_the_next_robot() -> None:
         seen = view(robot("cyan2", own_x_m, 0.0), ball(ball_x_m, 0.0), mates)
         tactics.decide(seen, seen_game, job(ATTACKER), False, 0.05)
     assert not tactics.barred
+
+
+def test_clearance_beside_the_touch_line_goes_upfield() -> None:
+    order = decide(with_ball(-7.0, 6.0, robot("", -6.1, 6.0)), holds_ball=True, ticks=4)
+    assert order.intention == "clear"
+    assert order.heading_rad < -0.3
