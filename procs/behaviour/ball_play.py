@@ -13,11 +13,15 @@ from procs.model.geometry import ahead, bearing_rad, wrap_rad
 
 _SHOT_RANGE_M = 10.5
 _HALFWAY_M = 0.3  # a goal from the own half would not count
-_LOB_RAD = 0.03  # room beside a robot that a lob must have
+_LOB_RAD = 0.05  # room beside a robot that a lob must have
 _ROOM_MAKER_M = 8.0  # so near to the goal a robot rather makes room for a shot than drives on
 _MOUTH_RAD = 0.16  # from where the goal looks narrower, a shot would hit the post
 _ROOM_M = 0.15  # beside a shot's way at the goal ...
-_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost
+_ROOM_PRESSED_M = 0.05  # ... or less before the ball is lost ...
+_FAR_M, _ROOM_FAR_M = (
+    6.0,
+    0.4,
+)  # ... and more from further away, where a lob is better than a shot that a keeper reaches
 _CROSS_M = 8.0  # a mate so near to the goal gets the ball without delay
 _CLOSE_M = 3.0  # if a rival is so near
 _BACK_M = 1.0  # a pass may lose so much ground ...
@@ -97,7 +101,7 @@ class BallPlay:
         return self._kick
 
     def _penalty(self, view: View) -> Order:
-        return self._shot(view, _ROOM_M) or self._lob(view) or self._shot(view, 0.0) or self._clear(view)
+        return self._kick_at_goal(view, _ROOM_M) or self._shot(view, 0.0) or self._clear(view)
 
     def best_pass(self, view: View) -> Order | None:
         """Returns the pass that the robot would play if it had to play one now."""
@@ -112,9 +116,7 @@ class BallPlay:
         carried_m = math.dist(self._held_from, view.ball.place) if self._held_from else 0.0
         stuck = self._held_s > _STUCK_S and carried_m < _STUCK_M
         impatient = stuck or self._held_s > _PATIENCE_S or carried_m > _DRIBBLE_M
-        order = self._shot(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M)
-        if order is None:
-            order = self._lob(view) or self._cross(view)
+        order = self._kick_at_goal(view, _ROOM_PRESSED_M if pressed or impatient else _ROOM_M) or self._cross(view)
         alone = all(math.dist(other.place, view.own.place) > _CLOSE_M for other in view.opponents)
         if order is None and (pressed or impatient):
             order = None if alone else self._pass_on(view, _BACK_M)
@@ -177,6 +179,10 @@ class BallPlay:
     def _may_carry(self, place: Point) -> bool:
         field = self.field
         return field.in_field(*place, -0.5) and place.x_m < field.half_length_m - _BEFORE_GOAL_M
+
+    def _kick_at_goal(self, view: View, room_m: float) -> Order | None:
+        far = math.dist(view.ball.place, self.field.goal_centre(1.0)) > _FAR_M
+        return self._shot(view, _ROOM_FAR_M if far else room_m) or self._lob(view) or self._shot(view, room_m)
 
     def _shot(self, view: View, room_m: float) -> Order | None:
         start = view.ball.place

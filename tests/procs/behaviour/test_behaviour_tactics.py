@@ -314,3 +314,9 @@ def test_clearance_beside_the_touch_line_goes_upfield() -> None:
     order = decide(with_ball(-7.0, 6.0, robot("", -6.1, 6.0)), holds_ball=True, ticks=4)
     assert order.intention == "clear"
     assert order.heading_rad < -0.3
+
+
+def test_keeper_that_has_time_is_lobbed_and_an_empty_goal_is_not() -> None:
+    beside = with_ball(4.0, 2.0)
+    assert decide(beside, holds_ball=True, ticks=4).skill == "lob"
+    assert decide(beside._replace(opponents=()), holds_ball=True, ticks=4).skill == "shoot"
